@@ -1,0 +1,185 @@
+"""AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do not edit.
+
+Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
+"""
+
+DIGEST = "c51954df6821291dac7fbdf6022e395aafa4343d999b4170b051c4a32f7037c1"
+
+MRIG = 1  # rigid block
+MSDEF = 2  # simply-deformable block
+MFDEF = 3  # fully-deformable block
+MCOR = 4  # corner
+MCON = 5  # contact
+MDOM = 6  # domain
+
+# one block (page 53)
+KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
+KP = (2, 2, 2)  # int: one corner in the block's corner list; never 0
+KMAT = (3, 3, 3)  # int: material number
+KCONS = (4, 4, 4)  # int: constitutive number
+KX = (6, 4, 3)  # real: x coordinate of centroid
+KY = (7, 5, 4)  # real: y coordinate of centroid
+KXD = (8, 6, 5)  # real: x velocity
+KYD = (9, 7, 6)  # real: y velocity
+KTD = (10, 8, 7)  # real: angular velocity (anticlockwise positive)
+KBM = (11, 9, 8)  # real: block mass; 0 until a density is known
+KBI = (12, 10, 9)  # real: block moment of inertia about the centroid
+KBFX = (13, 11, 10)  # real: x centroid force-sum
+KBFY = (14, 12, 11)  # real: y centroid force-sum
+KBFT = (15, 13, 12)  # real: centroid moment sum
+KBEX = (15, 26, 48)  # int: extension pointer (to SDEF or FDEF data); 0 for a rigid block
+KBFIX = (16, 27, 49)  # int: 1 if the block is fixed (FIX), 0 if it is free
+KBB = (17, 28, 50)  # int: previous block in block list; 0 at the head of the list
+KBRO = (19, 16, 14)  # real: greatest distance of a corner from the centroid
+NVBL = (19, 32, 56)
+
+# one corner of one block (page 53)
+KL = (1, 1, 1)  # int: next corner or contact on block, clockwise; never 0
+KR = (2, 2, 2)  # int: next corner, anticlockwise; never 0
+KNB = (3, 3, 3)  # int: host block; never 0
+KXP = (5, 3, 2)  # real: x coordinate of corner
+KYP = (6, 4, 3)  # real: y coordinate of corner
+KXCP = (7, 5, 4)  # real: x coordinate of local circle centre
+KYCP = (8, 6, 5)  # real: y coordinate of local circle centre
+KRAD = (9, 7, 6)  # real: radius of local circle; negative at a concave corner
+KXDP = (10, 8, 7)  # real: x velocity of corner
+KYDP = (11, 9, 8)  # real: y velocity of corner
+KGP = (11, 18, 32)  # int: grid-point of the corner; 0 unless the block is fully-deformable
+NVCR = (12, 20, 36)
+
+# one contact: it stands in the clockwise lists of two blocks (page 54)
+KC = (1, 1, 1)  # int: next contact in contact list; 0 at the end of the list
+KB1 = (2, 2, 2)  # int: first block involved; never 0
+KB2 = (3, 3, 3)  # int: second block involved; never 0
+KL1 = (4, 4, 4)  # int: next item in the clockwise list of block KB1; never 0
+KL2 = (5, 5, 5)  # int: next item in the clockwise list of block KB2; never 0
+KD1 = (6, 6, 6)  # int: domain to the left of the contact, going from KB1 to KB2; never 0
+KD2 = (7, 7, 7)  # int: domain to the right of the contact, going from KB1 to KB2; never 0
+KCM = (8, 8, 8)  # int: material number
+KCC = (9, 9, 9)  # int: constitutive number
+KXC = (11, 6, 4)  # real: x contact coordinate
+KYC = (12, 7, 5)  # real: y contact coordinate
+KXDC = (13, 8, 6)  # real: relative x velocity (of block KB2 relative to block KB1)
+KYDC = (14, 9, 7)  # real: relative y velocity
+KCS = (15, 10, 8)  # real: relative shear displacement
+KCN = (16, 11, 9)  # real: relative normal displacement: the overlap, negative for a gap
+KCFS = (17, 12, 10)  # real: shear force
+KCFN = (18, 13, 11)  # real: normal force (positive compression)
+KCCOD = (18, 26, 44)  # int: 1 corner/corner, 2 corner/edge, 3 edge/corner, 4 virtual (ours)
+KCP1 = (19, 27, 45)  # int: first corner after the contact in the list of block KB1; never 0
+KCP2 = (20, 28, 46)  # int: first corner after the contact in the list of block KB2; never 0
+KCB = (21, 29, 47)  # int: previous contact in contact list; 0 at the head of the list
+NVCN = (22, 30, 48)
+
+# one domain: a face of the map, bounded by blocks and contacts (page 54)
+KD = (1, 1, 1)  # int: next domain in domain list; 0 at the end of the list
+KPP = (3, 2, 2)  # real: pore-pressure for domain
+KUMAX = (4, 3, 3)  # real: fictitious domain displacement since the last update
+KDLOOP = (4, 6, 12)  # int: one contact in the anticlockwise list around the domain; 0 for a lone block
+KDEX = (5, 7, 13)  # int: domain extension (edge-to-edge contact); 0 when there is none
+KDB = (6, 8, 14)  # int: previous domain in domain list; 0 at the head of the list
+NVDO = (7, 10, 16)
+
+# simply-deformable extension of a block (page 55)
+KED11 = (1, 1, 1)  # real: strain-rate tensor
+KED12 = (2, 2, 2)  # real: strain-rate tensor
+KED21 = (3, 3, 3)  # real: strain-rate tensor
+KED22 = (4, 4, 4)  # real: strain-rate tensor
+KS111 = (5, 5, 5)  # real: internal stress tensor
+KS112 = (6, 6, 6)  # real: internal stress tensor
+KS121 = (7, 7, 7)  # real: internal stress tensor
+KS122 = (8, 8, 8)  # real: internal stress tensor
+KSA11 = (9, 9, 9)  # real: applied stress tensor (multiplied by block area)
+KSA12 = (10, 10, 10)  # real: applied stress tensor (multiplied by block area)
+KSA21 = (11, 11, 11)  # real: applied stress tensor (multiplied by block area)
+KSA22 = (12, 12, 12)  # real: applied stress tensor (multiplied by block area)
+NVSD = (12, 24, 48)
+
+# one triangular zone of a fully-deformable block (page 55)
+KZ = (0, 0, 0)  # int: next zone in zone list; 0 at the end of the list
+KZG = (1, 1, 1)  # int: the three surrounding grid-points; never 0
+KZS11 = (5, 3, 2)  # real: stress tensor
+KZS12 = (6, 4, 3)  # real: stress tensor
+KZS22 = (7, 5, 4)  # real: stress tensor
+KZM = (8, 6, 5)  # real: zone mass
+NVZO = (8, 12, 20)
+
+# one grid-point (mass-point) of a fully-deformable block (page 55)
+KG = (0, 0, 0)  # int: next grid-point in grid-point list; 0 at the end of the list
+KCOR = (1, 1, 1)  # int: corresponding block corner; 0 inside the block
+KXG = (3, 2, 2)  # real: x coordinate
+KYG = (4, 3, 3)  # real: y coordinate
+KXDG = (5, 4, 4)  # real: x velocity
+KYDG = (6, 5, 5)  # real: y velocity
+KGFX = (7, 6, 6)  # real: x force-sum
+KGFY = (8, 7, 7)  # real: y force-sum
+KGPM = (9, 8, 8)  # real: grid-point mass
+NVGP = (9, 16, 32)
+
+# domain extension: data of an edge-to-edge contact (page ours)
+KJL = (1, 1, 1)  # real: joint length p
+KJUN = (2, 2, 2)  # real: mean normal displacement of the two ends
+KJUS = (3, 3, 3)  # real: mean shear displacement of the two ends
+KJSN = (4, 4, 4)  # real: average normal stress
+KJTS = (5, 5, 5)  # real: average shear stress
+NVDE = (5, 10, 20)
+
+# Integers of the common block: index of the variable, or of its first element
+JUNK = 0  # list of spare memory groups; 0 when there are none
+MFREE = 1  # first unused memory address
+MTOP = 2  # size of the main array; groups end at or below this address
+NCYC = 3  # currently requested number of cycles
+MCTOT = 4  # total number of cycles
+NERR = 5  # error number raised by a compiled routine; 0 when there is none
+IBPNT = 6  # list of blocks; 0 when there are none
+ICPNT = 7  # list of contacts; 0 when there are none
+IDPNT = 8  # list of domains; 0 when there are none
+IODPNT = 9  # outer domain; 0 when there are no blocks
+NBLK = 10  # number of blocks
+NCON = 11  # number of contacts
+NDOM = 12  # number of domains
+NVIRT = 13  # number of virtual contacts among them
+NMADE = 14  # contacts made so far
+NBROKE = 15  # contacts broken so far
+NSHORT = 16  # edges that hold little more than their two roundings
+LROUND = 17  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 18  # address of the group that raised error NERR; 0 when there is none
+NWANT = 19  # words that the interrupted routine asks for; 0 when there are enough
+JPHASE = 20  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 21
+
+# Reals of the common block: index of the variable, or of its first element
+TDEL = 0  # time-step
+FRAC = 1  # requested fraction of critical time-step
+ALPHA = 2  # mass damping coefficient
+BETA = 3  # stiffness damping coefficient
+CON1 = 4  # damping factor 1 - ALPHA.TDEL/2
+CON2 = 5  # damping factor 1/(1 + ALPHA.TDEL/2)
+ALPB = 6  # internal mass damping coefficient for simply deformable blocks
+C1B = 7  # damping factor derived from ALPB
+C2B = 8  # damping factor derived from ALPB
+PSCALE = 9  # plotting scale; 0 lets the plot fill its frame
+ATOL = 10  # distance between particles at which a contact is first formed
+BTOL = 11  # distance between particles at which a contact is broken
+CTOL = 12  # maximum overlap allowed when forming contacts
+DTOL = 13  # rounding length
+DTOL2 = 14  # =DTOL/2 (maximum contact overlap)
+ETOL = 15  # limit on maximum domain displacement to trigger contact update
+FTOL = 16  # least distance between two contacts of the same two blocks (our use)
+GTOL = 17  # slack on the border between two contact codes (our use)
+HTOL = 18  # largest displacement that may wait for the domain pass (our use)
+GRAVX = 19  # x gravitational acceleration
+GRAVY = 20  # y gravitational acceleration
+TIME = 21  # time since the first cycle
+UPEND = 22  # displacement that waits to be added to every KUMAX
+WFRIC = 23  # work done against friction so far
+AKN = 24  # normal joint stiffness, material I
+AKS = 74  # shear joint stiffness, material I
+AMU = 124  # joint friction coefficient, material I
+COH = 174  # joint cohesion, material I
+DENS = 224  # density, material I
+BULK = 274  # bulk modulus, material I
+SHEAR = 324  # shear modulus, material I
+ALAM1 = 374  # Lame constant, material I
+ALAM2 = 424  # Lame constant, material I
+NCOMR = 474

@@ -1,0 +1,148 @@
+"""Read groups.table and lay the groups out for a word scheme.
+
+A word scheme is a pair of word widths, integer and real (report 3.5). All that matters for the
+layout is their ratio: the number of integers in the space of one real, 1, 2 or 4. A real must start
+at a multiple of its own width, so the layout pads where the 1980 machine did not need to; a group's
+size is rounded up for the same reason, which keeps every group address aligned.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+TABLE = Path(__file__).with_name("groups.table")
+RATIOS = (1, 2, 4)
+
+
+class TableError(ValueError):
+    """A line of the table that cannot be read; the message names file and line."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """One variable of a data group, or one variable of the common block."""
+
+    name: str
+    real: bool
+    count: int
+    target: str | None  # kind of group a pointer points to, "item" for corner-or-contact, None for data
+    role: str
+    unit: str
+    page: str
+    text: str
+
+    @property
+    def ours(self) -> bool:
+        """True for a field that the 1980 program did not have."""
+        return self.page == "ours"
+
+
+@dataclass(frozen=True)
+class Group:
+    """One kind of data group: its fields in 1980 order."""
+
+    name: str
+    size_name: str
+    list_head: str | None
+    page: str
+    text: str
+    fields: tuple[Field, ...]
+
+
+@dataclass(frozen=True)
+class HeadCode:
+    """The first integer of a group that says what the group is."""
+
+    name: str
+    value: int
+    group: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """The whole table. `digest` is the SHA-256 of its text: equal digests mean equal layouts."""
+
+    groups: tuple[Group, ...]
+    heads: tuple[HeadCode, ...]
+    common: tuple[Field, ...]
+    digest: str
+
+    def group(self, name: str) -> Group:
+        """The group called `name` (block, corner, contact, domain, sdef, zone, gridpoint, jointext)."""
+        return next(g for g in self.groups if g.name == name)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Offsets of one group for one ratio: `offset[name]` as in Appendix IV-2, and the group's size.
+
+    An integer's offset counts integer words from 0; a real's counts reals from 1.
+    """
+
+    offset: dict[str, int]
+    size: int
+    used: int  # words before the size is rounded up
+
+
+def read_table(text: str | None = None) -> Table:
+    """Parse the table (by default the file beside this module). Raises TableError."""
+    text = TABLE.read_text() if text is None else text
+    groups: list[Group] = []
+    heads: list[HeadCode] = []
+    common: list[Field] = []
+    fields: list[Field] | None = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        try:
+            left, doc = (part.strip() for part in line.split("|", 1))
+            words = left.split()
+            if words[0] == "GROUP":
+                _, name, size_name, list_head, page = words
+                fields = []
+                head = None if list_head == "-" else list_head
+                groups.append(Group(name, size_name, head, page, doc, ()))
+            elif words[0] == "COMMON":
+                fields = common
+            elif words[0] == "HEAD" and words[2].isdigit():
+                heads.append(HeadCode(words[1], int(words[2]), words[3], doc))
+            elif fields is None:
+                raise ValueError("a field stands before the first GROUP")
+            else:
+                fields.append(_field(words, doc))
+                if fields is not common:
+                    last = groups[-1]
+                    groups[-1] = Group(
+                        last.name, last.size_name, last.list_head, last.page, last.text, tuple(fields)
+                    )
+        except (ValueError, IndexError) as error:
+            raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
+    return Table(tuple(groups), tuple(heads), tuple(common), hashlib.sha256(text.encode()).hexdigest())
+
+
+def _field(words: list[str], doc: str) -> Field:
+    name, kind, target, role, unit, page = words
+    base, _, count = kind.partition("*")
+    if base not in ("int", "real"):
+        raise ValueError(f"type {base!r} is neither int nor real")
+    return Field(
+        name, base == "real", int(count or 1), None if target == "-" else target, role, unit, page, doc
+    )
+
+
+def lay_out(group: Group, ratio: int) -> Layout:
+    """Offsets and size of `group` where one real takes the space of `ratio` integers."""
+    offset: dict[str, int] = {}
+    word = 0
+    for field in group.fields:
+        if field.real:
+            word = -(-word // ratio) * ratio
+            offset[field.name] = word // ratio + 1
+            word += field.count * ratio
+        else:
+            offset[field.name] = word
+            word += field.count
+    return Layout(offset, -(-word // ratio) * ratio, word)

@@ -1,0 +1,147 @@
+"""The only place that knows how an address becomes an array index (report 3.5).
+
+An address counts integer words from 1; 0 is the null pointer. An integer of the group at `iad`
+stands at word iad + K, K counted from 0; a real is number K, counted from 1, of the reals that start
+at word iad. The four accessors keep their 1980 names:
+
+    iget(h, iad, KB)   puti(h, iad, KB, n)   getr(h, iad, KX)   putr(h, iad, KX, v)
+
+`h` is the whole memory of the program: the integer and the real view of IA(), and the common block.
+An offset is a tuple with one element for each ratio of widths; the array types pick the element when
+the kernel is compiled, so an accessor costs what a literal offset costs. Addresses are widened to 64
+bits on load and narrowed on store; indices are unsigned, which spares numba's negative-index fix-up.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.extending import overload, register_jitable
+
+Offset = tuple[int, int, int]
+Address = int
+
+
+class Memory(NamedTuple):
+    """All that a kernel sees.
+
+    ia: IA() as integers; ra: the same bytes as reals; ci, cr: integers and reals of the common block,
+    indexed by the names of `offsets.generated`.
+    """
+
+    ia: Any
+    ra: Any
+    ci: Any
+    cr: Any
+
+
+def _which(h: Any) -> int:
+    """Index into an offset tuple: 0, 1, 2 for 1, 2, 4 integers to a real."""
+    return int(h.ra.itemsize // h.ia.itemsize) >> 1
+
+
+def _which_type(h: Any) -> tuple[int, int]:
+    ratio = h.types[1].dtype.bitwidth // h.types[0].dtype.bitwidth
+    return ratio >> 1, ratio.bit_length() - 1
+
+
+def iget(h: Memory, iad: Address, k: Offset, i: int = 0) -> int:
+    """Integer at IA(iad + k + i)."""
+    return int(h.ia[iad + k[_which(h)] + i - 1])
+
+
+def puti(h: Memory, iad: Address, k: Offset, n: int, i: int = 0) -> None:
+    """IA(iad + k + i) := n."""
+    h.ia[iad + k[_which(h)] + i - 1] = n
+
+
+def getr(h: Memory, iad: Address, k: Offset) -> Any:
+    """Real number k of the reals that start at IA(iad)."""
+    j = _which(h)
+    return h.ra[((iad - 1) >> j) + k[j] - 1]
+
+
+def putr(h: Memory, iad: Address, k: Offset, v: Any) -> None:
+    """Real number k of the reals that start at IA(iad) := v."""
+    j = _which(h)
+    h.ra[((iad - 1) >> j) + k[j] - 1] = v
+
+
+def size_of(h: Memory, nv: Offset) -> int:
+    """Number of words of a group (NVBL, NVCR, ...) in the scheme at hand."""
+    return nv[_which(h)]
+
+
+def real(h: Memory, value: float) -> Any:
+    """`value` as a real of the scheme at hand: a bare literal would widen 32-bit arithmetic."""
+    return h.cr.dtype.type(value)
+
+
+@overload(iget)
+def _iget(h, iad, k, i=0):  # type: ignore[no-untyped-def]
+    j, _ = _which_type(h)
+
+    def impl(h, iad, k, i=0):  # type: ignore[no-untyped-def]
+        return np.int64(h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)])
+
+    return impl
+
+
+@overload(puti)
+def _puti(h, iad, k, n, i=0):  # type: ignore[no-untyped-def]
+    j, _ = _which_type(h)
+
+    def impl(h, iad, k, n, i=0):  # type: ignore[no-untyped-def]
+        h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)] = n
+
+    return impl
+
+
+@overload(getr)
+def _getr(h, iad, k):  # type: ignore[no-untyped-def]
+    j, shift = _which_type(h)
+
+    def impl(h, iad, k):  # type: ignore[no-untyped-def]
+        return h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)]
+
+    return impl
+
+
+@overload(putr)
+def _putr(h, iad, k, v):  # type: ignore[no-untyped-def]
+    j, shift = _which_type(h)
+
+    def impl(h, iad, k, v):  # type: ignore[no-untyped-def]
+        h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)] = v
+
+    return impl
+
+
+@overload(size_of)
+def _size_of(h, nv):  # type: ignore[no-untyped-def]
+    j, _ = _which_type(h)
+
+    def impl(h, nv):  # type: ignore[no-untyped-def]
+        return nv[j]
+
+    return impl
+
+
+@overload(real)
+def _real(h, value):  # type: ignore[no-untyped-def]
+    kind = h.types[3].dtype
+
+    def impl(h, value):  # type: ignore[no-untyped-def]
+        return kind(value)
+
+    return impl
+
+
+@register_jitable
+def head(h: Memory, iad: Address) -> int:
+    """Head code of the group at `iad` (MRIG, MSDEF, MFDEF, MCOR, MCON or MDOM)."""
+    return iget(h, iad, HEAD)
+
+
+HEAD: Offset = (0, 0, 0)

@@ -1,0 +1,74 @@
+"""IA() itself: its views, its common block, and how it grows.
+
+1980 fixed the size of IA() when the program was compiled (MTOP). Here `mtop` does the same; without
+it the array grows whenever a routine asks for room, up to the last address that an integer of the
+word scheme can hold.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import MFREE, MTOP, NCOMI, NCOMR, NERR, NWANT
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.words import Scheme
+
+FIRST_SIZE = 8192
+
+
+class MainArray:
+    """The main array and the common block of one model.
+
+    `h` is the Memory that kernels work on; it is a new object after the array has grown.
+    """
+
+    def __init__(self, scheme: Scheme, mtop: int | None = None) -> None:
+        if mtop is not None and not 1 <= mtop <= scheme.top_address:
+            raise ValueError(
+                f"mtop must lie between 1 and {scheme.top_address}, the last address of {scheme.name}"
+            )
+        self.scheme = scheme
+        self.fixed = mtop is not None
+        words = self._whole_reals(min(FIRST_SIZE, scheme.top_address) if mtop is None else mtop)
+        self.h = self._views(
+            np.zeros(words, scheme.int_type), np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type)
+        )
+        self.h.ci[MFREE] = 1
+        self.h.ci[MTOP] = words
+
+    def _whole_reals(self, words: int) -> int:
+        return words // self.scheme.ratio * self.scheme.ratio
+
+    def _views(self, ia: Any, ci: Any, cr: Any) -> Memory:
+        return Memory(ia, ia.view(self.scheme.real_type), ci, cr)
+
+    @property
+    def limit(self) -> int:
+        """Largest size that the array can ever have."""
+        return int(self.h.ci[MTOP]) if self.fixed else self._whole_reals(self.scheme.top_address)
+
+    def grow(self) -> bool:
+        """Make the room that an interrupted routine asked for; False if the limit forbids it.
+
+        On success error and request are cleared, and the routine can be called again.
+        """
+        ci = self.h.ci
+        need = int(ci[MFREE] + ci[NWANT])
+        if need - 1 > self.limit:
+            return False
+        size = min(max(self._whole_reals(2 * need), FIRST_SIZE), self.limit)
+        ia = np.zeros(size, self.scheme.int_type)
+        ia[: len(self.h.ia)] = self.h.ia
+        self.h = self._views(ia, ci, self.h.cr)
+        ci[MTOP] = size
+        ci[NERR] = ci[NWANT] = 0
+        return True
+
+    def copy(self) -> MainArray:
+        """An independent copy of the whole state."""
+        other = object.__new__(MainArray)
+        other.scheme, other.fixed = self.scheme, self.fixed
+        other.h = self._views(self.h.ia.copy(), self.h.ci.copy(), self.h.cr.copy())
+        return other

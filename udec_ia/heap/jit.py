@@ -1,0 +1,62 @@
+"""The one decorator that compiles a kernel, and where its compiled form is kept.
+
+numba's cache on disk looks at the kernel's own file only: change an offset, or a function that the
+kernel calls, and it would go on running the old machine code. So the cache lives in a directory
+named by a hash of the field table and of every source file of the package: any change starts afresh.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+from numba.core import config
+
+from offsets.generated import DIGEST
+
+F = TypeVar("F", bound=Callable[..., Any])
+PACKAGE = Path(__file__).parent.parent
+
+
+def _cache_home() -> Path:
+    if "UDEC_CACHE" in os.environ:
+        return Path(os.environ["UDEC_CACHE"])
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "udec_ia"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "udec_ia"
+
+
+def source_digest() -> str:
+    """Hash of the field table and of the sources that compiled kernels can depend on."""
+    digest = hashlib.sha256(DIGEST.encode())
+    for folder in ("heap", "kernels"):
+        for path in sorted((PACKAGE / folder).glob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}"
+
+
+def kernel(function: F) -> F:
+    """Compile `function` on first use, for the word scheme of the arrays it is called with.
+
+    No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
+    follows IEEE 754 instead of raising.
+    """
+    kept = config.CACHE_DIR
+    config.CACHE_DIR = str(CACHE)
+    try:
+        return cast(F, numba.njit(cache=True, error_model="numpy")(function))
+    finally:
+        config.CACHE_DIR = kept
+
+
+def is_cached() -> bool:
+    """True if compiled kernels of exactly these sources are on disk already."""
+    return CACHE.exists() and any(CACHE.rglob("*.nbc"))

@@ -1,0 +1,105 @@
+"""Memory management: FIND and LOSE (report 3.4).
+
+Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
+reuses it for the next request of exactly the same size; groups are never cut up.
+
+The figure of the junk list (Fig. 6) is lost. Our reading keeps one chain for each size, so that a
+request never has to search through groups of other sizes:
+
+    JUNK -> first group of size a  --(word 2)-->  first group of size b  --> ... --> 0
+                |(word 0)                              |(word 0)
+            next group of size a                   next group of size b
+                |                                      |
+                0                                      0
+
+Word 0 of a junk group: next junk group of the same size, or 0. Word 1: its size. Word 2: first group
+of the next size, or 0; it has a meaning only in the first group of a chain.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import JUNK, MFREE, MTOP, NERR, NWANT
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, puti, size_of
+from udec_ia.heap.jit import kernel
+
+JNEXT: Offset = HEAD
+JSIZE: Offset = (1, 1, 1)
+JSIZES: Offset = (2, 2, 2)
+OVERFLOW = 1  # error 1, memory overflow
+
+
+@kernel
+def _chain(h: Memory, n: int) -> tuple[int, int]:
+    """First junk group of `n` words and first group of the chain before it; 0 where there is none."""
+    before = np.int64(0)
+    group = np.int64(h.ci[JUNK])
+    while group != 0 and iget(h, group, JSIZE) != n:
+        before = group
+        group = iget(h, group, JSIZES)
+    return group, before
+
+
+@kernel
+def _link_chain(h: Memory, before: int, group: int) -> None:
+    if before == 0:
+        h.ci[JUNK] = group
+    else:
+        puti(h, before, JSIZES, group)
+
+
+@kernel
+def find(h: Memory, nv: Offset) -> int:
+    """Address of a group of the size `nv` (NVBL, NVCR, ...), its words zero.
+
+    Returns 0 and sets error 1 when memory cannot be found; nothing else changes then.
+    """
+    n = np.int64(size_of(h, nv))
+    group, before = _chain(h, n)
+    if group != 0:
+        after = iget(h, group, JNEXT)
+        if after != 0:
+            puti(h, after, JSIZES, iget(h, group, JSIZES))
+            _link_chain(h, before, after)
+        else:
+            _link_chain(h, before, iget(h, group, JSIZES))
+    else:
+        group = h.ci[MFREE]
+        if group + n - 1 > h.ci[MTOP]:
+            h.ci[NERR] = OVERFLOW
+            h.ci[NWANT] = n
+            return np.int64(0)
+        h.ci[MFREE] = group + n
+    for i in range(n):
+        puti(h, group, HEAD, 0, i)
+    return group
+
+
+@kernel
+def lose(h: Memory, group: int, nv: Offset) -> None:
+    """Give the group of the size `nv` at `group` back to the junk list."""
+    n = np.int64(size_of(h, nv))
+    first, before = _chain(h, n)
+    if first == 0:
+        puti(h, group, JSIZES, h.ci[JUNK])
+        h.ci[JUNK] = group
+    else:
+        puti(h, group, JSIZES, iget(h, first, JSIZES))
+        _link_chain(h, before, group)
+    puti(h, group, JNEXT, first)
+    puti(h, group, JSIZE, n)
+
+
+@kernel
+def room(h: Memory, words: int) -> bool:
+    """True if `words` words of fresh memory are left; else asks for them (error 1, NWANT).
+
+    A routine that changes the map asks for all it may need before its first change, so that running
+    out of memory never leaves the map half-made.
+    """
+    if h.ci[MFREE] + words - 1 > h.ci[MTOP]:
+        h.ci[NERR] = OVERFLOW
+        h.ci[NWANT] = words
+        return False
+    return True

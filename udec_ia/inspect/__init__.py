@@ -1,0 +1,1 @@
+"""Looking at the heap from Python: walking its lists, tables of its groups, and the checker."""
