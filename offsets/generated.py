@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "c51954df6821291dac7fbdf6022e395aafa4343d999b4170b051c4a32f7037c1"
+DIGEST = "9a45171e2a32b487d831eb3c8622046c2640341d1e8be38fb1e8b3ef5a776851"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -45,7 +45,8 @@ KRAD = (9, 7, 6)  # real: radius of local circle; negative at a concave corner
 KXDP = (10, 8, 7)  # real: x velocity of corner
 KYDP = (11, 9, 8)  # real: y velocity of corner
 KGP = (11, 18, 32)  # int: grid-point of the corner; 0 unless the block is fully-deformable
-NVCR = (12, 20, 36)
+KLB = (12, 19, 33)  # int: previous corner or contact on block, so anticlockwise; never 0
+NVCR = (13, 20, 36)
 
 # one contact: it stands in the clockwise lists of two blocks (page 54)
 KC = (1, 1, 1)  # int: next contact in contact list; 0 at the end of the list
@@ -68,8 +69,10 @@ KCFN = (18, 13, 11)  # real: normal force (positive compression)
 KCCOD = (18, 26, 44)  # int: 1 corner/corner, 2 corner/edge, 3 edge/corner, 4 virtual (ours)
 KCP1 = (19, 27, 45)  # int: first corner after the contact in the list of block KB1; never 0
 KCP2 = (20, 28, 46)  # int: first corner after the contact in the list of block KB2; never 0
-KCB = (21, 29, 47)  # int: previous contact in contact list; 0 at the head of the list
-NVCN = (22, 30, 48)
+KLB1 = (21, 29, 47)  # int: previous item in the clockwise list of block KB1; never 0
+KLB2 = (22, 30, 48)  # int: previous item in the clockwise list of block KB2; never 0
+KCB = (23, 31, 49)  # int: previous contact in contact list; 0 at the head of the list
+NVCN = (24, 32, 52)
 
 # one domain: a face of the map, bounded by blocks and contacts (page 54)
 KD = (1, 1, 1)  # int: next domain in domain list; 0 at the end of the list
