@@ -1,0 +1,195 @@
+"""PRINT: every field of every block, corner, contact and domain, and the linked lists as they run.
+
+The columns are the fields of the table of data groups, under their own names, so a new field shows up
+here by itself. What describes the rock (who, where, how fast, which force) comes first; the links that
+hold the map together follow in a table of their own. No line is wider than 120 columns: a table that
+would be is cut into several, one under the other, each beginning with the addresses.
+
+A damaged heap is printed as far as it can be walked, with a line that says where it breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TypeVar
+
+import offsets.generated as g
+from offsets.table import Field, read_table
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory, getr, head, iget
+from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, point
+
+T = TypeVar("T")
+LINE = 120
+GAP = "  "
+TABLE = read_table()
+HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
+TABLES = {"blocks": "block", "contacts": "contact", "corners": "corner", "domains": "domain"}
+LISTS = {"list": "block", "dlist": "domain"}
+CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table: its name, its unit ("" for none) and one text for each row."""
+
+    name: str
+    unit: str
+    cells: list[str]
+    left: bool = False
+
+    @property
+    def width(self) -> int:
+        return max(map(len, self.lines))
+
+    @property
+    def lines(self) -> list[str]:
+        """Name, unit and cells, as they stand under each other."""
+        return [self.name, self.unit, *self.cells]
+
+    def aligned(self) -> list[str]:
+        """The lines at the column's width, numbers to the right."""
+        return [line.ljust(self.width) if self.left else line.rjust(self.width) for line in self.lines]
+
+
+def printout(h: Memory, *what: str) -> str:
+    """The tables and lists asked for, in the order asked for (PRINT, report I-1).
+
+    what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block) and
+    "dlist" (anticlockwise loop of every domain). Error 7 without any, error 10 for anything else.
+    """
+    if not what:
+        raise UdecError(7, "PRINT of what?", f"give one or more of {', '.join([*TABLES, *LISTS])}")
+    parts = [_state(h)]
+    for name in what:
+        if name in TABLES:
+            parts += _group_tables(h, TABLES[name])
+        elif name in LISTS:
+            parts += _lists(h, LISTS[name])
+        else:
+            raise UdecError(10, f"PRINT {name}", f"give one or more of {', '.join([*TABLES, *LISTS])}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _state(h: Memory) -> str:
+    """One line: where the run stands and how large the map is."""
+    virtual = f" ({h.ci[g.NVIRT]} virtual)" if h.ci[g.NVIRT] else ""
+    return (
+        f"cycle {h.ci[g.MCTOT]}, time {h.cr[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
+        f"{h.ci[g.NCON]} contacts{virtual}, {h.ci[g.NDOM]} domains"
+    )
+
+
+def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:
+    """What can be reached, and the complaint if the walk broke off."""
+    reached: list[T] = []
+    try:
+        for step in walk:
+            reached.append(step)
+    except Unsound as broken:
+        return reached, [f"the heap is damaged here: {broken}"]
+    return reached, []
+
+
+def _all(h: Memory, kind: str) -> Iterator[int]:
+    """Addresses of all groups of a kind; corners block by block, clockwise."""
+    if kind == "corner":
+        for block in groups(h, "block"):
+            yield from corners(h, block)
+    else:
+        yield from groups(h, kind)
+
+
+def _group_tables(h: Memory, kind: str) -> list[str]:
+    """The tables of one kind of group: what it describes, then how it is linked."""
+    addresses, complaint = _until_broken(_all(h, kind))
+    if not addresses:
+        return [f"No {kind}s", *complaint]
+    codes = HEADS[kind]
+    described: list[Column] = []
+    linked: list[Column] = []
+    for field in TABLE.group(kind).fields:
+        if field.role == "head":
+            types = [HEAD_NAMES.get(head(h, iad), "?") for iad in addresses]
+            described += [Column("type", "", types)] if len(codes) > 1 else []
+        else:
+            column = _field_column(h, addresses, field)
+            (described if field.role in ("data", "host") else linked).append(column)
+    code = "" if len(codes) > 1 else f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}"
+    address = Column("address", "", [str(iad) for iad in addresses])
+    title = f"{kind.capitalize()}s: {len(addresses)}{code}"
+    return [
+        *_stacked(title, address, described),
+        *_stacked(f"{kind.capitalize()}s: links", address, linked),
+        *complaint,
+    ]
+
+
+def _field_column(h: Memory, addresses: Iterable[int], field: Field) -> Column:
+    offset = getattr(g, field.name)
+    if field.real:
+        cells = [f"{getr(h, iad, offset):.6g}" for iad in addresses]
+    else:
+        cells = [str(iget(h, iad, offset)) for iad in addresses]
+    return Column(field.name, "" if field.unit == "-" else field.unit, cells)
+
+
+def _stacked(title: str, first: Column, columns: list[Column]) -> list[str]:
+    """As many tables as it takes to keep within LINE, each with the column `first` on its left."""
+    tables: list[list[Column]] = []
+    room = 0
+    for column in columns:
+        if column.width + len(GAP) > room:
+            tables.append([first])
+            room = LINE - first.width
+        tables[-1].append(column)
+        room -= column.width + len(GAP)
+    return [f"{title}{', continued' if i else ''}\n{_table(table)}" for i, table in enumerate(tables)]
+
+
+def _table(columns: list[Column]) -> str:
+    """Columns side by side under their names and, if any has one, their units."""
+    lines = [GAP.join(row).rstrip() for row in zip(*(column.aligned() for column in columns), strict=True)]
+    if not lines[1]:
+        del lines[1]
+    return "\n".join(lines)
+
+
+def _lists(h: Memory, kind: str) -> list[str]:
+    """PRINT List and DList: for each block or domain, what its list passes, in order."""
+    owners, complaint = _until_broken(groups(h, kind))
+    return [*(_one_list(h, kind, owner) for owner in owners), *complaint]
+
+
+def _one_list(h: Memory, kind: str, owner: int) -> str:
+    """The clockwise list of a block, or the anticlockwise loop of a domain with the blocks it goes along."""
+    if kind == "block":
+        title = f"block@{owner}: clockwise list"
+        items, complaint = _until_broken(boundary(h, owner))
+        along = []
+    else:
+        title = f"domain@{owner}{' (the outer one)' if owner == h.ci[g.IODPNT] else ''}: anticlockwise loop"
+        steps, complaint = _until_broken(loop(h, owner))
+        items = [item for item, _ in steps]
+        along = [Column("along", "", [f"block@{block}" for _, block in steps], left=True)]
+    names = Column("item", "", [f"{kind_of(h, item)}@{item}" for item in items], left=True)
+    return "\n".join(
+        [title, *([_table([names, *along, *_item_columns(h, items)])] if items else []), *complaint]
+    )
+
+
+def _item_columns(h: Memory, items: list[int]) -> list[Column]:
+    """OUTCP: where each item is; of a contact also what it joins and what it stands on."""
+    rows = []
+    for item in items:
+        if kind_of(h, item) == "corner":
+            place, rest = point(h, item, g.KXP, g.KYP), [""] * 4
+        else:
+            place = point(h, item, g.KXC, g.KYC)
+            pairs = ((g.KB1, g.KB2), (g.KCP1, g.KCP2), (g.KD1, g.KD2))
+            rest = [" - ".join(str(iget(h, item, field)) for field in pair) for pair in pairs]
+            rest.insert(1, CODES.get(iget(h, item, g.KCCOD), "?"))
+        rows.append([*(f"{value:.6g}" for value in place), *rest])
+    heads = (("x", "m"), ("y", "m"), ("KB1 - KB2", ""), ("on", ""), ("KCP1 - KCP2", ""), ("KD1 - KD2", ""))
+    return [Column(*head, list(cells)) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]
