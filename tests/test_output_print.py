@@ -24,7 +24,8 @@ def cells(text: str) -> dict[tuple[str, str], str]:
         _, names, *rows = table.splitlines()
         for row in rows:
             values = row.split()
-            found |= {(values[0], name): v for name, v in zip(names.split(), values, strict=True)}
+            if values[0].isdigit():
+                found |= {(values[0], name): v for name, v in zip(names.split(), values, strict=True)}
     return found
 
 
