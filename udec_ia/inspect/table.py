@@ -1,0 +1,117 @@
+"""Groups of one kind as a table: a structured NumPy array with the field table's own names.
+
+The lists are followed for the addresses only; then each field is gathered from all groups at once. That
+takes the array's two views as wholes, so this file repeats the accessors' rule from address to index.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import MFREE, MSDEF
+from offsets.table import Group, Layout, lay_out, read_table
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.walk import HEADS, LISTS, Unsound, groups
+
+
+def table(array: MainArray, kind: str) -> Any:
+    """All groups of `kind` that the lists reach, one row each, as a copy.
+
+    kind: block, corner, contact, domain, sdef, zone, gridpoint or jointext. Rows stand in list order;
+    corners block by block, clockwise from KP; extensions in the order of their blocks or domains.
+    Fields: `address`, then those of the field table by name and in its units, integers as int64, reals
+    in the type of the word scheme; a triple is a field of three. Raises ValueError for an unknown kind
+    and Unsound if the lists are broken.
+    """
+    kinds = [group.name for group in read_table().groups]
+    if kind not in kinds:
+        raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(kinds)}")
+    return _Reader(array).rows(kind)
+
+
+class _Reader:
+    """Reads one field of many groups at a time."""
+
+    def __init__(self, array: MainArray) -> None:
+        self.h = array.h
+        self.scheme = array.scheme
+        self.groups: dict[str, Group] = {group.name: group for group in read_table().groups}
+        self.layouts: dict[str, Layout] = {
+            name: lay_out(group, array.scheme.ratio) for name, group in self.groups.items()
+        }
+
+    def rows(self, kind: str) -> Any:
+        """The table of all groups of `kind`."""
+        addresses = self.addresses(kind)
+        fields = self.groups[kind].fields
+        types: list[Any] = [("address", np.int64)]
+        for field in fields:
+            base = self.scheme.real_type if field.real else np.dtype(np.int64)
+            types.append((field.name, base, field.count) if field.count > 1 else (field.name, base))
+        rows = np.empty(len(addresses), types)
+        rows["address"] = addresses
+        for field in fields:
+            rows[field.name] = self.field(kind, field.name, addresses)
+        return rows
+
+    def field(self, kind: str, name: str, addresses: Any) -> Any:
+        """The field `name` of the groups of `kind` at `addresses`: shape (n,), or (n, count)."""
+        field = next(field for field in self.groups[kind].fields if field.name == name)
+        offset = self.layouts[kind].offset[name]
+        if field.real:
+            view, first = self.h.ra, (addresses - 1) // self.scheme.ratio + offset - 1
+        else:
+            view, first = self.h.ia, addresses + offset - 1
+        return view[first] if field.count == 1 else view[first[:, np.newaxis] + np.arange(field.count)]
+
+    def addresses(self, kind: str) -> Any:
+        """Addresses of all groups of `kind`; zones and grid-points hang on no list yet."""
+        if kind in LISTS:
+            return np.fromiter(groups(self.h, kind), np.int64)
+        if kind == "corner":
+            return self.corners()
+        if kind == "sdef":
+            blocks = self.addresses("block")
+            soft = blocks[self.field("block", "HEAD", blocks) == MSDEF]
+            return self.sound("sdef", self.field("block", "KBEX", soft))
+        if kind == "jointext":
+            found = self.field("domain", "KDEX", self.addresses("domain"))
+            return self.sound("jointext", found[found != 0])
+        return np.empty(0, np.int64)
+
+    def corners(self) -> Any:
+        """Addresses of all corners: round all blocks at once along the reverse lists, then turned about."""
+        blocks = self.addresses("block")
+        start = here = self.sound("corner", self.field("block", "KP", blocks))
+        owner = np.arange(len(blocks))
+        found, owners = [here], [owner]
+        seen = np.zeros(int(self.h.ci[MFREE]), bool)
+        while len(here):
+            here = self.sound("corner", self.field("corner", "KR", here))
+            if seen[here].any():
+                raise Unsound(f"the reverse list through corner@{here[seen[here]][0]} does not close")
+            seen[here] = True
+            going = here != start[owner]
+            here, owner = here[going], owner[going]
+            found.append(here)
+            owners.append(owner)
+        turned = np.concatenate([found[0], *reversed(found[1:])])
+        owners_turned = np.concatenate([owners[0], *reversed(owners[1:])])
+        return turned[np.argsort(owners_turned, kind="stable")]
+
+    def last_address(self, kind: str) -> int:
+        """The last address that a group of `kind` can have."""
+        return int(self.h.ci[MFREE]) - self.layouts[kind].size
+
+    def sound(self, kind: str, addresses: Any) -> Any:
+        """`addresses` as int64, if all of them are addresses of groups of `kind`."""
+        addresses = addresses.astype(np.int64)
+        good = (addresses >= 1) & (addresses <= self.last_address(kind))
+        good &= (addresses - 1) % self.scheme.ratio == 0
+        if kind in HEADS and good.all():
+            good = np.isin(self.field(kind, "HEAD", addresses), HEADS[kind])
+        if not good.all():
+            raise Unsound(f"a pointer leads to {addresses[~good][0]}, which is no {kind}")
+        return addresses

@@ -1,0 +1,81 @@
+"""What the words mean, as a restart file tells it.
+
+The text of the field table goes into the file as it is, and for each kind of group a table with one row
+per field: the same facts as `offsets/` holds, laid out for the word scheme of the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import h5py
+import numpy as np
+
+from offsets.table import Field, Group, Table, lay_out
+
+TEXT_COLUMNS = ("name", "type", "refers_to", "role", "unit", "page", "text")
+NUMBER_COLUMNS = ("count", "offset", "word")
+
+
+def text(value: str | bytes) -> Any:
+    """A string as HDF5 keeps it in place: UTF-8 of fixed length."""
+    raw = value if isinstance(value, bytes) else value.encode()
+    return np.array(raw, h5py.string_dtype("utf-8", max(len(raw), 1)))
+
+
+def field_rows(group: Group, ratio: int) -> Any:
+    """One row per field of `group`; `word` counts from 0 from the group's address."""
+    layout = lay_out(group, ratio)
+    texts, numbers = [], []
+    for field in group.fields:
+        offset = layout.offset[field.name]
+        kind = "real" if field.real else "int"
+        words = (field.name, kind, field.target or "-", field.role, field.unit, field.page, field.text)
+        texts.append([part.encode() for part in words])
+        numbers.append((field.count, offset, (offset - 1) * ratio if field.real else offset))
+    widths = [max(map(len, column)) for column in zip(*texts, strict=True)]
+    columns: list[Any] = [
+        (name, h5py.string_dtype("utf-8", width)) for name, width in zip(TEXT_COLUMNS, widths, strict=True)
+    ]
+    columns += [(name, "<i4") for name in NUMBER_COLUMNS]
+    return np.array([(*row, *more) for row, more in zip(texts, numbers, strict=True)], np.dtype(columns))
+
+
+def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
+    """Each variable of the common block, and where it stands among the integers or the reals of it."""
+    end = {False: 0, True: 0}
+    for field in table.common:
+        start = end[field.real]
+        end[field.real] = start + field.count
+        yield field, slice(start, end[field.real])
+
+
+def differences(ours: Table, theirs: Table) -> list[str]:
+    """In words, where two tables lay out memory differently; empty if only their wording differs."""
+    mine, other = _fields(ours), _fields(theirs)
+    found = [f"{what} has {name} in this version only" for what, name in mine if (what, name) not in other]
+    found += [f"{what} has {name} in the file only" for what, name in other if (what, name) not in mine]
+    found += [
+        f"{what} has {name} as {other[what, name]} in the file, as {place} here"
+        for (what, name), place in mine.items()
+        if other.get((what, name), place) != place
+    ]
+    return found
+
+
+def _fields(table: Table) -> dict[tuple[str, str], str]:
+    """(group, field) to its place, in words, by the two layouts that tell all of them apart."""
+    found = {("the list of head codes", head.name): str(head.value) for head in table.heads}
+    for group in table.groups:
+        places = [lay_out(group, ratio).offset for ratio in (1, 2)]
+        for field in group.fields:
+            where = ", ".join(str(place[field.name]) for place in places)
+            found[f"group {group.name}", field.name] = f"{_kind(field)} {where}"
+    for field, place in common_places(table):
+        found["the common block", field.name] = f"{_kind(field)} {place.start}"
+    return found
+
+
+def _kind(field: Field) -> str:
+    return ("real" if field.real else "int") + (f"*{field.count}" if field.count > 1 else "")

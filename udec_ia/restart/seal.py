@@ -1,0 +1,72 @@
+"""The seal: the first 512 bytes of a restart file.
+
+HDF5 leaves a "user block" at the front of a file to its users. Ours is a text that a person can read
+(`head -c 512 FILE`) and that holds length and SHA-256 of all that follows. It is checked before the HDF5
+library sees the file, because that library trusts what it reads: damaged metadata can make it crash.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from typing import BinaryIO
+
+from udec_ia.restart.refusal import OTHER_FILE, RefusedError
+
+SIZE = 512  # the smallest user block that HDF5 allows
+MAGIC = b"udec_ia restart file\n"
+VERSION = (1, 0)  # a reader of major version n reads every minor version of n
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+TEXT = """\
+format {major}.{minor}
+bytes {size}
+sha256 {digest}
+The rest of this file, from byte 512 on, is HDF5: h5dump and h5py open it as it is.
+`udec info FILE` says what it holds; docs/restart-format.md describes it.
+"""
+PATTERN = re.compile(rb"format (\d{1,9})\.(\d{1,9})\nbytes (\d{1,18})\nsha256 ([0-9a-f]{64})\n")
+
+
+def seal(image: memoryview, version: tuple[int, int] = VERSION) -> bytes:
+    """The seal for the HDF5 part `image`."""
+    major, minor = version
+    digest = hashlib.sha256(image).hexdigest()
+    text = MAGIC + TEXT.format(major=major, minor=minor, size=len(image), digest=digest).encode()
+    return text.ljust(SIZE - 1) + b"\n"
+
+
+def read_sealed(file: BinaryIO, file_size: int) -> bytes:
+    """The whole file, seal included; RefusedError unless every byte is as it was when it was sealed."""
+    front = file.read(SIZE)
+    version, size = _read_front(front)
+    if file_size < SIZE + size:
+        raise RefusedError(f"is cut short: {file_size} of {SIZE + size} bytes are there")
+    if file_size > SIZE + size:
+        raise RefusedError(f"is damaged: it has {file_size} bytes and should have {SIZE + size}")
+    file.seek(0)
+    data = file.read(SIZE + size)
+    if data[:SIZE] != seal(memoryview(data)[SIZE:], version):
+        raise RefusedError("is damaged: its checksum (SHA-256) is wrong")
+    return data
+
+
+def _read_front(front: bytes) -> tuple[tuple[int, int], int]:
+    """Format version and length of the HDF5 part, as the seal gives them."""
+    if not front:
+        raise RefusedError("is empty", OTHER_FILE)
+    if front.startswith(HDF5_SIGNATURE):
+        raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)
+    if front[: len(MAGIC)] != MAGIC[: len(front)]:
+        raise RefusedError("is not a restart file of udec_ia", OTHER_FILE)
+    if len(front) < SIZE:
+        raise RefusedError(f"is cut short: only {len(front)} bytes are there")
+    found = PATTERN.match(front, len(MAGIC))
+    if found is None:
+        raise RefusedError("is damaged: its first lines cannot be read")
+    major, minor, size = int(found[1]), int(found[2]), int(found[3])
+    if major != VERSION[0]:
+        raise RefusedError(
+            f"has format {major}.{minor}, and this program reads format {VERSION[0]}",
+            "read it with the version of udec_ia that wrote it",
+        )
+    return (major, minor), size

@@ -1,0 +1,159 @@
+"""SAVE: the state of a run into a restart file, all of it or nothing.
+
+The HDF5 part is made in memory and sealed there, so that neither a full disk nor a kill can leave HDF5
+with half a file. It then goes to a temporary file in the same folder, is forced to the disk and renamed:
+whatever happens, the name stands for the old file or the new one, never for a part of either.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import os
+import platform
+import secrets
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+import h5py
+import numba
+import numpy as np
+
+import udec_ia
+from offsets.generated import MFREE
+from offsets.table import TABLE, Table, lay_out, read_table
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
+from udec_ia.restart.layout import common_places, field_rows, text
+from udec_ia.restart.seal import SIZE, VERSION, seal
+
+CHUNK = 65536  # words
+HOST_LENGTH = 64
+
+
+def save(array: MainArray, path: str | Path, deck: Sequence[str] = ()) -> Path:
+    """Write `array`, and the command lines that led to it, to the restart file `path`.
+
+    The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
+    checksum of the seal. Raises UdecError 29 if the file cannot be written; a file that stood there
+    before is then untouched.
+    """
+    path = Path(path)
+    image = _image(array, deck)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _replace(path, image)
+    except OSError as error:
+        detail = f"{path} cannot be written: {error.strerror or error}"
+        raise UdecError(29, detail, "save under another name or in another folder") from error
+    return path
+
+
+def _replace(path: Path, image: memoryview) -> None:
+    """Put `image` in the place of the file `path` in one step."""
+    target = path.resolve()
+    temporary = target.parent / f".udec-{secrets.token_hex(8)}.tmp"
+    try:
+        with temporary.open("xb") as file:
+            file.write(image)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(target)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    with contextlib.suppress(OSError):  # not every file system can do it; the file itself is whole
+        _sync_folder(target.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Force the new name to the disk too."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _image(array: MainArray, deck: Sequence[str]) -> memoryview:
+    """The bytes of the whole file."""
+    table = read_table()
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w", userblock_size=SIZE, libver=("v108", "v108")) as file:
+        file.attrs["format"] = text("udec_ia restart")
+        file.attrs["format_version"] = np.array(VERSION, "<i4")
+        file.attrs["byte_order"] = text("little-endian")
+        _write_heap(file, array)
+        _write_common(file, array, table)
+        _write_layout(file, table, array.scheme.ratio)
+        file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
+        _write_provenance(file)
+        _write_volatile(file)
+        file.attrs["complete"] = np.int8(1)
+    image = buffer.getbuffer()
+    image[:SIZE] = seal(image[SIZE:])
+    return image
+
+
+def _write_heap(file: h5py.File, array: MainArray) -> None:
+    """/heap/IA: the words below MFREE; above it there is nothing that counts."""
+    scheme = array.scheme
+    words = array.h.ia[: int(array.h.ci[MFREE]) - 1].astype(scheme.int_type.newbyteorder("<"), copy=False)
+    chunk = min(max(len(words), 1), CHUNK)
+    heap = file.create_dataset("heap/IA", data=words, chunks=(chunk,), maxshape=(None,), fletcher32=True)
+    heap.attrs["int_bits"] = np.int32(scheme.int_bits)
+    heap.attrs["real_bits"] = np.int32(scheme.real_bits)
+    heap.attrs["ratio"] = np.int32(scheme.ratio)
+    heap.attrs["first_address"] = np.int32(1)
+    heap.attrs["mtop_fixed"] = np.int8(array.fixed)
+    heap.attrs["sha256"] = text(hashlib.sha256(words).hexdigest())
+
+
+def _write_common(file: h5py.File, array: MainArray, table: Table) -> None:
+    """/common: one dataset for each variable of the common block."""
+    group = file.create_group("common")
+    integers = array.h.ci.astype("<i8", copy=False)
+    reals = array.h.cr.astype(array.scheme.real_type.newbyteorder("<"), copy=False)
+    for field, place in common_places(table):
+        values = (reals if field.real else integers)[place]
+        group[field.name] = values if field.count > 1 else values[0]
+        group[field.name].attrs["unit"] = text(field.unit)
+        group[field.name].attrs["text"] = text(field.text)
+    group.attrs["sha256"] = text(hashlib.sha256(integers.tobytes() + reals.tobytes()).hexdigest())
+
+
+def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:
+    """/layout: the field table as it is, and one table for each kind of group."""
+    layout = file.create_group("layout")
+    layout.attrs["sha256"] = text(table.digest)
+    layout["table"] = text(TABLE.read_text())
+    for group in table.groups:
+        layout[group.name] = field_rows(group, ratio)
+        attrs = layout[group.name].attrs
+        attrs["text"] = text(group.text)
+        attrs["size_name"] = text(group.size_name)
+        attrs["size"] = np.int32(lay_out(group, ratio).size)
+        attrs["list_head"] = text(group.list_head or "-")
+        for head in table.heads:
+            if head.group == group.name:
+                attrs[head.name] = np.int32(head.value)
+
+
+def _write_provenance(file: h5py.File) -> None:
+    """/provenance: the programs that made the state."""
+    attrs = file.create_group("provenance").attrs
+    attrs["udec_ia"] = text(udec_ia.__version__)
+    attrs["python"] = text(platform.python_version())
+    attrs["numpy"] = text(np.__version__)
+    attrs["numba"] = text(numba.__version__)
+    attrs["h5py"] = text(h5py.__version__)
+    attrs["hdf5"] = text(h5py.version.hdf5_version)
+
+
+def _write_volatile(file: h5py.File) -> None:
+    """/volatile: when and where; of fixed length, so that nothing else moves."""
+    volatile = file.create_group("volatile")
+    volatile["date"] = text(datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    volatile["host"] = text(platform.node().encode()[:HOST_LENGTH].ljust(HOST_LENGTH, b"\0"))
