@@ -19,7 +19,7 @@ KINDS = {"blocks": "block", "contacts": "contact", "corners": "corner", "domains
 
 def cells(text: str) -> dict[tuple[str, str], str]:
     """(address, column name) -> printed text, over all the stacked tables of a printout."""
-    found = {}
+    found: dict[tuple[str, str], str] = {}
     for table in (part for part in text.split("\n\n") if "\naddress" in part):
         _, names, *rows = table.splitlines()
         for row in rows:

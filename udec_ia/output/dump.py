@@ -1,0 +1,176 @@
+"""DUMP: the words of IA() as they are, and what each of them means.
+
+The words alone do not say what they are: only four of the eight kinds of group carry a head code. But
+every live group can be reached from the list heads, and the field table says which kind of group each
+pointer leads to. So all groups are typed by following all pointers at once, wave by wave; what no pointer
+leads to is either on the junk list, or not linked at all. Nothing is trusted: a pointer that leads nowhere
+is not followed, so a damaged heap is dumped like any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import offsets.generated as g
+from offsets.table import Field, lay_out, read_table
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
+from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
+from udec_ia.inspect.walk import HEADS
+
+TABLE = read_table()
+POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
+HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
+
+
+class Span(NamedTuple):
+    """Words that belong together: first and last address, what they are, and the kind of group or ""."""
+
+    first: int
+    last: int
+    label: str
+    kind: str
+
+
+def dump(h: Memory, n: int, m: int) -> str:
+    """The words from address n to address m, and the five pointers (DUMP, report I-1).
+
+    Several words to a line; beside them the group and the fields that they belong to, reals decoded. Error 30
+    unless 1 <= n <= m and m lies within the array.
+    """
+    if not 1 <= n <= m <= len(h.ia):
+        raise UdecError(30, f"DUMP {n} {m}", f"give two addresses in rising order, from 1 to {len(h.ia)}")
+    lines = ["  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in POINTERS)]
+    for span in _spans(h, n, m):
+        lines += _span_lines(h, span, n, m)
+    return "\n".join(lines) + "\n"
+
+
+def reach(h: Memory) -> dict[str, Any]:
+    """Addresses of the groups that pointers lead to, by kind, each an ascending array."""
+    seen = np.zeros(int(h.ci[g.MFREE]) + 1, bool)
+    found: dict[str, list[Any]] = {group.name: [] for group in TABLE.groups}
+    heads = [field for field in TABLE.common if field.role == "head" and field.target]
+    wave = [(h.ci[[getattr(g, field.name)]], str(field.target)) for field in heads]
+    while wave:
+        ahead: list[tuple[Any, str]] = []
+        for addresses, target in wave:
+            for kind in ("corner", "contact") if target == "item" else (target,):
+                new = _arrivals(h, addresses, kind, seen)
+                if len(new):
+                    found[kind].append(new)
+                    ahead += _pointers(h, new, kind)
+        wave = ahead
+    return {kind: np.sort(np.concatenate([np.zeros(0, np.int64), *parts])) for kind, parts in found.items()}
+
+
+def _ratio(h: Memory) -> int:
+    return int(h.ra.itemsize // h.ia.itemsize)
+
+
+def _arrivals(h: Memory, addresses: Any, kind: str, seen: Any) -> Any:
+    """Those of `addresses` where a group of `kind` lies that was not seen yet; marks them as seen."""
+    size = lay_out(TABLE.group(kind), _ratio(h)).size
+    possible = (addresses >= 1) & (addresses + size <= h.ci[g.MFREE]) & ((addresses - 1) % _ratio(h) == 0)
+    new = np.unique(addresses[possible])
+    new = new[~seen[new]]
+    if kind in HEADS:
+        new = new[np.isin(h.ia[new - 1], HEADS[kind])]
+    seen[new] = True
+    return new
+
+
+def _pointers(h: Memory, addresses: Any, kind: str) -> list[tuple[Any, str]]:
+    """For every pointer field of a kind: the addresses it holds in these groups, and what it leads to."""
+    group = TABLE.group(kind)
+    offset = lay_out(group, _ratio(h)).offset
+    return [
+        (h.ia[addresses + offset[field.name] + i - 1].astype(np.int64), field.target)
+        for field in group.fields
+        for i in range(field.count)
+        if field.target
+    ]
+
+
+def _junk(h: Memory) -> list[Span]:
+    """The groups on the junk list, one chain for each size, as far as they make sense."""
+    spans: dict[int, Span] = {}
+    chain = int(h.ci[g.JUNK])
+    while 1 <= chain < h.ci[g.MFREE] and chain not in spans:
+        size = iget(h, chain, JSIZE)
+        following = iget(h, chain, JSIZES)
+        group = chain
+        while size > 0 and 1 <= group <= h.ci[g.MFREE] - size and group not in spans:
+            spans[group] = Span(group, group + size - 1, f"junk@{group}, {size} words", "")
+            group = iget(h, group, JNEXT)
+        chain = following
+    return list(spans.values())
+
+
+def _spans(h: Memory, n: int, m: int) -> Iterator[Span]:
+    """What the words n to m belong to, in rising order and without gaps."""
+    known = _junk(h)
+    for kind, addresses in reach(h).items():
+        size = lay_out(TABLE.group(kind), _ratio(h)).size
+        near = addresses[(addresses > n - size) & (addresses <= m)]
+        known += [Span(int(iad), int(iad) + size - 1, f"{kind}@{iad}", kind) for iad in near]
+    free = int(h.ci[g.MFREE])
+    if free <= len(h.ia):
+        known.append(Span(free, len(h.ia), "unused", ""))
+    at = n
+    for span in sorted(known):
+        if span.first > m:
+            break
+        if span.first > at:
+            yield Span(at, span.first - 1, "not linked", "")
+        if span.last >= at:
+            yield span
+            at = span.last + 1
+    if at <= m:
+        yield Span(at, m, "not linked", "")
+
+
+def _span_lines(h: Memory, span: Span, n: int, m: int) -> Iterator[str]:
+    """The lines of those words of a span that lie between n and m; lines count from the span's start."""
+    first, last = max(n, span.first), min(m, span.last)
+    if not span.kind and not h.ia[first - 1 : last].any():
+        yield f"{first:8} | 0 to address {last}  | {span.label}"
+        return
+    digits = {2: 6, 4: 11, 8: 20}[h.ia.itemsize]
+    step = 2 if h.ia.itemsize == 8 else 4
+    for start in range(span.first + (first - span.first) // step * step, last + 1, step):
+        stop = min(start + step - 1, last)
+        words = " ".join(f"{h.ia[iad - 1]:{digits}}" for iad in range(max(start, first), stop + 1))
+        label = span.label if start <= first else ""
+        meaning = " ".join(_meanings(h, span, max(start, first), stop)) if span.kind else ""
+        width = step * (digits + 1) - 1
+        yield f"{max(start, first):8} | {words:{width}} | {label:14} {meaning}".rstrip()
+
+
+def _meanings(h: Memory, span: Span, first: int, last: int) -> Iterator[str]:
+    """NAME=value for every field with a word between the addresses first and last."""
+    ratio = _ratio(h)
+    group = TABLE.group(span.kind)
+    offset = lay_out(group, ratio).offset
+    for field in group.fields:
+        for i in range(field.count):
+            word = span.first + (
+                (offset[field.name] - 1 + i) * ratio if field.real else offset[field.name] + i
+            )
+            if word <= last and word + (ratio if field.real else 1) > first:
+                yield f"{_name(field, i)}={_value(h, span.first, field, i)}"
+
+
+def _name(field: Field, i: int) -> str:
+    return "head" if field.role == "head" else field.name + (f"({i + 1})" if field.count > 1 else "")
+
+
+def _value(h: Memory, iad: int, field: Field, i: int) -> str:
+    if field.role == "head":
+        code = iget(h, iad, HEAD)
+        return HEAD_NAMES.get(code, str(code))
+    offset = getattr(g, field.name)
+    return f"{getr(h, iad, offset):.6g}" if field.real else str(iget(h, iad, offset, i))
