@@ -1,0 +1,246 @@
+"""What a picture needs to know: outlines with rounded corners, contact forces, and domains as polygons.
+
+A State is a copy of the geometry at one moment, so that several moments can be drawn over each other
+after the heap has moved on. It keeps the corners and their circles, not the drawn curves: those follow
+from them whenever they are needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget
+from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
+from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
+
+MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
+ARC_POINTS = 6  # points on an arc where a domain's polygon follows it
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """All blocks: n corners clockwise, block after block; the corners of block i are first[i]:first[i + 1].
+
+    corner, centre: (n, 2) in m; radius: (n,) in m, not positive where a corner is sharp; rounding: DTOL in m;
+    corner_address: (n,). centroid: (m, 2) in m; fixed, material, address: (m,).
+    """
+
+    corner: Any
+    centre: Any
+    radius: Any
+    rounding: float
+    corner_address: Any
+    first: Any
+    centroid: Any
+    fixed: Any
+    material: Any
+    address: Any
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """All contacts: place (n, 2) in m, force on block KB2 (n, 2) in N/m, virtual (n,), address (n,).
+
+    link (n, 2, 2): the two corners that the contact belongs to, in m; for a virtual one all that is known.
+    """
+
+    place: Any
+    force: Any
+    virtual: Any
+    link: Any
+    address: Any
+
+
+@dataclass(frozen=True)
+class Domain:
+    """One domain: its polygon (k, 2) in m, anticlockwise around it, and whether it is the outer one."""
+
+    address: int
+    polygon: Any
+    outer: bool
+
+
+@dataclass(frozen=True)
+class State:
+    """The block system at one moment; contacts and domains only where they were asked for."""
+
+    cycle: int
+    time: float
+    outlines: Outlines
+    contacts: Contacts | None = None
+    domains: tuple[Domain, ...] = ()
+    addresses: bool = False
+
+
+def snapshot(h: Memory, contacts: bool = False, domains: bool = False, addresses: bool = False) -> State:
+    """A copy of what can be drawn of the present state."""
+    return State(
+        int(h.ci[g.MCTOT]),
+        float(h.cr[g.TIME]),
+        outlines(h),
+        contact_forces(h) if contacts else None,
+        tuple(domain_polygons(h)) if domains else (),
+        addresses,
+    )
+
+
+def outlines(h: Memory) -> Outlines:
+    """The outlines of all blocks. Unsound if the heap cannot be walked."""
+    blocks = list(groups(h, "block"))
+    lists = [list(reverse(h, block))[::-1] for block in blocks]
+    corners = np.array([corner for one in lists for corner in one], np.int64)
+    return Outlines(
+        corner=_points(h, corners, g.KXP, g.KYP),
+        centre=_points(h, corners, g.KXCP, g.KYCP),
+        radius=_reals(h, corners, g.KRAD),
+        rounding=float(h.cr[g.DTOL]),
+        corner_address=corners,
+        first=np.cumsum([0, *map(len, lists)]),
+        centroid=_points(h, np.array(blocks, np.int64), g.KX, g.KY),
+        fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
+        material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
+        address=np.array(blocks, np.int64),
+    )
+
+
+def _reals(h: Memory, addresses: Any, k: tuple[int, int, int]) -> Any:
+    return np.array(getr(h, addresses, k), np.float64)
+
+
+def _points(h: Memory, addresses: Any, kx: tuple[int, int, int], ky: tuple[int, int, int]) -> Any:
+    return np.stack([_reals(h, addresses, kx), _reals(h, addresses, ky)], axis=-1)
+
+
+def curves(o: Outlines) -> tuple[Any, Any, Any]:
+    """Vertices (k, 2), path codes (k,) and block index (k,) of all outlines, with their corners rounded.
+
+    An arc touches both edges at the distance DTOL from the corner (report 2.3). It is drawn as two cubic
+    curves, which stay within 3e-4 of its radius. Concave corners, flat ones, and all corners when DTOL is 0
+    are drawn as they are.
+    """
+    n = len(o.corner)
+    index = np.arange(n)
+    block = np.repeat(np.arange(len(o.first) - 1), np.diff(o.first))
+    starts = index == o.first[block]
+    ends = index == o.first[block + 1] - 1
+    back = _unit(o.corner[np.where(starts, o.first[block + 1] - 1, index - 1)] - o.corner)
+    ahead = _unit(o.corner[np.where(ends, o.first[block], index + 1)] - o.corner)
+    d, r = o.rounding, o.radius[:, None]
+    is_round = (o.radius > 0.0) & (d > 0.0)
+    tangent_in, tangent_out = o.corner + d * back, o.corner + d * ahead
+    middle = o.centre + r * _unit(o.corner - o.centre)
+    along = _unit(tangent_out - tangent_in)
+    turn = 2.0 * np.arctan2(d, r)
+    handle = r * (4.0 / 3.0) * np.tan(turn / 8.0)
+    vertices = np.stack(
+        [
+            np.where(is_round[:, None], tangent_in, o.corner),
+            tangent_in - handle * back,
+            middle - handle * along,
+            middle,
+            middle + handle * along,
+            tangent_out - handle * ahead,
+            tangent_out,
+            o.corner,
+        ],
+        axis=1,
+    )
+    codes = np.full((n, 8), CURVE)
+    codes[:, 0] = np.where(starts, MOVE, LINE)
+    codes[:, 7] = CLOSE
+    keep = np.repeat(is_round[:, None], 8, axis=1)
+    keep[:, 0] = True
+    keep[:, 7] = ends
+    return vertices[keep], codes[keep], np.repeat(block[:, None], 8, axis=1)[keep]
+
+
+def _unit(v: Any) -> Any:
+    length = np.hypot(v[..., 0], v[..., 1])[..., None]
+    return v / np.where(length > 0.0, length, 1.0)
+
+
+def contact_forces(h: Memory) -> Contacts:
+    """Places and forces of all contacts; a virtual contact has no force."""
+    addresses = list(groups(h, "contact"))
+    codes = [iget(h, contact, g.KCCOD) for contact in addresses]
+    pairs = [(iget(h, contact, g.KCP1), iget(h, contact, g.KCP2)) for contact in addresses]
+    normal = np.array(
+        [
+            (0.0, 0.0) if code == VIRTUAL else meet(h, code, *pair)[:2]
+            for code, pair in zip(codes, pairs, strict=True)
+        ]
+    ).reshape(-1, 2)
+    iads = np.array(addresses, np.int64)
+    tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
+    fn, fs = _reals(h, iads, g.KCFN)[:, None], _reals(h, iads, g.KCFS)[:, None]
+    return Contacts(
+        place=_points(h, iads, g.KXC, g.KYC),
+        force=fn * normal - fs * tangent,
+        virtual=np.array([code == VIRTUAL for code in codes], bool),
+        link=_points(h, np.array(pairs, np.int64).reshape(-1, 2), g.KXP, g.KYP),
+        address=iads,
+    )
+
+
+def domain_polygons(h: Memory) -> Iterator[Domain]:
+    """All domains, as polygons along the rounded outlines of the blocks around them."""
+    for domain in groups(h, "domain"):
+        yield Domain(domain, np.array(list(_loop_points(h, domain))), domain == h.ci[g.IODPNT])
+
+
+def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
+    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7)."""
+    steps = list(loop(h, domain))
+    for (before, block), (item, _) in zip([steps[-1], *steps[:-1]], steps, strict=True):
+        corner, place = _stand(h, item, block)
+        if corner:
+            previous, start = _stand(h, before, block)
+            yield from _arc(
+                h, corner, start if previous == corner else _tangent(h, corner, arriving=True), place
+            )
+        else:
+            yield place
+
+
+def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
+    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place."""
+    if kind_of(h, item) == "corner":
+        is_round = getr(h, item, g.KRAD) > 0.0
+        place = _tangent(h, item, arriving=False) if is_round else point(h, item, g.KXP, g.KYP)
+        return item if is_round else 0, place
+    first = iget(h, item, g.KB1) == block
+    corner = iget(h, item, g.KCP1 if first else g.KCP2)
+    on_edge = iget(h, item, g.KCCOD) in (VIRTUAL, EDGE_CORNER if first else CORNER_EDGE)
+    is_round = not on_edge and getr(h, corner, g.KRAD) > 0.0
+    return corner if is_round else 0, point(h, item, g.KXC, g.KYC)
+
+
+def _tangent(h: Memory, corner: int, arriving: bool) -> tuple[float, float]:
+    """Where the arc of a corner begins (arriving along the block, clockwise) or ends.
+
+    With the centre c, the corner p and m = c - p, they are p + (D^2 m -/+ D R Jm)/m.m, J a quarter turn.
+    """
+    x, y = point(h, corner, g.KXP, g.KYP)
+    cx, cy = point(h, corner, g.KXCP, g.KYCP)
+    d, r = float(h.cr[g.DTOL]), float(getr(h, corner, g.KRAD))
+    mx, my = cx - x, cy - y
+    mm = mx * mx + my * my
+    along, across = d * d / mm, (-d if arriving else d) * r / mm
+    return x + along * mx - across * my, y + along * my + across * mx
+
+
+def _arc(
+    h: Memory, corner: int, start: tuple[float, float], stop: tuple[float, float]
+) -> Iterator[tuple[float, float]]:
+    """Points on the arc of a corner, from `start` to `stop`."""
+    cx, cy = point(h, corner, g.KXCP, g.KYCP)
+    r = float(getr(h, corner, g.KRAD))
+    first = np.arctan2(start[1] - cy, start[0] - cx)
+    turn = (np.arctan2(stop[1] - cy, stop[0] - cx) - first + np.pi) % (2.0 * np.pi) - np.pi
+    for angle in first + np.linspace(0.0, turn, ARC_POINTS):
+        yield cx + r * float(np.cos(angle)), cy + r * float(np.sin(angle))
