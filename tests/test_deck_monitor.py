@@ -1,0 +1,204 @@
+"""The monitor, on a model that only writes down what it is told."""
+
+import io
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from recorder import Recorder
+
+from udec_ia.deck.interactive import converse, history, history_file
+from udec_ia.deck.language import COMMANDS
+from udec_ia.deck.monitor import run_deck
+from udec_ia.errors import UdecError
+
+
+def obey(deck: str, model: Recorder | None = None) -> tuple[Recorder, str]:
+    """Run `deck`; the model afterwards, and what was printed."""
+    model = model or Recorder()
+    out = io.StringIO()
+    run_deck(model, deck, out)
+    return model, out.getvalue()
+
+
+def refused(deck: str, model: Recorder | None = None) -> tuple[Recorder, UdecError]:
+    """Run `deck`, which must end in an error."""
+    model = model or Recorder()
+    with pytest.raises(UdecError) as caught:
+        run_deck(model, deck, io.StringIO())
+    return model, caught.value
+
+
+def test_every_line_is_echoed_before_what_it_prints() -> None:
+    model = Recorder()
+    model.answers |= {"print": "a table", "plot": Path("results/plot.png")}
+    _, printed = obey("START\n\n* one\nP B\n* two\nPLOT 0\n+ C\n* three\n", model)
+    before, after = "> START\n>\n> * one\n> P B\na table\n", "> + C\nwritten: results/plot.png\n> * three\n"
+    assert printed == f"{before}> * two\n> PLOT 0\n{after}"
+
+
+def test_stop_ends_the_run_and_the_rest_is_ignored() -> None:
+    model, printed = obey("START\nSTOP\nEND\nNONSENSE\n")
+    assert model.names == ["start", "stop"]
+    assert "END" not in printed
+
+
+def test_end_is_the_end_without_stop_too() -> None:
+    assert obey("START\nEND\nNONSENSE")[0].names == ["start"]
+
+
+@pytest.mark.parametrize("deck", ["", "\n\n", "* nothing\n", "END\n", "STOP\n", "\ufeff", ",(=)/\n"])
+def test_an_empty_deck_is_no_error(deck: str, tmp_path: Path) -> None:
+    path = tmp_path / "empty.dat"
+    path.write_text(deck, encoding="utf-8")
+    model = Recorder()
+    run_deck(model, path, io.StringIO())
+    assert model.names == []
+
+
+def test_the_first_command_is_start_or_restart() -> None:
+    model, error = refused("* a comment\n CYCLE 1\n")
+    assert (error.number, error.line, error.column, error.saved) == (3, 2, 2, None)
+    assert model.names == []
+    assert obey("RESTART a.h5\nCYCLE 1")[0].names == ["restart", "cycle"]
+    assert "PROperty" in obey("HELP\n")[1]
+
+
+def test_commands_that_were_obeyed_are_logged() -> None:
+    model, _ = refused("START\n* a comment\nBLOCK 0 0\n+ 1 1\n+ 1 1\nCYCLE 5\nCYCLE x\n")
+    assert model.deck_log == ["START", "BLOCK 0 0", "+ 1 1", "+ 1 1", "CYCLE 5"]
+
+
+def test_an_error_saves_the_state_and_names_the_file() -> None:
+    model, error = refused("START\nGRAVITY 0\n")
+    assert model.calls[-1] == ("save", ((Path("results") / "error.h5").absolute(),), {})
+    assert error.saved == str(Path("results/error.h5"))
+    assert str(error).endswith(f"is saved in {error.saved}")
+
+
+def test_a_failing_save_does_not_hide_the_error() -> None:
+    model = Recorder()
+    model.failures["save"] = OSError(28, "No space left on device")
+    _, error = refused("START\nCYCLE 10.5\n", model)
+    assert (error.number, error.saved) == (10, None)
+    assert "No space left on device" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("line", "number", "column"),
+    [
+        ("BLOCK MAT=99 0 0 0 1 1 1", 4, 11),
+        ("BLOCK 0 0 0 1 1 1", 4, 1),
+        ("BLOCK C=9 0 0 0 1 1 1", 9, 9),
+        ("DAMP 9 10", 13, 6),
+        ("ROUND 9", 14, 7),
+        ("CYCLE 5", 14, 1),
+        ("GEN 0 1 0 1 AUTO", 23, 13),
+        ("FIX 0 1 0 1", 24, 5),
+        ("SAVE there/it.h5", 29, 6),
+        ("RSET 1 2 3", 30, 8),
+        ("HELP FOO", 2, 6),
+    ],
+)
+def test_errors_of_the_model_point_at_the_parameter_to_blame(line: str, number: int, column: int) -> None:
+    model = Recorder()
+    for name in ("block", "damping", "round", "cycle", "generate", "fix", "save", "rset"):
+        model.fails(name, number)
+    _, error = refused(f"START\n{line}\n", model)
+    assert (error.number, error.line, error.column, error.source) == (number, 2, column, line)
+    assert error.advice
+
+
+def test_a_file_that_cannot_be_written_is_error_29() -> None:
+    model = Recorder()
+    model.failures["save"] = PermissionError(13, "Permission denied", "run.h5")
+    _, error = refused("START\nSAVE run.h5", model)
+    assert (error.number, error.column) == (29, 6)
+    assert "Permission denied: run.h5" in error.message
+
+
+printable_soup = st.lists(
+    st.sampled_from([command.keyword for command in COMMANDS])
+    | st.sampled_from([word.keyword for command in COMMANDS for word in command.words])
+    | st.integers().map(str)
+    | st.floats().map(str)
+    | st.sampled_from(["\n", "\n", "\n+", "\n*", "+", "=", "(", "\x00", "\t", "\r", "\x85", "\u2028"])
+    | st.text(max_size=5)
+)
+
+
+def fault(deck: str) -> UdecError | None:
+    """The error that `deck` ends in on a model that is started already, or None."""
+    model = Recorder()
+    model.started = True
+    try:
+        run_deck(model, deck, io.StringIO())
+    except UdecError as error:
+        return error
+    return None
+
+
+@given(printable_soup.map(" ".join) | st.binary().map(lambda raw: raw.decode("utf-8", "replace")))
+def test_any_text_is_obeyed_or_refused_with_a_place(soup: str) -> None:
+    error = fault(f"\n{soup}")
+    if error is None:
+        return
+    assert error.line is not None
+    assert error.column is not None
+    source = ["\n", *io.StringIO(soup, newline=None)][error.line - 1].rstrip("\n")
+    assert 1 <= error.column <= len(source) + 1
+    assert source[error.column - 1 :].startswith(error.token or "")
+    assert error.advice
+
+
+class Typist:
+    """Types lines at the prompt, and keeps the prompts."""
+
+    def __init__(self, *lines: str | BaseException) -> None:
+        self.lines = list(lines)
+        self.prompts: list[str] = []
+
+    def __call__(self, prompt: str) -> str:
+        self.prompts.append(prompt)
+        line = self.lines.pop(0) if self.lines else EOFError()
+        if isinstance(line, BaseException):
+            raise line
+        return line
+
+
+def talk(*lines: str | BaseException) -> tuple[Recorder, str, list[str]]:
+    model, out, typist = Recorder(), io.StringIO(), Typist(*lines)
+    converse(model, out, typist)
+    return model, out.getvalue(), typist.prompts
+
+
+def test_a_session_goes_on_after_an_error_and_saves_nothing() -> None:
+    model, printed, _ = talk("CYCLE 1", "START", "CYCLE x", "CYCLE 2", "STOP", "CYCLE 3")
+    assert model.names == ["start", "cycle", "stop"]
+    assert "terminal:1:1: error 3" in printed
+    assert "terminal:3:7: error 10" in printed
+
+
+def test_a_list_is_asked_for_until_an_empty_line() -> None:
+    model, _, prompts = talk("START", "BLOCK 0 0", "0 1", "+ 1 1", "1 0", "", "CYCLE 1")
+    assert prompts == ["> ", "> ", "+ ", "+ ", "+ ", "+ ", "> ", "> "]
+    assert model.calls[1] == ("block", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0), {})
+    assert model.names == ["start", "block", "cycle", "stop"]
+
+
+def test_ctrl_c_drops_the_line_and_not_the_session() -> None:
+    model, printed, _ = talk("START", "BLOCK 0 0", KeyboardInterrupt(), "CYCLE 1")
+    assert model.names == ["start", "cycle", "stop"]
+    assert "interrupted" in printed
+
+
+def test_the_history_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    readline = pytest.importorskip("readline")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    with history(history_file()):
+        readline.add_history("GRAVITY 0 -10")
+    readline.clear_history()
+    with history(history_file()):
+        assert readline.get_history_item(1) == "GRAVITY 0 -10"
+    readline.clear_history()

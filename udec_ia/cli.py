@@ -1,0 +1,115 @@
+"""The command `udec`: run a deck, check a restart file, or say what is in one.
+
+Exit status: 0 if all went well, 1 after an error, 2 if the command line itself is wrong, 130 after Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import udec_ia
+from udec_ia.deck.interactive import converse, history, history_file
+from udec_ia.deck.monitor import Monitor, run_deck
+from udec_ia.errors import UdecError
+from udec_ia.heap.jit import is_cached
+from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.model import Model
+
+ERROR, MISUSE, INTERRUPTED = 1, 2, 130
+
+
+def arguments() -> argparse.ArgumentParser:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        prog="udec",
+        description="The distinct element program UDEC. Alone, it takes commands from the terminal.",
+    )
+    parser.add_argument("--version", action="version", version=f"udec_ia {udec_ia.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    run = commands.add_parser("run", help="run a deck")
+    run.add_argument("deck", nargs="?", type=Path, help="file of commands; standard input if left off")
+    run.add_argument(
+        "--build",
+        choices=ALL_SCHEMES,
+        default=DEFAULT_SCHEME,
+        help="widths of integers and reals in bits (default: %(default)s)",
+    )
+    run.add_argument("--out", type=Path, default=Path("."), help="folder for plots and restart files")
+    run.add_argument("--mtop", type=int, help="size of the main array in words; left off, it grows as needed")
+    run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
+    run.set_defaults(action=_run)
+    check = commands.add_parser("check", help="prove that a restart file holds a sound block system")
+    check.add_argument("file", type=Path)
+    check.set_defaults(action=_check)
+    info = commands.add_parser("info", help="say what is in a restart file")
+    info.add_argument("file", type=Path)
+    info.set_defaults(action=_info)
+    return parser
+
+
+def _run(args: argparse.Namespace) -> int:
+    try:
+        model = Model(build=args.build, mtop=args.mtop, out=args.out)
+    except (ValueError, MemoryError) as error:
+        print(f"udec: --mtop {args.mtop}: {error}", file=sys.stderr)
+        return MISUSE
+    model.animate = args.animate
+    if not is_cached():
+        print("compiling once for this machine, which takes about a minute ...", file=sys.stderr, flush=True)
+    if args.deck is not None:
+        run_deck(model, args.deck, sys.stdout).stop()
+    elif sys.stdin.isatty():
+        with history(history_file()):
+            converse(model, sys.stdout)
+    else:
+        monitor = Monitor(model, sys.stdout)
+        monitor.run(sys.stdin, "stdin")
+        monitor.stop()
+    return 0
+
+
+def _check(args: argparse.Namespace) -> int:
+    violations = Model.restore(args.file).check()
+    for violation in violations:
+        print(violation)
+    print(f"{args.file}: {f'{len(violations)} violations' if violations else 'sound'}")
+    return ERROR if violations else 0
+
+
+def _info(args: argparse.Namespace) -> int:
+    from udec_ia.restart import info  # h5py: not needed to run a deck that neither saves nor restarts
+
+    print(info(args.file))
+    return 0
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv` (by default that of the process); returns the exit status."""
+    for stream in (sys.stdin, sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    given = sys.argv[1:] if argv is None else argv
+    args = arguments().parse_args(given or ["run"])
+    try:
+        status: int = args.action(args)
+        sys.stdout.flush()
+    except UdecError as error:
+        sys.stdout.flush()
+        print(error, file=sys.stderr)
+        return ERROR
+    except BrokenPipeError:  # the reader of our output has gone: nobody is left to tell
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ERROR
+    except OSError as error:
+        sys.stdout.flush()
+        print(f"udec: {error.filename}: {error.strerror}", file=sys.stderr)
+        return ERROR
+    except KeyboardInterrupt:
+        print("\ninterrupted", file=sys.stderr)
+        return INTERRUPTED
+    return status

@@ -1,0 +1,274 @@
+"""The deck language in one table: every command, its parameters, and what it means (Appendix I-1).
+
+A keyword is printed as in the report: its upper-case letters must be typed, the others may be left off
+from the end. `PROperty` is matched by PRO, PROP and property, not by PR or PROPS. Where two keywords
+match, the one that stands first in the table is meant: R is Restart, FR is FRaction.
+
+A number is named as in the report: names that begin with i to n take an integer, all others a real. After
+its numbers a command takes words, in any order, and after its words a list. Each parameter reaches the
+method of Model that has the command's full keyword as its name: numbers and the list as positional
+arguments, words by name.
+
+The parser, HELP, the suggestions in error messages and docs/commands.md all come from this table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
+
+
+class Named(Protocol):
+    """Anything that is called by a keyword."""
+
+    @property
+    def keyword(self) -> str: ...
+
+
+N = TypeVar("N", bound=Named)
+
+
+@dataclass(frozen=True)
+class Word:
+    """A keyword among the parameters of a command.
+
+    values: names of the numbers that follow the word. repeated: a list of such tuples follows.
+    sets: the argument that the word sets; by default the keyword itself, in lower case.
+    Without values the word sets True, or its own name if it shares an argument with others.
+    """
+
+    keyword: str
+    values: str = ""
+    sets: str = ""
+    repeated: bool = False
+
+    @property
+    def argument(self) -> str:
+        return self.sets or self.keyword.lower()
+
+    @property
+    def form(self) -> str:
+        """The word as the report prints it: `Material n`."""
+        return f"{self.keyword} {self.values}".strip() + (" ..." if self.repeated else "")
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of the language.
+
+    numbers: names of the numbers that must be given. optional: of those that may be left off.
+    words: its keywords. first: the argument that its first word must set, and the error if it does not.
+    list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
+    it stands, to the end of the line. opens: may come before START.
+    ours: what of the command is not in Appendix I-1.
+    """
+
+    keyword: str
+    help: str
+    example: str
+    numbers: str = ""
+    optional: str = ""
+    words: tuple[Word, ...] = ()
+    first: str = ""
+    first_error: int = 10
+    list: str = ""
+    text: str = ""
+    opens: bool = False
+    ours: str = ""
+
+    @property
+    def name(self) -> str:
+        """The full keyword in lower case: the name of the method of Model."""
+        return self.keyword.lower()
+
+    @property
+    def extends(self) -> bool:
+        """True if the command takes a list, for which one line is often too short."""
+        return bool(self.list) or any(word.repeated for word in self.words)
+
+    @property
+    def form(self) -> str:
+        """The command as the report prints it, brackets around what may be left off."""
+        parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
+        for argument in dict.fromkeys(word.argument for word in self.words):
+            forms = [word.form for word in self.words if word.argument == argument]
+            if argument == SEVERAL:
+                parts += forms
+            else:
+                choice = " | ".join(forms)
+                parts.append(choice if argument == self.first else f"[{choice}]")
+        parts += [f"{self.list} ..."] if self.list else []
+        parts += [f"[{self.text}]"] if self.text else []
+        return " ".join(part for part in parts if part)
+
+
+MATERIAL = Word("Material", "n")
+CONSTITUTIVE = Word("Constitutive", "m")
+RANGE = "x1 x2 y1 y2"
+
+COMMANDS = (
+    Command(
+        "Block",
+        "Create a rigid block with the corners (x,y), given clockwise. One BLOCK in a run; SPLIT makes more.",
+        "BLOCK MAT=2 0,0 0,40 60,40 60,0",
+        words=(MATERIAL, CONSTITUTIVE),
+        list="x y",
+    ),
+    Command(
+        "Change",
+        "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "CHANGE 0 60 30 40 MATERIAL=2",
+        numbers=RANGE,
+        words=(Word("Sdef", sets="type"), Word("Fdef", sets="type"), MATERIAL, CONSTITUTIVE),
+    ),
+    Command(
+        "CYcle",
+        "Calculate n cycles.",
+        "CYCLE 300",
+        numbers="n",
+        ours="listed in no appendix, but used in both example runs",
+    ),
+    Command(
+        "DAmping",
+        "Rayleigh damping: fraction of critical damping at the centre frequency, in cycles per unit time.",
+        "DAMP 0.1 30 STIFFNESS",
+        numbers="fcrit freq",
+        words=(Word("Mass", sets="only"), Word("Stiffness", sets="only"), Word("Internal", sets="only")),
+    ),
+    Command(
+        "DElete", "Delete the blocks with centroids in x1<x<x2, y1<y<y2.", "DELETE 20 40 10 20", numbers=RANGE
+    ),
+    Command(
+        "Dump",
+        "Dump the main array from address n to address m, and its five pointers.",
+        "DUMP 1 100",
+        numbers="n m",
+    ),
+    Command(
+        "END", "The last line of a deck, after STOP.", "END", opens=True, ours="only said to be one more line"
+    ),
+    Command("FRaction", "Use the fraction f of the critical time-step.", "FRAC 0.1", numbers="f"),
+    Command("Fix", "Fix the blocks with centroids in x1<x<x2, y1<y<y2.", "FIX 0 60 0 10", numbers=RANGE),
+    Command(
+        "FRee", "Set free the blocks with centroids in x1<x<x2, y1<y<y2.", "FREE 0 60 0 10", numbers=RANGE
+    ),
+    Command(
+        "GEnerate",
+        "Make the first block in range fully-deformable: grid-points (x,y), and zones as triples of them, "
+        "where the last grid-point is number 1.",
+        "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
+        numbers=RANGE,
+        words=(
+            Word("Manual", sets="mode"),
+            Word("Automatic", sets="mode"),
+            Word("Gridpoints", "x y", repeated=True),
+            Word("Zones", "l m n", repeated=True),
+            Word("Edge", "d"),
+        ),
+        first="mode",
+        first_error=22,
+        ours="the form, whose line the scan of the report has lost; Edge",
+    ),
+    Command("Gravity", "Set the gravitational accelerations in x and y.", "GRAVITY 0 -9.81", numbers="gx gy"),
+    Command(
+        "HElp",
+        "Explain a command, or list them all.",
+        "HELP PROPERTY",
+        text="command",
+        opens=True,
+        ours="the command",
+    ),
+    Command(
+        "PLot",
+        "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
+        "contacts with their forces, domains, and addresses.",
+        "PLOT 0 CONTACTS",
+        optional="n",
+        words=(Word("Contacts"), Word("Domains"), Word("Addresses")),
+        ours="the words; n is used in both example runs",
+    ),
+    Command(
+        "Print",
+        "Print data of blocks, contacts, corners, domains, or the linked lists of blocks and domains.",
+        "PRINT BLOCKS CONTACTS",
+        words=tuple(
+            Word(keyword, sets=SEVERAL)
+            for keyword in ("Blocks", "Contacts", "CORners", "Domains", "List", "DList")
+        ),
+        first=SEVERAL,
+    ),
+    Command(
+        "PROperty",
+        "Define properties of material n: bulk modulus (Bulk or K), cohesion, density, normal and shear "
+        "joint stiffness, friction coefficient, shear modulus (G).",
+        "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
+        words=(
+            MATERIAL,
+            Word("Bulk", "b"),
+            Word("Cohesion", "c"),
+            Word("K", "b", sets="bulk"),
+            Word("Density", "d"),
+            Word("KN", "sn"),
+            Word("Friction", "f"),
+            Word("KS", "ss"),
+            Word("G", "g"),
+        ),
+        first="material",
+    ),
+    Command(
+        "Restart",
+        "Go on from the restart file.",
+        "RESTART slope.h5",
+        text="path",
+        opens=True,
+        ours="the name of the file",
+    ),
+    Command(
+        "RSet",
+        "Insert the real v in the main array at address ia, with offset ioff.",
+        "RSET 9.81 100 5",
+        numbers="v ia ioff",
+    ),
+    Command(
+        "Round",
+        "Round each corner with a circle tangential to its edges at the distance d.",
+        "ROUND 0.5",
+        numbers="d",
+    ),
+    Command(
+        "SAve",
+        "Save the state on the restart file.",
+        "SAVE slope.h5",
+        text="path",
+        ours="the name of the file",
+    ),
+    Command("SCale", "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
+    Command(
+        "SPlit",
+        "Split the blocks in the path of the line from (x1,y1) to (x2,y2).",
+        "SPLIT -1,10 61,10",
+        numbers="x1 y1 x2 y2",
+    ),
+    Command("STArt", "Start from nothing.", "START", opens=True),
+    Command("Stop", "End the run.", "STOP", opens=True),
+)
+
+
+def required(keyword: str) -> str:
+    """The letters of `keyword` that must be typed: those up to its last upper-case one."""
+    return keyword.rstrip("abcdefghijklmnopqrstuvwxyz")
+
+
+def matches(keyword: str, typed: str) -> bool:
+    """True if `typed` has all required letters of `keyword`, and nothing that does not belong to it."""
+    return (
+        typed.isascii() and len(typed) >= len(required(keyword)) and keyword.upper().startswith(typed.upper())
+    )
+
+
+def match(table: Iterable[N], typed: str) -> N | None:
+    """The first entry of `table` whose keyword matches `typed` (MATCH, Appendix III-3), or None."""
+    return next((entry for entry in table if matches(entry.keyword, typed)), None)

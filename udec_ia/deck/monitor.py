@@ -1,0 +1,129 @@
+"""The monitor: takes the commands of a deck one after the other and has a model obey them (MON, III-3).
+
+It echoes every line behind a `>`, hands the call to the method of Model that has the command's name, and
+writes what that method returns. What goes wrong becomes a numbered error with its place in the deck;
+in a run the state is then saved, so that nothing that was computed is lost.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from udec_ia.deck.advice import at, place_of
+from udec_ia.deck.parser import Call, parse
+from udec_ia.deck.reader import Statement, statements
+from udec_ia.deck.reference import explain, summary
+from udec_ia.errors import UdecError
+
+if TYPE_CHECKING:
+    from udec_ia.model import Model
+
+RESCUE = "error.h5"  # restart file written because of an error, in the folder for files
+
+
+class Monitor:
+    """Obeys statements on `model` and writes to `out`.
+
+    echo: False where the user sees what he types. ended: True after STOP or END.
+    """
+
+    def __init__(self, model: Model, out: TextIO, *, echo: bool = True) -> None:
+        self.model = model
+        self.out = out
+        self.echo = echo
+        self.ended = False
+        self._stopped = False
+
+    def run(self, lines: Iterable[str], file: str) -> None:
+        """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
+
+        Raises UdecError at the first error, after the state has been saved on a restart file.
+        """
+        try:
+            for statement in statements(lines, file):
+                self.obey(statement)
+                if self.ended:
+                    return
+        except UdecError as error:
+            self._rescue(error)
+            raise
+
+    def obey(self, statement: Statement) -> None:
+        """Echo and obey one statement. Raises UdecError with its place."""
+        if self.echo:
+            for line in statement.lines:
+                self._write(f"> {line.shown}".rstrip())
+        if not statement.tokens:
+            return
+        call = parse(statement)
+        if not (call.command.opens or self.model.started):
+            raise at(UdecError(3, f"this is {call.command.name.upper()}"), call.head)
+        try:
+            result = self._carry_out(call)
+        except UdecError as error:
+            raise at(error, place_of(error, call.places, call.head)) from error.__cause__
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            refused = UdecError(29, f"{error.strerror or error}: {error.filename or call.command.name}")
+            raise at(refused, place_of(refused, call.places, call.head)) from error
+        self._show(result)
+        self.model.deck_log += [
+            line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
+        ]
+
+    def stop(self) -> None:
+        """End the run, as STOP does, if a run was started and has not been ended."""
+        if self.model.started and not self._stopped:
+            self._stopped = True
+            self._show(self.model.stop())
+
+    def _carry_out(self, call: Call) -> object:
+        """Obey `call`; what is returned is to be shown."""
+        name = call.command.name
+        if name == "help":
+            return explain(call.named["command"]) if call.named else summary()
+        if name in ("stop", "end"):
+            self.ended = True
+            if name == "stop":
+                self.stop()
+            return None
+        return getattr(self.model, name)(*call.positional, **call.named)
+
+    def _show(self, result: object) -> None:
+        if isinstance(result, str):
+            self._write(result)
+        elif isinstance(result, Path):
+            self._write(f"written: {result}")
+
+    def _write(self, text: str) -> None:
+        self.out.write(text + "\n")
+        self.out.flush()
+
+    def _rescue(self, error: UdecError) -> None:
+        """Save what was computed before `error`; a second failure must not hide the first."""
+        if not self.model.started:
+            return
+        try:
+            error.saved = str(self.model.save((self.model.out / RESCUE).absolute()))
+        except Exception as failure:
+            error.advice += f"\nthe state could not be saved: {failure}"
+
+
+def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
+    """Obey a whole deck on `model` and return the monitor that did.
+
+    deck: the path of a deck, or its text; a str is a path if there is a file of that name.
+    Raises UdecError, and OSError if the file cannot be read.
+    """
+    monitor = Monitor(model, out)
+    if isinstance(deck, Path) or os.path.isfile(deck):
+        with open(deck, encoding="utf-8-sig", errors="replace") as lines:
+            monitor.run(lines, str(deck))
+    else:
+        monitor.run(io.StringIO(deck, newline=None), "text")
+    return monitor

@@ -1,0 +1,181 @@
+"""From a statement to a call of the model: numbers, words and lists by the table (VAR, IVAR and RVAR, III-3).
+
+An integer is accepted where a real is wanted, and not the other way round. A number that is missing is
+reported where it should stand: just after the last parameter that was read.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from udec_ia.deck.advice import ADVICE, at, hint, quoted
+from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word, match
+from udec_ia.deck.reader import Line, Statement, Token
+from udec_ia.errors import UdecError
+
+INTEGER = re.compile(r"[+-]?[0-9]+")
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
+INTEGER_NAMES = "ijklmn"
+INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
+CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
+
+
+@dataclass
+class Call:
+    """A command ready to be obeyed: what the method of Model gets, and where each argument stands."""
+
+    command: Command
+    head: Token
+    positional: list[Any] = field(default_factory=list)
+    named: dict[str, Any] = field(default_factory=dict)
+    places: dict[str, Token] = field(default_factory=dict)
+
+
+def parse(statement: Statement) -> Call:
+    """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
+    head = statement.tokens[0]
+    command = match(COMMANDS, head.text)
+    if command is None:
+        advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
+        raise at(UdecError(2, quoted(head.text), advice), head)
+    return _Parser(command, statement.tokens).parse()
+
+
+def number(token: Token, name: str) -> int | float:
+    """The value of the number `name` that is spelt by `token`. Raises UdecError 10 or 28 there."""
+    if not NUMBER.fullmatch(token.text):
+        raise at(UdecError(10, f"{quoted(token.text)} is not a number"), token)
+    if name[0] in INTEGER_NAMES:
+        if not INTEGER.fullmatch(token.text):
+            raise at(
+                UdecError(10, f"{quoted(token.text)} is not an integer", f"{name} is a whole number"), token
+            )
+        digits = token.text.lstrip("+-0") or "0"
+        if len(digits) > INTEGER_DIGITS:
+            raise at(UdecError(28, f"{quoted(token.text)} has more than {INTEGER_DIGITS} digits"), token)
+        return -int(digits) if token.text.startswith("-") else int(digits)
+    value = float(token.text.upper().replace("D", "E"))
+    if math.isinf(value):
+        raise at(UdecError(28, f"{quoted(token.text)} is too large a number"), token)
+    return value
+
+
+class _Parser:
+    """Walks once over the tokens of a command."""
+
+    def __init__(self, command: Command, tokens: list[Token]) -> None:
+        self.command = command
+        self.tokens = tokens
+        self.read = 1  # tokens that are read
+        self.call = Call(command, tokens[0])
+
+    def parse(self) -> Call:
+        command = self.command
+        if command.text:
+            self._text()
+            return self.call
+        for name in command.numbers.split():
+            self._positional(name)
+        for name in command.optional.split():
+            if self._at_number():
+                self._positional(name)
+        if command.first:
+            self._check_first()
+        while (token := self._next()) and not self._at_number():
+            self._word(token)
+        if command.list:
+            self.call.places[command.list] = self._next() or self._gap()
+            self.call.positional += [value for values in self._tuples(command.list) for value in values]
+        if (token := self._next()) is not None:
+            raise at(UdecError(10, f"{quoted(token.text)} is one number too many", self._advice()), token)
+        return self.call
+
+    def _next(self) -> Token | None:
+        return self.tokens[self.read] if self.read < len(self.tokens) else None
+
+    def _at_number(self) -> bool:
+        token = self._next()
+        return token is not None and NUMBER.fullmatch(token.text) is not None
+
+    def _gap(self) -> Token:
+        """The place just after the last token that was read."""
+        last = self.tokens[self.read - 1]
+        return Token("", last.line, last.end)
+
+    def _advice(self) -> str:
+        return f"the form is: {self.command.form}"
+
+    def _text(self) -> None:
+        """Take the rest of the line as it stands: names of files may hold separators."""
+        line, end = self.tokens[0].line, self.tokens[0].end - 1
+        text = line.text[end:].lstrip(" \t=")
+        place = Token(text.rstrip(), line, len(line.text) - len(text) + 1)
+        if not place.text.isprintable() or self.tokens[-1].line is not line:
+            raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
+        if place.text:
+            self.call.named[self.command.text] = place.text.strip("\"'")
+            self.call.places[self.command.text] = place
+
+    def _number(self, name: str, missing: int = 7, line: Line | None = None) -> int | float:
+        """Read the number `name`; error `missing` if there is none, or if it is not on `line`."""
+        token = self._next()
+        if token is None or match(self.command.words, token.text) or line not in (None, token.line):
+            last = self.tokens[self.read - 1].text
+            detail = f"number {name} is missing after {quoted(last)}"
+            raise at(UdecError(missing, detail, "" if line else self._advice()), self._gap())
+        self.read += 1
+        return number(token, name)
+
+    def _positional(self, name: str) -> None:
+        self.call.positional.append(self._number(name))
+        self.call.places[name] = self.tokens[self.read - 1]
+
+    def _tuples(self, names: str) -> list[tuple[int | float, ...]]:
+        """Read one tuple and all that follow; the numbers of a tuple stand on one line."""
+        first, *others = names.split()
+        found = []
+        while not found or self._at_number():
+            values = [self._number(first)]
+            line = self.tokens[self.read - 1].line
+            values += [self._number(name, CUT_SHORT[len(names.split())], line) for name in others]
+            found.append(tuple(values))
+        return found
+
+    def _check_first(self) -> None:
+        """The first word must set the argument `first` of the command."""
+        token = self._next()
+        if token is None:
+            detail = f"nothing follows {quoted(self.tokens[self.read - 1].text)}"
+            raise at(UdecError(7, detail, self._advice()), self._gap())
+        allowed = [word for word in self.command.words if word.argument == self.command.first]
+        if match(allowed, token.text) is None:
+            raise self._unrecognised(token, self.command.first_error, allowed)
+
+    def _unrecognised(self, token: Token, error: int, allowed: list[Word] | tuple[Word, ...]) -> UdecError:
+        advice = hint(token.text, (word.keyword for word in allowed), self._advice())
+        return at(UdecError(error, quoted(token.text), advice), token)
+
+    def _word(self, token: Token) -> None:
+        """Read a word and its values, and set its argument."""
+        word = match(self.command.words, token.text)
+        if word is None:
+            raise self._unrecognised(token, 10, self.command.words)
+        self.read += 1
+        if word.argument == SEVERAL:
+            self.call.positional.append(word.keyword.lower())
+            return
+        if word.argument in self.call.named:
+            raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} a second time"), token)
+        self.call.places[word.argument] = (self._next() if word.values else token) or token
+        self.call.named[word.argument] = self._value(word)
+
+    def _value(self, word: Word) -> Any:
+        """What `word` sets its argument to, read from the tokens after it."""
+        if word.repeated:
+            return self._tuples(word.values)
+        if word.values:
+            return self._number(word.values)
+        return word.keyword.lower() if word.sets else True
