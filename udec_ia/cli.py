@@ -60,7 +60,7 @@ def _run(args: argparse.Namespace) -> int:
         return MISUSE
     model.animate = args.animate
     if not is_cached():
-        print("compiling once for this machine, which takes about a minute ...", file=sys.stderr, flush=True)
+        print("compiling once for this machine, up to a minute ...", file=sys.stderr, flush=True)
     if args.deck is not None:
         run_deck(model, args.deck, sys.stdout).stop()
     elif sys.stdin.isatty():

@@ -9,7 +9,7 @@ from udec_ia.deck.reader import Token
 from udec_ia.errors import UdecError
 
 SHOWN = 40  # characters of a word that are worth repeating
-WIDTH = 200  # lines longer than this are cut off behind the place of the error
+WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
 
 ADVICE = {
     1: "take a larger --mtop, or leave --mtop off and choose a --build with wider integers",
@@ -72,9 +72,9 @@ def at(error: UdecError, place: Token) -> UdecError:
     """`error`, telling that it arose at `place`; the advice of its number if it has none of its own."""
     error.file, error.line, error.column = place.line.file, place.line.number, place.column
     error.token = place.text
-    error.source = place.line.shown
-    if len(error.source) > WIDTH:
-        error.source = error.source[: place.column + SHOWN] + " ..."
+    if place.column <= WIDTH:
+        shown = place.line.shown
+        error.source = shown if len(shown) <= WIDTH else shown[: place.column + SHOWN] + " ..."
     error.advice = error.advice or ADVICE[error.number]
     return error
 

@@ -136,7 +136,7 @@ class _Parser:
     def _tuples(self, names: str) -> list[tuple[int | float, ...]]:
         """Read one tuple and all that follow; the numbers of a tuple stand on one line."""
         first, *others = names.split()
-        found = []
+        found: list[tuple[int | float, ...]] = []
         while not found or self._at_number():
             values = [self._number(first)]
             line = self.tokens[self.read - 1].line

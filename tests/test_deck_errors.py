@@ -1,0 +1,58 @@
+"""Decks that are wrong in one place each: the numbered errors, raised where the deck itself says.
+
+The first line of a deck says what to expect: `* expect LINE:COLUMN error NUMBER`, and `with mtop=N` where
+the size of the main array matters.
+"""
+
+import io
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from udec_ia import Model, UdecError
+from udec_ia.deck.monitor import run_deck
+
+DECKS = sorted((Path(__file__).parent / "decks").glob("err*.dat"))
+EXPECT = re.compile(r"\* expect (\d+):(\d+) error (\d+)(?: with mtop=(\d+))?")
+NEVER_STARTED = {"err02-nothing-to-continue.dat", "err03.dat", "err29.dat"}
+RIGID = {*range(1, 16), 18, 19, 20, 22, 23, 24, 26}  # the errors of 1980 that concern rigid blocks
+
+
+class Expected(NamedTuple):
+    line: int
+    column: int
+    number: int
+    mtop: int | None
+
+
+def expected(deck: Path) -> Expected:
+    found = EXPECT.fullmatch(deck.read_text().split("\n", 1)[0])
+    assert found is not None, f"{deck.name} does not say what to expect"
+    line, column, number, mtop = found.groups()
+    return Expected(int(line), int(column), int(number), int(mtop) if mtop else None)
+
+
+def test_there_is_a_deck_for_every_error() -> None:
+    assert {expected(deck).number for deck in DECKS} >= RIGID
+
+
+@pytest.mark.parametrize("deck", DECKS, ids=lambda deck: deck.stem)
+def test_a_wrong_deck_ends_in_its_error(deck: Path, tmp_path: Path) -> None:
+    wanted = expected(deck)
+    model = Model(mtop=wanted.mtop, out=tmp_path)
+    with pytest.raises(UdecError) as caught:
+        run_deck(model, deck, io.StringIO())
+    error = caught.value
+    assert (error.number, error.line, error.column) == (wanted.number, wanted.line, wanted.column)
+    place, source, caret, *advice = str(error).split("\n")
+    assert place.startswith(f"{deck}:{wanted.line}:{wanted.column}: error {wanted.number}: ")
+    assert source == "    " + deck.read_text().split("\n")[wanted.line - 1]
+    assert caret.index("^") == 4 + wanted.column - 1
+    assert advice[0]
+    if deck.name in NEVER_STARTED:
+        assert error.saved is None
+    else:
+        assert error.saved is not None
+        assert Model.restore(error.saved).deck_log == model.deck_log
