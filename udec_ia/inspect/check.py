@@ -1,0 +1,47 @@
+"""The checker: proves that a main array holds a sound map of blocks, or says all that is wrong.
+
+    1. every word below MFREE is in exactly one group, in use or junk; nothing points into junk
+    2. every pointer is 0 or the base of a group of its kind; the main lists are linked both ways
+    3. clockwise lists close, contacts in physical order; links back and reverse lists mirror them
+    4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close
+    5. blocks - contacts + domains = 2, and the counts of the common block are true
+    6. grid-point and corner links are mutual
+    7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
+    8. no two blocks overlap or touch without a contact between them
+    9. force sums are finite, virtual contacts carry none
+
+What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say,
+the checker comes to an end and raises nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check_complete import check_complete
+from udec_ia.inspect.check_geometry import check_contacts, check_numbers, check_outlines, outlines, touches
+from udec_ia.inspect.check_groups import State, Violation, check_pointers
+from udec_ia.inspect.check_map import check_map
+from udec_ia.inspect.check_memory import check_memory
+from udec_ia.inspect.check_place import check_places
+
+__all__ = ["Violation", "check"]
+
+
+def check(array: MainArray) -> list[Violation]:
+    """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        check_memory(state)
+        check_pointers(state)
+        check_map(state)
+        check_numbers(state)
+        shapes = outlines(state)
+        if shapes is not None:
+            check_outlines(state, shapes)
+            touching = touches(state, shapes)
+            check_contacts(state, shapes, touching)
+            check_places(state, shapes, touching)
+            check_complete(state, shapes, touching)
+    return sorted(dict.fromkeys(state.found), key=lambda violation: violation.invariant)

@@ -1,0 +1,174 @@
+"""Invariant 8: no two blocks overlap or touch without a contact between them.
+
+Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
+pairs of an arc with an edge or another arc. Every point where the outlines penetrate each other needs a
+contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+
+from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check_groups import HOSTS, Numbers, State
+
+CHUNK = 1_000_000  # pairs looked at together
+AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
+
+
+def check_complete(state: State, o: Outlines, touch: Touches) -> None:
+    """Invariant 8."""
+    joined = _contact_points(state, touch)
+    near = state.tolerance("DTOL") + state.tolerance("FTOL")
+    for a, b in _close_blocks(o):
+        for one, two, x, y, depth, what in _penetrations(o, a, b):
+            points = joined.get((min(one, two), max(one, two)), [])
+            if not any(np.hypot(x - u, y - v) <= near + depth for u, v in points):
+                state.report(
+                    8,
+                    f"block@{one} and block@{two} overlap {depth} at ({x}, {y}), {what}, without a contact",
+                )
+        pairs = zip(o.block[a].tolist(), o.block[b].tolist(), strict=True)
+        apart = np.array([(min(pair), max(pair)) not in joined for pair in pairs], bool)
+        for one, two in _crossings(o, a[apart], b[apart]):
+            state.report(8, f"block@{one} and block@{two} overlap, but there is no contact between them")
+
+
+def _contact_points(state: State, touch: Touches) -> dict[tuple[int, int], list[tuple[float, float]]]:
+    """Contact points of the real contacts of each pair of blocks."""
+    columns = [state.column("contact", name)[touch.row].tolist() for name in (*HOSTS, "KXC", "KYC")]
+    joined: dict[tuple[int, int], list[tuple[float, float]]] = defaultdict(list)
+    for one, two, x, y in zip(*columns, strict=True):
+        joined[min(one, two), max(one, two)].append((x, y))
+    return joined
+
+
+def ragged(count: Numbers) -> tuple[Numbers, Numbers]:
+    """For count = (2, 3): owners (0, 0, 1, 1, 1) and places (0, 1, 0, 1, 2)."""
+    owner = np.repeat(np.arange(len(count)), count)
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+
+
+def _close_blocks(o: Outlines) -> Iterator[tuple[Numbers, Numbers]]:
+    """Pairs of blocks (index, index) whose boxes overlap, in chunks: a sweep along the emptier axis."""
+    low, high = np.minimum.reduceat(o.p, o.first), np.maximum.reduceat(o.p, o.first)
+    sweeps = []
+    for axis in (0, 1):
+        order = np.argsort(low[:, axis], kind="stable")
+        end = np.searchsorted(low[order, axis], high[order, axis], side="right")
+        sweeps.append((int((end - np.arange(len(order)) - 1).sum()), axis, order, end))
+    _, axis, order, end = min(sweeps, key=lambda sweep: sweep[0])
+    count = end - np.arange(len(order)) - 1
+    total = np.cumsum(count)
+    first = 0
+    while first < len(order):
+        done = total[first - 1] if first else 0
+        last = max(int(np.searchsorted(total, done + CHUNK, side="right")), first + 1)
+        owner, place = ragged(count[first:last])
+        i, j = order[first + owner], order[first + owner + 1 + place]
+        other = 1 - axis
+        meet = (low[i, other] <= high[j, other]) & (low[j, other] <= high[i, other])
+        yield i[meet], j[meet]
+        first = last
+
+
+def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
+    """Pairs (corner i of block a, corner j of block b) where i is convex and near the box of block b."""
+    low, high = np.minimum.reduceat(o.p, o.first), np.maximum.reduceat(o.p, o.first)
+    pair, place = ragged(o.count[a])
+    i, b = o.first[a[pair]] + place, b[pair]
+    reach = o.d + o.slack[i]
+    inside = (o.r[i] > 0) & (o.p[i] >= low[b] - reach[:, None]).all(axis=1)
+    inside &= (o.p[i] <= high[b] + reach[:, None]).all(axis=1)
+    i, b = i[inside], b[inside]
+    pair, place = ragged(o.count[b])
+    return i[pair], o.first[b[pair]] + place
+
+
+def _penetrations(o: Outlines, a: Numbers, b: Numbers) -> Iterator[tuple[int, int, float, float, float, str]]:
+    """(block, block, x, y, depth, what) for each place where block a and block b penetrate each other."""
+    i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
+    for finds, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
+        k, m, point, depth = finds
+        for row in range(len(k)):
+            one, two = (int(o.block[o.owner[index[row]]]) for index in (k, m))
+            where = f"at corner@{o.corner[k[row]]} and the {what} of corner@{o.corner[m[row]]}"
+            yield one, two, float(point[row, 0]), float(point[row, 1]), float(depth[row]), where
+
+
+def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Arcs of corners i whose point that lies deepest under the edge of corner j lies in the block there.
+
+    The deepest point of an arc that does not face the edge is one of its ends.
+    """
+    along = dot(o.c[i] - o.p[o.before[j]], o.t[j])
+    keep = (along >= o.start[j]) & (along <= o.end[j])
+    i, j = i[keep], j[keep]
+    inward = -o.e[j]
+    early, late = dot(inward, o.t[i]), dot(inward, o.t[o.after[i]])
+    deepest = np.select(
+        [(early < 0)[:, None], (late > 0)[:, None]],
+        [o.p[i] - o.d * o.t[i], o.p[i] + o.d * o.t[o.after[i]]],
+        o.c[i] + o.r[i][:, None] * inward,
+    )
+    depth = dot(deepest - o.p[j], inward)
+    slack = 2 * np.maximum(o.slack[i], o.slack[j])
+    keep = (depth > slack) & (depth <= o.d) & (-early <= AWRY) & (late <= AWRY)
+    keep &= dot(inward, o.p[i] - o.c[i]) > 0
+    i, j, deepest, depth = i[keep], j[keep], deepest[keep], depth[keep]
+    keep = _inside(o, deepest, o.owner[j])
+    return i[keep], j[keep], deepest[keep], depth[keep]
+
+
+def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Pairs of arcs that overlap along their line of centres, each facing the other."""
+    keep = (o.r[j] > 0) & (o.owner[i] < o.owner[j])
+    i, j = i[keep], j[keep]
+    between = o.c[j] - o.c[i]
+    distance = np.hypot(*between.T)
+    depth = o.r[i] + o.r[j] - distance
+    keep = (depth > 2 * np.maximum(o.slack[i], o.slack[j])) & (distance > 0)
+    for k, towards in ((i, between), (j, -between)):
+        keep &= (dot(towards, o.t[k]) >= 0) & (dot(towards, o.t[o.after[k]]) <= 0)
+    i, j, depth = i[keep], j[keep], depth[keep]
+    towards = between[keep] / distance[keep][:, None]
+    return i, j, o.c[i] + (o.r[i] - depth / 2)[:, None] * towards, depth
+
+
+def _inside(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
+    """True for each point that lies in the polygon of its block (by the crossings of a ray)."""
+    pair, place = ragged(o.count[block])
+    j = o.first[block[pair]] + place
+    a, b, q = o.p[o.before[j]], o.p[j], point[pair]
+    spans = (a[:, 1] > q[:, 1]) != (b[:, 1] > q[:, 1])
+    left = cross(b - a, q - a) > 0
+    crossed = np.bincount(pair[spans & (left == (b[:, 1] > a[:, 1]))], minlength=len(block))
+    return np.asarray(crossed % 2 == 1)
+
+
+def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
+    """Pairs of blocks with straight edges that cross, or of which one lies inside the other."""
+    pair, place = ragged(o.count[a] * o.count[b])
+    i = o.first[a[pair]] + place // o.count[b[pair]]
+    j = o.first[b[pair]] + place % o.count[b[pair]]
+    ends = [
+        (o.p[o.before[k]] + o.start[k][:, None] * o.t[k], o.p[o.before[k]] + o.end[k][:, None] * o.t[k])
+        for k in (i, j)
+    ]
+    slack = 2 * np.maximum(o.slack[i], o.slack[j])
+    sides = []
+    for (p, q), k in ((ends[0], j), (ends[1], i)):
+        u, v = (dot(end - o.p[k], o.e[k]) for end in (p, q))
+        sides.append((np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack))
+    crossed = np.unique(pair[sides[0] & sides[1]])
+    found = {(int(o.block[a[k]]), int(o.block[b[k]])) for k in crossed}
+    for inner, outer in ((a, b), (b, a)):
+        pair, place = ragged(o.count[inner])
+        k = o.first[inner[pair]] + place
+        start = o.p[o.before[k]] + o.start[k][:, None] * o.t[k]
+        swallowed = np.bincount(pair[~_inside(o, start, outer[pair])], minlength=len(inner)) == 0
+        found |= {(int(o.block[a[k]]), int(o.block[b[k]])) for k in np.flatnonzero(swallowed)}
+    return sorted(found)

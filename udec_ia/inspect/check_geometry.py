@@ -1,0 +1,272 @@
+"""Invariant 7: the numbers make sense, and contacts are what the rounded outlines say.
+
+Outlines are taken apart once, for all blocks whose lists are sound: clockwise corners p, the edge that
+ends at p with its length z, its unit vector t (clockwise) and outward normal e = (-ty, tx), and the arc of
+p with centre c and radius r. All is computed in 64 bits; what the heap says may differ by as much as its
+own reals can.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from offsets import generated
+from udec_ia.inspect.check_groups import TABLE, Numbers, State, names
+from udec_ia.inspect.check_map import AHEAD
+from udec_ia.kernels.shape import FLAT
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, VIRTUAL
+
+FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
+NOT_NEGATIVE = ("KBM", "KBI")
+MATERIALS = ("KMAT", "KCM")
+ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """The corners of all sound blocks, block by block, clockwise; arrays with one element for each corner.
+
+    block: addresses of the blocks; first, count: where their corners stand; owner: index into `block`.
+    corner: address; before, after: index of the neighbours. p, c: corner and circle centre (n x 2);
+    r: radius. d: the rounding length; step: relative rounding error of a coordinate of the heap.
+    """
+
+    block: Numbers
+    first: Numbers
+    count: Numbers
+    owner: Numbers
+    corner: Numbers
+    before: Numbers
+    after: Numbers
+    p: Numbers
+    c: Numbers
+    r: Numbers
+    d: float
+    step: float
+
+    @cached_property
+    def z(self) -> Numbers:
+        """Length of the edge that ends at the corner."""
+        return np.asarray(np.hypot(*(self.p - self.p[self.before]).T))
+
+    @cached_property
+    def t(self) -> Numbers:
+        """Unit vector along the edge that ends at the corner."""
+        return np.asarray((self.p - self.p[self.before]) / self.z[:, None])
+
+    @cached_property
+    def e(self) -> Numbers:
+        """Outward normal of the edge that ends at the corner."""
+        return turned(self.t)
+
+    @cached_property
+    def turn(self) -> Numbers:
+        """Angle by which the outline turns clockwise at the corner; negative at a concave corner."""
+        t, after = self.t, self.t[self.after]
+        return np.asarray(np.arctan2(-cross(t, after), dot(t, after)))
+
+    @cached_property
+    def slack(self) -> Numbers:
+        """What a coordinate of the corner, or of its circle, may be off by rounding."""
+        size = np.maximum(np.abs(self.p).max(axis=1), np.maximum(np.abs(self.c).max(axis=1), np.abs(self.r)))
+        return np.asarray(np.maximum.reduceat(size, self.first)[self.owner] * self.step)
+
+    @cached_property
+    def start(self) -> Numbers:
+        """How far from its start the edge that ends at the corner is free of the rounding before it."""
+        return np.where(self.r[self.before] > 0, self.d, 0.0)
+
+    @cached_property
+    def end(self) -> Numbers:
+        """Where along the edge that ends at the corner its rounding begins."""
+        return self.z - np.where(self.r > 0, self.d, 0.0)
+
+
+def dot(a: Numbers, b: Numbers) -> Numbers:
+    """Scalar products of two arrays of plane vectors."""
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
+
+
+def cross(a: Numbers, b: Numbers) -> Numbers:
+    """Vector products of two arrays of plane vectors."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def turned(a: Numbers) -> Numbers:
+    """Plane vectors turned by 90 degrees anticlockwise."""
+    return np.stack((-a[:, 1], a[:, 0]), axis=1)
+
+
+def outlines(state: State) -> Outlines | None:
+    """The outlines of the blocks whose lists close and whose coordinates are finite; None if there are none.
+
+    The tolerance of a coordinate grows with the square root of the number of cycles: each rounds anew.
+    """
+    ring_of = {
+        block: [iad for iad in ring if state.kind_at(iad) == "corner"] for block, ring in state.rings.items()
+    }
+    corners = np.array([iad for ring in ring_of.values() for iad in ring], np.int64)
+    if not len(corners):
+        return None
+    rows = state.rows("corner", corners)
+
+    def column(*fields: str) -> Numbers:
+        return np.stack([state.column("corner", name)[rows] for name in fields], axis=1)
+
+    p, c, r = column("KXP", "KYP"), column("KXCP", "KYCP"), column("KRAD")[:, 0]
+    usable = (np.abs(np.column_stack((p, c, r))) < np.sqrt(np.finfo(state.h.cr.dtype).max)).all(axis=1)
+    count = np.array([len(ring) for ring in ring_of.values()])
+    sound = np.logical_and.reduceat(usable, np.cumsum(count) - count) & (count > 2)
+    if not sound.any():
+        return None
+    kept = np.repeat(sound, count)
+    block, count = np.array(list(ring_of))[sound], count[sound]
+    first = np.cumsum(count) - count
+    owner = np.repeat(np.arange(len(block)), count)
+    here = np.arange(len(owner))
+    last = first + count - 1
+    step = ROUNDINGS * float(np.finfo(state.h.cr.dtype).eps) * np.sqrt(1.0 + max(state.common("MCTOT"), 0))
+    return Outlines(
+        block=block,
+        first=first,
+        count=count,
+        owner=owner,
+        corner=corners[kept],
+        before=np.where(here == first[owner], last[owner], here - 1),
+        after=np.where(here == last[owner], first[owner], here + 1),
+        p=p[kept],
+        c=c[kept],
+        r=r[kept],
+        d=state.tolerance("DTOL"),
+        step=step,
+    )
+
+
+def check_numbers(state: State) -> None:
+    """Invariants 7 and 9: reals are finite, masses not negative, material numbers those of a material."""
+    for kind, addresses in state.address.items():
+        for field in TABLE.group(kind).fields:
+            if not field.real or not len(addresses):
+                continue
+            values = state.column(kind, field.name)
+            bad = ~np.isfinite(values) | ((values < 0) if field.name in NOT_NEGATIVE else False)
+            for row in np.flatnonzero(bad):
+                number = 9 if field.name in FORCE_SUMS else 7
+                state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
+        for name in set(MATERIALS) & set(names(kind, "data")):
+            material = state.column(kind, name)
+            count = next(field.count for field in TABLE.common if field.name == "AKN")
+            for row in np.flatnonzero((material < 1) | (material > count)):
+                state.report(7, f"{name} of {kind}@{addresses[row]} is {material[row]}, not 1 to {count}")
+    for field in TABLE.common:
+        if field.real:
+            at = getattr(generated, field.name)
+            for i in np.flatnonzero(~np.isfinite(state.h.cr[at : at + field.count])):
+                element = f"({i + 1})" if field.count > 1 else ""
+                state.report(7, f"{field.name}{element} is {state.h.cr[at + i]}")
+
+
+def check_outlines(state: State, o: Outlines) -> None:
+    """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their two roundings."""
+    if not o.d > 0:
+        state.report(7, f"DTOL is {o.d}, but there are blocks")
+        return
+    from_first = o.p - o.p[o.first][o.owner]
+    area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
+    for i in np.flatnonzero(~(area > 0)):
+        state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
+    for i in np.flatnonzero(~(o.z >= 2 * o.d - 2 * o.slack)):
+        state.report(
+            7,
+            f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
+            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, less than two roundings of {o.d}",
+        )
+    _check_circles(state, o)
+    rows = state.rows("block", o.block)
+    centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
+    far = np.maximum.reduceat(np.hypot(*(o.p - centroid[o.owner]).T), o.first)
+    noted = state.column("block", "KBRO")[rows]
+    for i in np.flatnonzero(np.abs(far - noted) > 2 * o.slack[o.first]):
+        state.report(
+            7, f"KBRO of block@{o.block[i]} is {noted[i]}, but a corner is {far[i]} from the centroid"
+        )
+
+
+def _check_circles(state: State, o: Outlines) -> None:
+    """Centre and radius against D tan(theta/2).
+
+    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
+    (1 + (R/D)^2)/2 times as much.
+    """
+    radius = np.where(np.abs(np.sin(o.turn)) >= FLAT, o.d / np.tan(o.turn / 2), 0.0)
+    reach = np.where(radius == 0, 0.0, o.d)
+    centre = o.p - reach[:, None] * o.t - radius[:, None] * o.e
+    slack = o.slack * (1 + (radius / o.d) ** 2)
+    wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
+    border = np.abs(np.abs(np.sin(o.turn)) - FLAT) < o.slack / o.d
+    for i in np.flatnonzero(wrong & ~border):
+        state.report(
+            7,
+            f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}, "
+            f"KRAD {o.r[i]}, but its edges ask for {centre[i, 0]}, {centre[i, 1]}, {radius[i]}",
+        )
+
+
+@dataclass(frozen=True)
+class Touches:
+    """The contacts that can be compared with the outlines; arrays with one element for each.
+
+    row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
+    outlines; overlap: from the outlines; slack: what it may be off by rounding.
+    """
+
+    row: Numbers
+    code: Numbers
+    i: Numbers
+    j: Numbers
+    overlap: Numbers
+    slack: Numbers
+
+
+def touches(state: State, o: Outlines) -> Touches:
+    """The real contacts whose code and corners are sound, with the overlap that the outlines give."""
+    contacts = state.address["contact"]
+    index = np.full(len(state.address["corner"]) + 1, -1)  # one more, for row -1
+    index[state.rows("corner", o.corner)] = np.arange(len(o.corner))
+    code = state.column("contact", "KCCOD")
+    ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
+    for row in np.flatnonzero((code < CORNER_CORNER) | (code > VIRTUAL)):
+        state.report(7, f"KCCOD of contact@{contacts[row]} is {code[row]}, not 1 to {VIRTUAL}")
+    comparable = (code >= CORNER_CORNER) & (code < VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
+    at = np.flatnonzero(comparable)
+    code, i, j = code[at], ends[0][at], ends[1][at]
+    between = o.c[j] - o.c[i]
+    overlap = np.select(
+        [code == CORNER_CORNER, code == CORNER_EDGE],
+        [
+            o.r[i] + o.r[j] - np.hypot(*between.T),
+            o.r[i] - dot(o.c[i] - o.p[j], o.e[j]),
+        ],
+        o.r[j] - dot(o.c[j] - o.p[i], o.e[i]),
+    )
+    return Touches(at, code, i, j, overlap, 2 * np.maximum(o.slack[i], o.slack[j]))
+
+
+def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
+    """Invariant 7: the overlap of each contact is that of the outlines and within DTOL2."""
+    contacts = state.address["contact"][touch.row]
+    noted = state.column("contact", "KCN")[touch.row]
+    for k in np.flatnonzero(np.abs(noted - touch.overlap) > touch.slack):
+        state.report(
+            7,
+            f"KCN of contact@{contacts[k]} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
+            f"corner@{o.corner[touch.j[k]]} the outlines overlap by {touch.overlap[k]}",
+        )
+    most = state.tolerance("DTOL2")
+    for k in np.flatnonzero(np.maximum(noted, touch.overlap) > most + touch.slack):
+        state.report(
+            7, f"the overlap of contact@{contacts[k]} is {max(noted[k], touch.overlap[k])}, DTOL2 is {most}"
+        )

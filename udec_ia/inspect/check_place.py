@@ -1,0 +1,122 @@
+"""Invariants 3 and 7: each contact stands where its code says, and in physical order along the boundary.
+
+A contact stands on the edge that ends at a corner, or on the arc of the corner. Both are measured clockwise
+from the start of the edge, the arc by its length. Positions may be off by GTOL, which keeps codes from
+flickering, and a contact does not pass a corner while another contact stands between them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check_groups import HOSTS, Numbers, State
+from udec_ia.inspect.check_map import neighbours
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the contacts stand on one of their two blocks; arrays with one element for each contact.
+
+    corner: index of the first corner after the contact. on_edge: True on the edge, False on the arc.
+    under, over: distances by which it is outside its segment, before the start and after the end; negative
+    inside. along: position, clockwise from the start of the edge.
+    """
+
+    corner: Numbers
+    on_edge: Numbers
+    under: Numbers
+    over: Numbers
+    along: Numbers
+
+
+def place(o: Outlines, touch: Touches, side: int) -> Place:
+    """The places of all contacts on side 0 (block KB1) or 1 (KB2).
+
+    On an edge it is the other circle's centre that must stand between the roundings. Of two arcs each
+    must face the other's centre. An arc on an edge may face another way: its block has been tilted.
+    """
+    k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
+    on_edge = touch.code == (EDGE_CORNER if side == 0 else CORNER_EDGE)
+    two_arcs = touch.code == CORNER_CORNER
+    from_start = dot(o.c[other] - o.p[o.before[k]], o.t[k])
+    to_other = o.c[other] - o.c[k]
+    facing = np.where(two_arcs[:, None], to_other, -o.e[other])
+    angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
+    arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, np.maximum(o.turn[k], 0.0))
+    return Place(
+        corner=k,
+        on_edge=on_edge,
+        under=np.select([on_edge, two_arcs], [o.start[k] - from_start, -dot(to_other, o.t[k])], -np.inf),
+        over=np.select([on_edge, two_arcs], [from_start - o.end[k], dot(to_other, o.t[o.after[k]])], -np.inf),
+        along=np.where(on_edge, np.clip(from_start, o.start[k], np.maximum(o.end[k], o.start[k])), arc),
+    )
+
+
+def check_places(state: State, o: Outlines, touch: Touches) -> None:
+    """Invariants 3 and 7."""
+    close = neighbours(state, set())
+    places = [place(o, touch, side) for side in (0, 1)]
+    for side, here in enumerate(places):
+        _check_segment(state, o, touch, here, side, close)
+    virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
+    _check_order(state, o, touch, places, neighbours(state, set(virtual.tolist())))
+
+
+def _check_segment(
+    state: State, o: Outlines, touch: Touches, here: Place, side: int, close: list[tuple[int, int, int]]
+) -> None:
+    contacts = state.address["contact"][touch.row]
+    block = state.column("contact", HOSTS[side])[touch.row]
+    for k in np.flatnonzero(~(o.r[here.corner] > 0) & ~here.on_edge):
+        state.report(
+            7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
+        )
+    slack = state.tolerance("GTOL") + touch.slack
+    waits_before = {(b, after) for b, _, after in close}
+    waits_after = {(b, before) for b, before, _ in close}
+    for beyond, waits, corner, what in (
+        (here.under, waits_before, o.before[here.corner], "before the start"),
+        (here.over, waits_after, here.corner, "after the end"),
+    ):
+        concave = here.on_edge & (o.r[corner] < 0)
+        for k in np.flatnonzero(beyond > slack):
+            waiting = concave[k] or (int(block[k]), int(contacts[k])) in waits
+            if beyond[k] > slack[k] + (o.d if waiting else 0.0):
+                segment = "edge" if here.on_edge[k] else "arc"
+                state.report(
+                    7,
+                    f"contact@{contacts[k]} stands on the {segment} of corner@{o.corner[here.corner[k]]} of "
+                    f"block@{block[k]}, but lies {beyond[k]} {what} of it",
+                )
+
+
+def _check_order(
+    state: State, o: Outlines, touch: Touches, places: list[Place], close: list[tuple[int, int, int]]
+) -> None:
+    """Contacts between two corners follow each other clockwise, as far as overlaps and gaps let one say."""
+    if not close:
+        return
+    index = np.full(len(state.address["contact"]) + 1, -1)
+    index[touch.row] = np.arange(len(touch.row))
+    block, before, after = (np.array(numbers) for numbers in zip(*close, strict=True))
+    one, two = index[state.rows("contact", before)], index[state.rows("contact", after)]
+    known = (one >= 0) & (two >= 0)
+    block, one, two = block[known], one[known], two[known]
+    first_host = state.column("contact", HOSTS[0])[touch.row]
+
+    def along(k: Numbers) -> Numbers:
+        return np.where(first_host[k] == block, places[0].along[k], places[1].along[k])
+
+    gap = np.abs(touch.overlap)
+    slack = state.tolerance("GTOL") + 2 * (gap[one] + gap[two]) + touch.slack[one] + touch.slack[two]
+    contacts = state.address["contact"][touch.row]
+    for k in np.flatnonzero(along(one) - along(two) > slack):
+        state.report(
+            3,
+            f"contact@{contacts[one[k]]} stands before contact@{contacts[two[k]]} in the list of "
+            f"block@{block[k]}, but lies {along(one)[k] - along(two)[k]} behind it",
+        )
