@@ -31,6 +31,7 @@ DPI = 150
 POINT = 1.0 / 72.0  # inch
 INK = "#33302b"
 HATCH = "#b7ab93"
+HATCH_WIDTH = 0.4
 ROCKS = ("#ecdfc4", "#c9d6c5", "#d9c9d3", "#c7d5e0", "#e6cdb8", "#d5d3ae", "#cdc8e0", "#dfd7cf")
 TINTS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#a6761d")
 FORCE = "#b3261e"
@@ -89,7 +90,7 @@ class Frame:
 
         base.parent.mkdir(parents=True, exist_ok=True)
         paths = [base.with_name(f"{base.name}.{kind}") for kind in ("png", "svg")]
-        with rc_context({"svg.hashsalt": "udec", "hatch.linewidth": 0.4}):
+        with rc_context({"svg.hashsalt": "udec", "hatch.linewidth": HATCH_WIDTH}):
             figure = self.figure()
             for path in paths:
                 figure.savefig(path, dpi=DPI, metadata={"Date": None} if path.suffix == ".svg" else None)
@@ -106,7 +107,7 @@ class Frame:
         axes.set_title(self.name, loc="left", fontsize=10, color=INK)
         axes.set_title(f"cycle {last.cycle}, t = {last.time:.4g} s", loc="right", fontsize=9, color=INK)
         figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
-        draw_states(axes, self.states, inches)
+        draw_blocks(axes, self.states, inches)
         for state in self.states:
             for i, domain in enumerate(state.domains):
                 if not domain.outer:
@@ -152,7 +153,7 @@ def scale_for(box: tuple[float, float, float, float], scale: float) -> float:
 
 
 def paper(
-    box: tuple[float, float, float, float], inches: float, key: float, notes: float
+    box: tuple[float, float, float, float], inches: float, key: float = 0.0, notes: float = 0.0
 ) -> tuple[Figure, Axes]:
     """An empty picture of the range `box` in metres, `inches` per metre.
 
@@ -175,36 +176,43 @@ def paper(
     return figure, axes
 
 
-def draw_states(axes: Axes, states: list[State], inches: float) -> None:
-    """All blocks of all states, each drawn again only where it has moved, and the key to the shades."""
+def draw_blocks(axes: Axes, states: list[State], inches: float) -> None:
+    """All blocks of all states, each drawn again only where it has moved, and a key to the shades."""
     from matplotlib import colormaps
-    from matplotlib.patches import Patch
 
     drawn = _drawn(states, 0.25 * POINT / inches)
-    gone = _moved(states, drawn)
+    moved = list(_moved(states, drawn))
     shades = colormaps["YlGnBu"](np.linspace(0.3, 0.95, len(states)))
     for state, new, shade in zip(states, drawn, shades, strict=True):
-        moving = np.isin(state.outlines.address, list(gone))
+        moving = np.isin(state.outlines.address, moved)
         _still(axes, state.outlines, new & ~moving, inches)
         _blocks(axes, state.outlines, new & moving, (*shade[:3], 0.3), tuple(shade), inches)
     if len(states) > 1:
-        named = np.unique(np.linspace(0, len(states) - 1, min(len(states), KEY_STATES)).round().astype(int))
-        handles = [
-            Patch(
-                facecolor=(*shades[i][:3], 0.3),
-                edgecolor=shades[i],
-                label=f"{states[i].cycle}    {states[i].time:.4g} s",
-            )
-            for i in named
-        ]
-        axes.legend(
-            handles=handles,
-            loc="upper left",
-            bbox_to_anchor=(1.01, 1.0),
-            frameon=False,
-            fontsize=8,
-            title="cycle, time",
-        ).get_title().set_fontsize(8)
+        _key(axes, states, shades)
+
+
+def _key(axes: Axes, states: list[State], shades: Any) -> None:
+    """Which shade is which state, on the right of the picture."""
+    from matplotlib.patches import Patch
+
+    named = np.linspace(0, len(states) - 1, min(len(states), KEY_STATES)).round().astype(int)
+    patches = [
+        Patch(
+            facecolor=(*shades[i][:3], 0.3),
+            edgecolor=shades[i],
+            label=f"{states[i].cycle}    {states[i].time:.4g} s",
+        )
+        for i in named
+    ]
+    axes.legend(
+        handles=patches,
+        title="cycle, time",
+        loc="upper left",
+        bbox_to_anchor=(1.01, 1.0),
+        fontsize=8,
+        title_fontsize=8,
+        frameon=False,
+    )
 
 
 def _drawn(states: list[State], tolerance: float) -> list[Any]:

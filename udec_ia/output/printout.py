@@ -17,7 +17,7 @@ from typing import TypeVar
 import offsets.generated as g
 from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import Memory, getr, head, iget
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, point
 
 T = TypeVar("T")
@@ -111,7 +111,7 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
     linked: list[Column] = []
     for field in TABLE.group(kind).fields:
         if field.role == "head":
-            types = [HEAD_NAMES.get(head(h, iad), "?") for iad in addresses]
+            types = [HEAD_NAMES.get(iget(h, iad, HEAD), "?") for iad in addresses]
             described += [Column("type", "", types)] if len(codes) > 1 else []
         else:
             column = _field_column(h, addresses, field)

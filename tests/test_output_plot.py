@@ -1,0 +1,233 @@
+"""Pictures: the curves are the rounded outlines, frames collect states, files are numbered."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from handmade import ROUNDING, two_blocks
+from PIL import Image
+
+import offsets.generated as g
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
+from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.inspect.walk import corners, groups
+from udec_ia.output.animate import MOST, Animation
+from udec_ia.output.outline import (
+    CLOSE,
+    CURVE,
+    LINE,
+    MOVE,
+    contact_forces,
+    curves,
+    domain_polygons,
+    outlines,
+    snapshot,
+)
+from udec_ia.output.plot import LARGEST, Frame, Plots, _drawn, _moved, limits, scale_for
+
+ROUNDED_AREA = 1.0 - (4.0 - np.pi) * ROUNDING**2
+
+
+def shift(h: Memory, block: int, dx: float, dy: float) -> None:
+    """Move a block without turning it."""
+    putr(h, block, g.KX, getr(h, block, g.KX) + dx)
+    putr(h, block, g.KY, getr(h, block, g.KY) + dy)
+    for corner in corners(h, block):
+        for kx, ky in ((g.KXP, g.KYP), (g.KXCP, g.KYCP)):
+            putr(h, corner, kx, getr(h, corner, kx) + dx)
+            putr(h, corner, ky, getr(h, corner, ky) + dy)
+
+
+def area(polygon: np.ndarray) -> float:
+    """Area of a polygon, positive when it runs anticlockwise."""
+    x, y = polygon.T
+    return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def flattened(vertices: np.ndarray, codes: np.ndarray) -> np.ndarray:
+    """A path as a fine polygon: every cubic curve becomes 50 points."""
+    points = [vertices[0]]
+    t = np.linspace(0.0, 1.0, 50)[:, None]
+    i = 1
+    while i < len(codes):
+        if codes[i] == CURVE:
+            a, (b, c, d) = points[-1], vertices[i : i + 3]
+            points += list((1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d)
+            i += 3
+        else:
+            points += [vertices[i]] if codes[i] != CLOSE else []
+            i += 1
+    return np.array(points)
+
+
+@pytest.mark.parametrize("scheme", ALL_SCHEMES)
+def test_outlines_are_rounded_squares(scheme: str) -> None:
+    """Each outline is a closed clockwise path; its area is that of a square with four rounded corners."""
+    o = outlines(two_blocks(scheme).h)
+    vertices, codes, block = curves(o)
+    assert o.fixed.tolist() == [True, False]
+    assert o.centroid.round(6).tolist() == [[0.5, 0.5], [0.5, 1.5]]
+    for i in range(2):
+        path, kinds = vertices[block == i], codes[block == i]
+        assert (kinds[0], kinds[-1]) == (MOVE, CLOSE)
+        assert list(kinds).count(CURVE) == 4 * 2 * 3
+        # two cubic curves for a quarter circle are within 4e-6 of the radius: area within 3e-6 R^2
+        assert area(flattened(path, kinds)) == pytest.approx(-ROUNDED_AREA, abs=1e-5)
+
+
+def test_sharp_corners_stay_sharp() -> None:
+    """A corner with a radius that is not positive is drawn as it is; without rounding all are."""
+    h = two_blocks().h
+    first = corners(h, next(groups(h, "block")))[0]
+    putr(h, first, g.KRAD, -ROUNDING)
+    vertices, codes, block = curves(outlines(h))
+    assert area(flattened(vertices[block == 0], codes[block == 0])) == pytest.approx(
+        -ROUNDED_AREA - (1.0 - np.pi / 4.0) * ROUNDING**2, abs=1e-5
+    )
+    h.cr[g.DTOL] = 0.0
+    vertices, codes, block = curves(outlines(h))
+    assert codes[block == 1].tolist() == [MOVE, LINE, LINE, LINE, CLOSE]
+    assert area(vertices[block == 1][:-1]) == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize("scheme", ALL_SCHEMES)
+def test_forces_act_on_the_second_block(scheme: str) -> None:
+    """Normal force up from the lower block, shear force against the tangent (normal turned anticlockwise)."""
+    h = two_blocks(scheme).h
+    left, right = groups(h, "contact")
+    putr(h, left, g.KCFN, 300.0)
+    putr(h, left, g.KCFS, 40.0)
+    puti(h, right, g.KCCOD, 4)
+    found = contact_forces(h)
+    assert found.force == pytest.approx(np.array([[40.0, 300.0], [0.0, 0.0]]), abs=1e-3)
+    assert found.virtual.tolist() == [False, True]
+    assert found.link[1] == pytest.approx(np.array([[1.0, 1.0], [1.0, 1.0]]))
+
+
+@pytest.mark.parametrize("scheme", ALL_SCHEMES)
+def test_domain_polygons(scheme: str) -> None:
+    """The joint is closed and has no area; the outer loop goes around two rounded squares."""
+    inner, outer = domain_polygons(two_blocks(scheme).h)
+    assert (inner.outer, outer.outer) == (False, True)
+    assert abs(area(inner.polygon)) < 1e-6
+    # arcs are polygons of 5 chords: each quarter circle loses less than 2 % of its sector
+    sector = np.pi / 4.0 * ROUNDING**2
+    assert area(outer.polygon) == pytest.approx(-2.0 * ROUNDED_AREA, abs=8 * 0.02 * sector + 1e-6)
+
+
+def test_domain_around_sharp_corners() -> None:
+    """Without rounding the contacts stand at the corners themselves, and the outer loop is a rectangle."""
+    h = two_blocks().h
+    h.cr[g.DTOL] = 0.0
+    for x, contact in enumerate(groups(h, "contact")):
+        putr(h, contact, g.KXC, float(x))
+    for block in groups(h, "block"):
+        for corner in corners(h, block):
+            putr(h, corner, g.KRAD, 0.0)
+    _, outer = domain_polygons(h)
+    assert area(outer.polygon) == pytest.approx(-2.0)
+
+
+def test_what_stands_still_is_drawn_once() -> None:
+    h = two_blocks().h
+    lower, upper = groups(h, "block")
+    states = [snapshot(h)]
+    shift(h, upper, 0.3, 0.0)
+    states.append(snapshot(h))
+    states.append(snapshot(h))
+    drawn = _drawn(states, 1e-3)
+    assert [mask.tolist() for mask in drawn] == [[True, True], [False, True], [False, False]]
+    assert _moved(states, drawn) == {upper}
+    assert lower not in _moved(states, drawn)
+
+
+def test_limits_and_scale() -> None:
+    """The range holds the blocks; what flies off further than the first state is wide is cut."""
+    h = two_blocks().h
+    states = [snapshot(h)]
+    assert limits(states) == pytest.approx((-0.08, 1.08, -0.08, 2.08))
+    shift(h, list(groups(h, "block"))[1], 1000.0, 0.0)
+    states.append(snapshot(h))
+    assert limits(states)[1] == pytest.approx(1.0 + 2.0 + 0.08)
+    box = limits(states[:1])
+    assert scale_for(box, 0.2) == 0.2
+    assert scale_for(box, 1e6) * (box[3] - box[2]) == pytest.approx(LARGEST)
+    assert scale_for(box, 0.0) * (box[3] - box[2]) == pytest.approx(5.5)
+
+
+@pytest.mark.parametrize("scheme", ALL_SCHEMES)
+def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
+    """PLOT 1 adds to the frame, PLOT 0 starts the next one; each frame gives a PNG and an SVG that open."""
+    h = two_blocks(scheme).h
+    plots = Plots(tmp_path / "new" / "folder", "deck")
+    plots.draw(h, 1)
+    shift(h, list(groups(h, "block"))[1], 0.2, 0.1)
+    plots.draw(h, 1)
+    assert plots.files == []
+    plots.draw(h, 0, contacts=True, domains=True, addresses=True)
+    assert [path.name for path in plots.files] == ["deck-plot-1.png", "deck-plot-1.svg"]
+    files = plots.close()
+    assert [path.name for path in files[2:]] == ["deck-plot-2.png", "deck-plot-2.svg"]
+    assert plots.close() == files
+    for path in files[::2]:
+        with Image.open(path) as picture:
+            assert min(picture.size) > 300
+    assert all("</svg>" in path.read_text() for path in files[1::2])
+
+
+def test_addresses_are_written_in_the_picture(tmp_path: Path) -> None:
+    h = two_blocks().h
+    frame = Frame("deck")
+    frame.add(snapshot(h, contacts=True, domains=True, addresses=True))
+    texts = [text.get_text() for text in frame.figure().axes[0].texts]
+    wanted = [*groups(h, "block"), *groups(h, "contact"), iget(h, next(groups(h, "block")), g.KP)]
+    assert {str(iad) for iad in wanted} <= set(texts)
+    assert str(next(groups(h, "domain"))) in texts
+
+
+def test_only_two_kinds_of_plot(tmp_path: Path) -> None:
+    with pytest.raises(UdecError) as error:
+        Plots(tmp_path, "deck").draw(two_blocks().h, 2)
+    assert error.value.number == 28
+
+
+def test_matplotlib_is_loaded_only_to_draw() -> None:
+    """Starting the program must not pay for matplotlib."""
+    code = (
+        "import sys, json, udec_ia.output.plot, udec_ia.output.animate; print(json.dumps(list(sys.modules)))"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert not {"matplotlib", "PIL"} & set(json.loads(out.stdout))
+
+
+def test_animation_keeps_evenly_spaced_states() -> None:
+    h = two_blocks().h
+    animation = Animation("deck")
+    offered = 2 * MOST + 10
+    for cycle in range(offered):
+        h.ci[g.MCTOT] = cycle
+        animation.add(h)
+    cycles = [state.cycle for state in animation.states]
+    assert cycles == list(range(0, offered, animation.stride))
+    assert MOST / 2 <= len(cycles) <= MOST
+
+
+def test_animation_is_written_with_its_last_state(tmp_path: Path) -> None:
+    h = two_blocks().h
+    upper = list(groups(h, "block"))[1]
+    animation = Animation("deck")
+    for cycle in range(3):
+        h.ci[g.MCTOT] = cycle
+        animation.add(h)
+        shift(h, upper, 0.1, 0.0)
+    h.ci[g.MCTOT] = 3
+    path = animation.save(tmp_path / "run" / "deck.gif", h)
+    with Image.open(path) as picture:
+        assert picture.format == "GIF"
+        assert getattr(picture, "n_frames", 1) == 4

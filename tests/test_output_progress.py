@@ -1,0 +1,78 @@
+"""A terminal gets a bar, a pipe gets a few lines, a short run gets nothing."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+
+from udec_ia.output import progress
+from udec_ia.output.progress import LINES, Progress, summary
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def clock(monkeypatch: pytest.MonkeyPatch, seconds_per_look: float) -> None:
+    """A clock that advances by the same time whenever it is looked at."""
+    now = [0.0]
+
+    def monotonic() -> float:
+        now[0] += seconds_per_look
+        return now[0]
+
+    monkeypatch.setattr(progress, "monotonic", monotonic)
+
+
+def run(stream: io.StringIO, total: int = 1000) -> str:
+    bar = Progress(stream, total, 0.002, 0.1)
+    for done in range(10, total + 1, 10):
+        bar.update(done, 0.002 * done, 1234.5, 3, 1)
+    bar.close()
+    bar.close()
+    return stream.getvalue()
+
+
+def test_a_long_run_in_a_pipe_gives_ten_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, 60.0)
+    lines = run(io.StringIO()).splitlines()
+    assert len(lines) == LINES
+    assert [line.split(":")[0] for line in lines] == [f"cycle {n} of 1000" for n in range(100, 1001, 100)]
+    for part in ("cycles/s", "t = 2 s", "dt 0.002 s (0.1 of critical)", "1.23e+03 N/m", "contacts +3 -1"):
+        assert part in lines[-1]
+
+
+def test_few_cycles_give_no_more_lines_than_updates(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, 60.0)
+    assert len(run(io.StringIO(), 30).splitlines()) == 3
+
+
+def test_a_short_run_in_a_pipe_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, 0.001)
+    assert run(io.StringIO()) == ""
+
+
+def test_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    coloured = run(Terminal())
+    assert "1000/1000" in coloured
+    assert "contacts +3 -1" in coloured
+    assert "\x1b[3" in coloured
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b[3" not in run(Terminal())
+
+
+def test_summary_is_one_line() -> None:
+    files = [Path("/some/where") / name for name in ("a.h5", "a-plot-1.png", "a-plot-1.svg")]
+    line = summary(1300, 2.6, 2, 1, 89443.2, files, 1.23)
+    assert line == (
+        "1300 cycles (t = 2.6 s), 2 blocks, 1 contacts, largest contact force 8.944e+04 N/m; "
+        "wrote a.h5, a-plot-1.png, a-plot-1.svg; 1.2 s"
+    )
+    assert "no file written" in summary(0, 0.0, 0, 0, 0.0, [], 0.1)
+    assert "and 2 more" in summary(0, 0.0, 0, 0, 0.0, [*files, *files], 0.1)

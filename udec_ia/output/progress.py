@@ -1,0 +1,81 @@
+"""How a run is going: a bar on a terminal, a few plain lines elsewhere, and one line when it is over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import monotonic
+from typing import TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+
+LINES = 10  # plain lines for one CYCLE command, at most
+QUIET = 2.0  # seconds that a run must have lasted before it says anything
+NAMED_FILES = 4  # files that the summary names; of more, their number
+
+
+class Progress:
+    """Progress of one CYCLE command.
+
+    stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
+    total: cycles of the command. tdel: time-step in s. frac: its share of the critical one.
+    """
+
+    def __init__(self, stream: TextIO, total: int, tdel: float, frac: float) -> None:
+        self.stream = stream
+        self.total = total
+        self.step = f"dt {tdel:.3g} s ({frac:.3g} of critical)"
+        self.started = monotonic()
+        self.lines = 0
+        self.bar: Bar | None = None
+        if stream.isatty():
+            columns = (
+                BarColumn(24),
+                TextColumn("{task.completed}/{task.total}"),
+                TextColumn("{task.description}"),
+            )
+            console = Console(file=stream, highlight=False)
+            self.bar = Bar(*columns, TimeRemainingColumn(), console=console, transient=True)
+            self.task = self.bar.add_task(self.step, total=total)
+            self.bar.start()
+
+    def update(self, done: int, time: float, unbalanced: float, made: int, broken: int) -> None:
+        """`done` cycles of the command are over.
+
+        time: in s since the first cycle; unbalanced: largest force sum of a free block in N/m; made, broken:
+        contacts made and broken so far.
+        """
+        elapsed = monotonic() - self.started
+        rate = done / elapsed if elapsed > 0.0 else 0.0
+        state = (
+            f"{rate:,.0f} cycles/s, t = {time:.4g} s, {self.step}, unbalanced force {unbalanced:.3g} N/m, "
+            f"contacts +{made} -{broken}"
+        )
+        if self.bar is not None:
+            self.bar.update(self.task, completed=done, description=state)
+        elif elapsed >= QUIET and done * LINES >= (self.lines + 1) * self.total:
+            self.lines = done * LINES // self.total
+            print(f"cycle {done} of {self.total}: {state}", file=self.stream, flush=True)
+
+    def close(self) -> None:
+        """Take the bar away; safe to call again."""
+        if self.bar is not None:
+            self.bar.stop()
+            self.bar = None
+
+
+def summary(
+    cycles: int, time: float, blocks: int, contacts: int, force: float, files: list[Path], wall: float
+) -> str:
+    """The line that ends every run.
+
+    cycles: all of the run; time: in s; force: largest contact force in N/m; wall: wall time in s.
+    """
+    names = ", ".join(path.name for path in files[:NAMED_FILES])
+    more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
+    written = f"wrote {names}{more}" if files else "no file written"
+    return (
+        f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
+        f"largest contact force {force:.4g} N/m; {written}; {wall:.1f} s"
+    )
