@@ -6,9 +6,11 @@ from pathlib import Path
 from time import monotonic
 from typing import TextIO
 
-from rich.console import Console
-from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+from rich.console import Console, Group
+from rich.live import Live
+from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
+from rich.text import Text
 
 LINES = 10  # plain lines for one CYCLE command, at most
 QUIET = 2.0  # seconds that a run must have lasted before it says anything
@@ -28,17 +30,18 @@ class Progress:
         self.step = f"dt {tdel:.3g} s ({frac:.3g} of critical)"
         self.started = monotonic()
         self.lines = 0
-        self.bar: Bar | None = None
+        self.bar = Bar(BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn(), expand=True)
+        self.task = self.bar.add_task("cycles", total=total)
+        self.live: Live | None = None
         if stream.isatty():
-            columns = (
-                BarColumn(24),
-                TextColumn("{task.completed}/{task.total}"),
-                TextColumn("{task.description}"),
+            self.live = Live(
+                self._view(self.step), console=Console(file=stream, highlight=False), transient=True
             )
-            console = Console(file=stream, highlight=False)
-            self.bar = Bar(*columns, TimeRemainingColumn(), console=console, transient=True)
-            self.task = self.bar.add_task(self.step, total=total)
-            self.bar.start()
+            self.live.start()
+
+    def _view(self, state: str) -> Group:
+        """The bar, and below it the numbers, on as many lines as the terminal needs."""
+        return Group(self.bar, Text(state))
 
     def update(self, done: int, time: float, unbalanced: float, made: int, broken: int) -> None:
         """`done` cycles of the command are over.
@@ -52,17 +55,18 @@ class Progress:
             f"{rate:,.0f} cycles/s, t = {time:.4g} s, {self.step}, unbalanced force {unbalanced:.3g} N/m, "
             f"contacts +{made} -{broken}"
         )
-        if self.bar is not None:
-            self.bar.update(self.task, completed=done, description=state)
+        if self.live is not None:
+            self.bar.update(self.task, completed=done)
+            self.live.update(self._view(state))
         elif elapsed >= QUIET and done * LINES >= (self.lines + 1) * self.total:
             self.lines = done * LINES // self.total
             print(f"cycle {done} of {self.total}: {state}", file=self.stream, flush=True)
 
     def close(self) -> None:
         """Take the bar away; safe to call again."""
-        if self.bar is not None:
-            self.bar.stop()
-            self.bar = None
+        if self.live is not None:
+            self.live.stop()
+            self.live = None
 
 
 def summary(
