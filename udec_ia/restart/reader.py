@@ -21,9 +21,10 @@ from offsets.table import Table, TableError, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check
+from udec_ia.inspect.table import table
 from udec_ia.restart.layout import common_places, differences
 from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
-from udec_ia.restart.seal import VERSION, read_sealed
+from udec_ia.restart.seal import read_sealed
 
 LINKS = 6  # invariants up to this number are about lists and pointers, those above it about the physics
 SHOWN = 3  # differences or violations that a refusal lists
@@ -52,13 +53,12 @@ def opened(path: Path) -> Iterator[h5py.File]:
     if not path.is_file():
         raise RefusedError("is not a file", OTHER_FILE)
     with path.open("rb") as stream:
-        data = read_sealed(stream, path.stat().st_size)
+        data, version = read_sealed(stream, path.stat().st_size)
     with h5py.File(io.BytesIO(data), "r") as file:
         if attribute(file, "/", "format") != "udec_ia restart":
             raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)
-        major = int(file.attrs["format_version"][0])
-        if major != VERSION[0]:
-            raise RefusedError(f"has format {major} inside, and this program reads format {VERSION[0]}")
+        if tuple(file.attrs["format_version"]) != version:
+            raise RefusedError("is damaged: its first lines name another format version than the rest")
         if file.attrs.get("complete") != 1:
             raise RefusedError("is not complete: the program that wrote it did not come to the end")
         yield file
@@ -133,11 +133,11 @@ def _values(file: h5py.File, name: str, dtype: np.dtype[Any], shape: tuple[int, 
     return node[()]
 
 
-def read_common(file: h5py.File, scheme: Scheme, table: Table) -> tuple[Any, Any]:
+def read_common(file: h5py.File, scheme: Scheme, layout: Table) -> tuple[Any, Any]:
     """Integers and reals of the common block, in the order of the field table."""
     parts: dict[bool, list[Any]] = {False: [], True: []}
     types = {False: np.dtype("<i8"), True: scheme.real_type.newbyteorder("<")}
-    for field, _ in common_places(table):
+    for field, _ in common_places(layout):
         shape = (field.count,) if field.count > 1 else ()
         values = _values(file, f"common/{field.name}", types[field.real], shape)
         parts[field.real].append(np.atleast_1d(values))
@@ -159,7 +159,10 @@ def _read_state(file: h5py.File) -> MainArray:
         raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} cannot be in {scheme.name}")
     words = _values(file, "heap/IA", scheme.int_type.newbyteorder("<"), (mfree - 1,))
     _check_sum(file, "heap/IA", words)
-    array = MainArray(scheme, max(mtop, 1))
+    try:
+        array = MainArray(scheme, max(mtop, 1))
+    except (MemoryError, ValueError) as error:  # NumPy raises the latter beyond 2**63 bytes
+        raise RefusedError(f"asks for {mtop} words, more memory than there is") from error
     array.fixed = bool(file["heap/IA"].attrs["mtop_fixed"])
     array.h.ia[: mfree - 1] = words
     array.h.ci[:] = integers
@@ -168,7 +171,23 @@ def _read_state(file: h5py.File) -> MainArray:
 
 
 def _check_heap(array: MainArray) -> None:
-    """Refuse a heap whose links are broken; forces and overlaps that have run away can be looked at."""
-    broken = [violation.message for violation in check(array) if violation.invariant <= LINKS]
-    if broken:
-        raise RefusedError(f"holds an unsound heap: {shorten(broken)}")
+    """Refuse a heap whose links are broken or whose materials do not exist.
+
+    Compiled routines follow both without a further test. Forces and overlaps that have run away are
+    taken: such a state is there to be looked at.
+    """
+    faults = [violation.message for violation in check(array) if violation.invariant <= LINKS]
+    if not faults:
+        faults = _wrong_materials(array)
+    if faults:
+        raise RefusedError(f"holds an unsound heap: {shorten(faults)}")
+
+
+def _wrong_materials(array: MainArray) -> list[str]:
+    count = next(field.count for field in read_table().common if field.name == "AKN")
+    faults = []
+    for kind, name in (("block", "KMAT"), ("contact", "KCM")):
+        rows = table(array, kind)
+        wrong = rows[(rows[name] < 1) | (rows[name] > count)]
+        faults += [f"{name} of {kind}@{row['address']} is {row[name]}, not 1 to {count}" for row in wrong]
+    return faults

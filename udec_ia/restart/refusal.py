@@ -35,7 +35,7 @@ def refusing(path: Path) -> Iterator[None]:
     except OSError as error:
         raise UdecError(29, f"{path} cannot be read: {error.strerror or error}", OTHER_FILE) from error
     except MemoryError as error:
-        raise UdecError(29, f"{path} asks for more memory than there is", OLDER_FILE) from error
+        raise UdecError(29, f"{path} is larger than the memory that is left", OLDER_FILE) from error
     except Exception as error:  # the HDF5 library has no common base class for its complaints
         what = f"{path} cannot be understood: {type(error).__name__}: {error}"
         raise UdecError(29, what, OLDER_FILE) from error

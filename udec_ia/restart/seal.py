@@ -24,7 +24,7 @@ sha256 {digest}
 The rest of this file, from byte 512 on, is HDF5: h5dump and h5py open it as it is.
 `udec info FILE` says what it holds; docs/restart-format.md describes it.
 """
-PATTERN = re.compile(rb"format (\d{1,9})\.(\d{1,9})\nbytes (\d{1,18})\nsha256 ([0-9a-f]{64})\n")
+PATTERN = re.compile(rb"format (\d{1,9})\.(\d{1,9})\nbytes (\d{1,18})\nsha256 [0-9a-f]{64}\n")
 
 
 def seal(image: memoryview, version: tuple[int, int] = VERSION) -> bytes:
@@ -35,8 +35,12 @@ def seal(image: memoryview, version: tuple[int, int] = VERSION) -> bytes:
     return text.ljust(SIZE - 1) + b"\n"
 
 
-def read_sealed(file: BinaryIO, file_size: int) -> bytes:
-    """The whole file, seal included; RefusedError unless every byte is as it was when it was sealed."""
+def read_sealed(file: BinaryIO, file_size: int) -> tuple[bytes, tuple[int, int]]:
+    """The whole file, seal included, and its format version.
+
+    RefusedError unless every byte is as it was when it was sealed; the version is left to be compared
+    with the one inside, since the checksum does not cover it.
+    """
     front = file.read(SIZE)
     version, size = _read_front(front)
     if file_size < SIZE + size:
@@ -47,7 +51,7 @@ def read_sealed(file: BinaryIO, file_size: int) -> bytes:
     data = file.read(SIZE + size)
     if data[:SIZE] != seal(memoryview(data)[SIZE:], version):
         raise RefusedError("is damaged: its checksum (SHA-256) is wrong")
-    return data
+    return data, version
 
 
 def _read_front(front: bytes) -> tuple[tuple[int, int], int]:

@@ -155,5 +155,9 @@ def _write_provenance(file: h5py.File) -> None:
 def _write_volatile(file: h5py.File) -> None:
     """/volatile: when and where; of fixed length, so that nothing else moves."""
     volatile = file.create_group("volatile")
-    volatile["date"] = text(datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    volatile["date"] = text(_now())
     volatile["host"] = text(platform.node().encode()[:HOST_LENGTH].ljust(HOST_LENGTH, b"\0"))
+
+
+def _now() -> str:
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,0 +1,408 @@
+"""RESTART refuses every file that SAVE did not write as it is, as error 29, and says why."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from handmade import two_blocks
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from offsets import generated as g
+from offsets.table import TABLE
+from udec_ia import __version__
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import puti, putr
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.inspect.walk import groups
+from udec_ia.restart import info, load, save
+from udec_ia.restart.layout import text
+from udec_ia.restart.seal import SIZE, seal
+
+SCHEMES = tuple(ALL_SCHEMES)
+SETTINGS = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+ARRAYS = {name: two_blocks(name) for name in SCHEMES}
+Edit = Callable[[h5py.File], None]
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> Path:
+    return save(ARRAYS["i32r64"], tmp_path / "two.h5", ["START"])
+
+
+@pytest.fixture(scope="module")
+def images(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """The bytes of a good file of each scheme."""
+    folder = tmp_path_factory.mktemp("good")
+    return {name: save(array, folder / f"{name}.h5").read_bytes() for name, array in ARRAYS.items()}
+
+
+def refusal(path: Path, read: Callable[[Path], Any] = load) -> str:
+    """What `load` says about the file at `path`, without its name."""
+    with pytest.raises(UdecError) as caught:
+        read(path)
+    error = caught.value
+    assert error.number == 29
+    assert error.detail.startswith(f"{path} ")
+    assert error.advice
+    return error.detail.removeprefix(f"{path} ")
+
+
+def edit(path: Path, change: Edit) -> None:
+    """Change the HDF5 part and seal it again, as a program that means to deceive would."""
+    with h5py.File(path, "r+") as file:
+        change(file)
+    image = path.read_bytes()[SIZE:]
+    path.write_bytes(seal(memoryview(image)) + image)
+
+
+def test_what_is_not_a_restart_file(tmp_path: Path) -> None:
+    assert refusal(tmp_path / "none.h5") == "does not exist"
+    assert refusal(tmp_path / "no\0name") == "does not exist"
+    assert refusal(tmp_path) == "is not a file"
+    path = tmp_path / "file.h5"
+    for content, what in (
+        (b"", "is empty"),
+        (b"START\nBLOCK 0 0 0 1 1 1\n", "is not a restart file of udec_ia"),
+        (b"udec_ia rest", "is cut short: only 12 bytes are there"),
+        (b"udec_ia restart file\n" + b"?" * 1000, "is damaged: its first lines cannot be read"),
+    ):
+        path.write_bytes(content)
+        assert refusal(path) == what
+    for userblock in (0, 512):
+        with h5py.File(path, "w", userblock_size=userblock) as file:
+            file["x"] = 1
+        assert "is not a restart file" in refusal(path) or "but not a restart file" in refusal(path)
+
+
+def test_a_foreign_file_behind_a_good_seal(good: Path) -> None:
+    def clear(file: h5py.File) -> None:
+        file.attrs["format"] = text("another program's")
+
+    edit(good, clear)
+    assert refusal(good) == "is an HDF5 file, but not a restart file of udec_ia"
+
+
+def test_other_versions(good: Path) -> None:
+    image = good.read_bytes()[SIZE:]
+    good.write_bytes(seal(memoryview(image), (2, 7)) + image)
+    assert refusal(good) == "has format 2.7, and this program reads format 1"
+    assert refusal(good, info) == "has format 2.7, and this program reads format 1"
+    good.write_bytes(seal(memoryview(image), (1, 1)) + image)
+    assert refusal(good) == "is damaged: its first lines name another format version than the rest"
+
+
+def test_a_later_minor_version_is_read(good: Path) -> None:
+    def later(file: h5py.File) -> None:
+        file.attrs["format_version"] = np.array([1, 9], "<i4")
+        file["later"] = 1.0
+
+    edit(good, later)
+    image = good.read_bytes()[SIZE:]
+    good.write_bytes(seal(memoryview(image), (1, 9)) + image)
+    assert load(good)[1] == ["START"]
+    assert "1.9" in info(good)
+
+
+@pytest.mark.parametrize("size", [1, 20, 21, 100, 511, 512, 513, 4096, -1])
+def test_cut_short(good: Path, size: int) -> None:
+    data = good.read_bytes()
+    good.write_bytes(data[:size])
+    assert refusal(good).startswith("is cut short: ")
+
+
+def test_longer_than_it_was(good: Path) -> None:
+    good.write_bytes(good.read_bytes() + b"\0")
+    assert "and should have" in refusal(good)
+
+
+def put(name: str, value: Any) -> Edit:
+    """Put another dataset in the place of `name`, its attributes kept."""
+
+    def change(file: h5py.File) -> None:
+        kept = dict(file[name].attrs)
+        del file[name]
+        file[name] = value
+        file[name].attrs.update(kept)
+
+    return change
+
+
+def attr(place: str, name: str, value: Any) -> Edit:
+    def change(file: h5py.File) -> None:
+        file[place].attrs[name] = value
+
+    return change
+
+
+def without(name: str) -> Edit:
+    def change(file: h5py.File) -> None:
+        del file[name]
+
+    return change
+
+
+def without_attr(place: str, name: str) -> Edit:
+    def change(file: h5py.File) -> None:
+        del file[place].attrs[name]
+
+    return change
+
+
+def new_table(table: str) -> Edit:
+    def change(file: h5py.File) -> None:
+        put("layout/table", text(table))(file)
+        attr("layout", "sha256", text(hashlib.sha256(table.encode()).hexdigest()))(file)
+
+    return change
+
+
+def dangling(file: h5py.File) -> None:
+    del file["deck"]
+    file["deck"] = h5py.SoftLink("/nowhere")
+
+
+def folder(file: h5py.File) -> None:
+    del file["common/JUNK"]
+    file.create_group("common/JUNK")
+
+
+ONE_MORE = "KNEW  real  -   data   m     ours | a field of tomorrow\nKBRO "
+CASES: dict[str, tuple[Edit, str]] = {
+    "complete 0": (attr("/", "complete", np.int8(0)), "is not complete"),
+    "no complete": (without_attr("/", "complete"), "is not complete"),
+    "no format": (without_attr("/", "format"), "cannot be understood"),
+    "table changed": (put("layout/table", text("# nothing\n")), "the checksum of its field table is wrong"),
+    "field more": (
+        new_table(TABLE.read_text().replace("KBRO ", ONE_MORE)),
+        "was written with another field table: group block has KNEW in the file only",
+    ),
+    "field less": (
+        new_table(TABLE.read_text().replace("KBRO ", "#")),
+        "was written with another field table: group block has KBRO in this version only",
+    ),
+    "type": (
+        new_table(TABLE.read_text().replace("KMAT   int ", "KMAT   real")),
+        "group block has KMAT as real 4, 3 in the file, as int 3, 3 here",
+    ),
+    "wording": (new_table(TABLE.read_text() + "\n# more\n"), "field table: only the wording differs"),
+    "gibberish": (new_table("GROUP\n"), "field table: it cannot be read here: groups.table:1"),
+    "widths": (attr("heap/IA", "int_bits", np.int32(24)), "words of 24 and 64 bits, 2 to a real"),
+    "ratio": (attr("heap/IA", "ratio", np.int32(4)), "words of 32 and 64 bits, 4 to a real"),
+    "no widths": (without_attr("heap/IA", "real_bits"), "cannot be understood"),
+    "no heap": (without("heap/IA"), "cannot be understood"),
+    "no common": (without("common/AKN"), "cannot be understood"),
+    "common type": (put("common/JUNK", np.int32(0)), "/common/JUNK is int32() instead of int64()"),
+    "common shape": (put("common/AKN", np.zeros(49)), "/common/AKN is float64(49,) instead of float64(50,)"),
+    "common value": (put("common/NBLK", np.int64(3)), "the checksum of /common is wrong"),
+    "common folder": (folder, "/common/JUNK is no dataset"),
+    "big-endian": (put("common/GRAVX", np.array(0.0, ">f8")), "/common/GRAVX is >f8() instead of float64()"),
+    "deck type": (put("deck", 1.0), "/deck is float64() instead of |S8()"),
+    "deck link": (dangling, "cannot be understood"),
+    "deck text": (put("deck", np.array(b"\xff\xfe\n", "S3")), "cannot be understood"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_parts_that_contradict_each_other(good: Path, case: str) -> None:
+    change, what = CASES[case]
+    edit(good, change)
+    assert what in refusal(good)
+
+
+def test_the_other_table_names_the_version_to_use(good: Path) -> None:
+    edit(good, new_table(TABLE.read_text() + "\n# more\n"))
+    with pytest.raises(UdecError) as caught:
+        load(good)
+    assert caught.value.advice == f"read it with the version that wrote it, udec_ia {__version__}"
+    assert "not that of this program: only the wording differs" in info(good)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_a_word_changed_behind_a_good_seal(name: str, tmp_path: Path) -> None:
+    path = save(ARRAYS[name], tmp_path / "two.h5")
+
+    def change(file: h5py.File) -> None:
+        file["heap/IA"][5] += 1
+
+    edit(path, change)
+    assert refusal(path) == "is damaged: the checksum of /heap/IA is wrong"
+
+
+def commons(array: MainArray, **values: int) -> Edit:
+    """Set integers of the common block and its checksum."""
+
+    def change(file: h5py.File) -> None:
+        ci = array.h.ci.copy()
+        for name, value in values.items():
+            ci[getattr(g, name)] = value
+            file[f"common/{name}"][()] = value
+        digest = hashlib.sha256(ci.tobytes() + array.h.cr.tobytes()).hexdigest()
+        file["common"].attrs["sha256"] = text(digest)
+
+    return change
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("mfree", [-(2**63), -1, 0, 2**15, 2**31, 2**63 - 1])
+def test_mfree_out_of_range(name: str, mfree: int, tmp_path: Path) -> None:
+    path = save(ARRAYS[name], tmp_path / "two.h5")
+    edit(path, commons(ARRAYS[name], MFREE=mfree))
+    assert f"MFREE {mfree} and MTOP" in refusal(path)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("mtop", [-1, 0, 10, 2**63 - 1])
+def test_mtop_out_of_range(name: str, mtop: int, tmp_path: Path) -> None:
+    path = save(ARRAYS[name], tmp_path / "two.h5")
+    edit(path, commons(ARRAYS[name], MTOP=mtop))
+    what = refusal(path)
+    assert f"and MTOP {mtop} cannot be in {name}" in what or "more memory than there is" in what
+
+
+def test_sizes_that_only_exist_on_paper(tmp_path: Path) -> None:
+    """A dataset of 8 TB takes no room in a file until it is written; it must not take memory either."""
+    words = 2**40
+    array = ARRAYS["i64r64"]
+    path = save(array, tmp_path / "two.h5")
+
+    def change(file: h5py.File) -> None:
+        commons(array, MFREE=words + 1, MTOP=words)(file)
+        kept = dict(file["heap/IA"].attrs)
+        del file["heap/IA"]
+        file.create_dataset("heap/IA", (words,), "<i8", chunks=(65536,)).attrs.update(kept)
+
+    edit(path, change)
+    assert refusal(path) == "is damaged: /heap/IA is said to be larger than the file"
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_pointers_that_lead_astray(name: str, tmp_path: Path) -> None:
+    array = ARRAYS[name].copy()
+    second = list(groups(array.h, "block"))[1]
+    array.h.ci[g.IBPNT] = array.h.ci[g.MFREE] + 1000
+    assert refusal(save(array, tmp_path / "two.h5")).startswith("holds an unsound heap: ")
+    array.h.ci[g.IBPNT] = second
+    assert refusal(save(array, tmp_path / "two.h5")).startswith("holds an unsound heap: ")
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("material", [-1, 0, 51, 32767])
+def test_materials_that_do_not_exist(name: str, material: int, tmp_path: Path) -> None:
+    array = ARRAYS[name].copy()
+    (first, _) = groups(array.h, "block")
+    puti(array.h, first, g.KMAT, material)
+    what = refusal(save(array, tmp_path / "two.h5"))
+    assert what == f"holds an unsound heap: KMAT of block@{first} is {material}, not 1 to 50"
+
+
+def test_a_run_that_blew_up_can_be_looked_at(tmp_path: Path) -> None:
+    array = ARRAYS["i32r64"].copy()
+    for block in groups(array.h, "block"):
+        putr(array.h, block, g.KXD, np.nan)
+    restored, _ = load(save(array, tmp_path / "two.h5"))
+    assert np.isnan(restored.h.ra).sum() == 2
+
+
+FLIPS = st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.integers(1, 255)), max_size=4)
+FRONT_FLIPS = st.lists(st.tuples(st.integers(0, SIZE - 1), st.integers(1, 255)), max_size=2)
+
+FREE_TO_CHANGE = [index for index in range(g.NCOMI) if index != g.MTOP]  # the array itself has MTOP words
+
+
+@SETTINGS
+@given(
+    name=st.sampled_from(SCHEMES),
+    flips=FLIPS,
+    front=FRONT_FLIPS,
+    cut=st.one_of(st.none(), st.floats(0, 1)),
+    garbage=st.tuples(st.floats(0, 1), st.binary(max_size=16)),
+)
+def test_mutated_files(
+    tmp_path_factory: pytest.TempPathFactory,
+    images: dict[str, bytes],
+    name: str,
+    flips: list[tuple[float, int]],
+    front: list[tuple[int, int]],
+    cut: float | None,
+    garbage: tuple[float, bytes],
+) -> None:
+    image = images[name]
+    data = bytearray(image)
+    for place, mask in [(int(share * len(image)), mask) for share, mask in flips] + front:
+        data[place] ^= mask
+    at = int(garbage[0] * len(data))
+    data[at:at] = garbage[1]
+    if cut is not None:
+        del data[int(cut * len(data)) :]
+    path = tmp_path_factory.getbasetemp() / "mutated.h5"
+    path.write_bytes(data)
+    if bytes(data) == image:
+        assert load(path)[1] == []
+    else:
+        refusal(path)
+        refusal(path, info)
+
+
+@SETTINGS
+@given(
+    content=st.binary(max_size=2000),
+    front=st.sampled_from([b"", b"udec_ia restart file\n", b"\x89HDF\r\n\x1a\n"]),
+)
+def test_garbage(tmp_path_factory: pytest.TempPathFactory, content: bytes, front: bytes) -> None:
+    path = tmp_path_factory.getbasetemp() / "garbage.h5"
+    path.write_bytes(front + content)
+    refusal(path)
+
+
+@SETTINGS
+@given(
+    name=st.sampled_from(SCHEMES),
+    words=st.lists(
+        st.tuples(st.floats(0, 1, exclude_max=True), st.integers(-(2**15), 2**15 - 1)), max_size=5
+    ),
+    integers=st.lists(st.tuples(st.sampled_from(FREE_TO_CHANGE), st.integers(-(2**40), 2**40)), max_size=1),
+)
+def test_mad_heaps_in_good_files(
+    tmp_path_factory: pytest.TempPathFactory,
+    name: str,
+    words: list[tuple[float, int]],
+    integers: list[tuple[int, int]],
+) -> None:
+    """Any words in the heap, well saved: they come back as they are, or are refused; nothing hangs."""
+    array = ARRAYS[name].copy()
+    used = int(array.h.ci[g.MFREE]) - 1
+    for share, word in words:
+        array.h.ia[int(share * used)] = word
+    for index, value in integers:
+        array.h.ci[index] = value
+    path = tmp_path_factory.getbasetemp() / "mad.h5"
+    save(array, path)
+    with suppress(UdecError):
+        restored, deck = load(path)
+        assert [view.tobytes() for view in restored.h] == [view.tobytes() for view in array.h]
+        assert (restored.scheme, restored.fixed, deck) == (array.scheme, array.fixed, [])
+
+
+def test_a_refusal_names_what_was_meant(tmp_path: Path) -> None:
+    """The message that a user sees, whole."""
+    path = tmp_path / "deck.dat"
+    path.write_text("START\n")
+    with pytest.raises(UdecError) as caught:
+        load(path)
+    assert str(caught.value) == (
+        f"error 29: restart file cannot be used: {path} is not a restart file of udec_ia\n"
+        "RESTART reads files written by SAVE: give the name of one"
+    )
+
+
+def test_nothing_is_refused_without_reason(tmp_path: Path) -> None:
+    assert load(save(MainArray(scheme("i16r32")), tmp_path / "empty.h5"))[1] == []
