@@ -1,0 +1,221 @@
+"""The field table and what follows from it: the report's own tables, alignment, order, currency."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_words
+
+import offsets
+from offsets import RATIOS, Group, TableError, generated, lay_out, read_table
+from offsets.generate import files, stale
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.memory import find
+from udec_ia.heap.words import ALL_SCHEMES
+
+TABLE = read_table()
+GROUPS = pytest.mark.parametrize("group", TABLE.groups, ids=lambda group: group.name)
+
+
+def report_name(name: str) -> str:
+    return "<head code>" if name == "HEAD" else name
+
+
+@pytest.mark.parametrize(("ratio", "printed"), [(2, TWO_INTEGERS_TO_A_REAL), (1, ONE_INTEGER_TO_A_REAL)])
+def test_corner_offsets_are_those_of_the_report(ratio: int, printed: dict[str, int]) -> None:
+    """Appendix IV-2, page 66: all that it prints, in its order, and after it only what is ours."""
+    offset = {report_name(name): k for name, k in lay_out(TABLE.group("corner"), ratio).offset.items()}
+    assert list(offset)[: len(printed)] == list(printed)
+    assert {name: offset[name] for name in printed} == printed
+    assert all(field.ours for field in TABLE.group("corner").fields[len(printed) :])
+
+
+@pytest.mark.parametrize(("ratio", "printed"), [(2, TWO_INTEGERS_TO_A_REAL), (1, ONE_INTEGER_TO_A_REAL)])
+def test_generated_corner_offsets_are_those_of_the_report(ratio: int, printed: dict[str, int]) -> None:
+    for name, k in printed.items():
+        if name != "<head code>":
+            assert getattr(generated, name)[ratio >> 1] == k, name
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@GROUPS
+def test_layout_is_the_count_on_ones_fingers(group: Group, ratio: int) -> None:
+    counted, size = count_words([(f.name, f.real, f.count) for f in group.fields], ratio)
+    layout = lay_out(group, ratio)
+    assert layout.offset == counted
+    assert layout.size == size
+    assert getattr(generated, group.size_name)[ratio >> 1] == size
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@GROUPS
+def test_alignment_and_no_overlap(group: Group, ratio: int) -> None:
+    """Sizes are whole reals, so every group address is aligned; no two fields share a word."""
+    layout = lay_out(group, ratio)
+    assert layout.size % ratio == 0
+    words: list[int] = []
+    for field in group.fields:
+        k = layout.offset[field.name]
+        first = (k - 1) * ratio if field.real else k
+        words += range(first, first + field.count * (ratio if field.real else 1))
+    assert len(words) == len(set(words))
+    assert set(words) <= set(range(layout.size))
+
+
+@pytest.mark.parametrize("name", ALL_SCHEMES)
+def test_addresses_are_aligned_whatever_is_found(name: str) -> None:
+    array = MainArray(ALL_SCHEMES[name])
+    for group in TABLE.groups:
+        address = int(find(array.h, getattr(generated, group.size_name)))
+        assert address > 0
+        assert (address - 1) * array.h.ia.itemsize % array.h.ra.itemsize == 0
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@GROUPS
+def test_1980_fields_keep_order_and_offsets(group: Group, ratio: int) -> None:
+    """What is ours stands after the last 1980 word: without it every 1980 offset is the same."""
+    of_1980 = tuple(field for field in group.fields if not field.ours)
+    assert group.fields[: len(of_1980)] == of_1980
+    if not of_1980:
+        return
+    bare = Group(group.name, group.size_name, group.list_head, group.page, group.text, of_1980)
+    offset = lay_out(group, ratio).offset
+    assert lay_out(bare, ratio).offset == {field.name: offset[field.name] for field in of_1980}
+    words = [
+        offset[f.name] if not f.real else (offset[f.name] - 1) * ratio
+        for f in group.fields
+        if f.name != "HEAD"
+    ]
+    assert words == sorted(words)
+
+
+def test_names_are_unique() -> None:
+    """An offset is known by its name alone."""
+    names = [f.name for group in TABLE.groups for f in group.fields if f.role != "head"]
+    names += [f.name for f in TABLE.common] + [group.size_name for group in TABLE.groups]
+    names += [head.name for head in TABLE.heads]
+    assert len(names) == len(set(names))
+
+
+def test_common_block_indices_do_not_overlap() -> None:
+    for real, size in ((False, generated.NCOMI), (True, generated.NCOMR)):
+        places = [
+            getattr(generated, f.name) + i for f in TABLE.common if f.real == real for i in range(f.count)
+        ]
+        assert places == list(range(size))
+
+
+def test_pointers_name_a_kind_of_group() -> None:
+    kinds = {group.name for group in TABLE.groups} | {"item"}
+    for fields in (*(group.fields for group in TABLE.groups), TABLE.common):
+        for field in fields:
+            assert field.target is None or field.target in kinds, field.name
+
+
+def test_generated_files_are_current() -> None:
+    assert stale() == []
+    assert TABLE.digest == generated.DIGEST
+    assert len(files(TABLE)) == 1 + len(ALL_SCHEMES)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        "KZZ  integer  -  data  -  53 | neither int nor real",
+        "KZZ  int  -  data  53 | a column is missing",
+        "KZZ  int  -  data  -  53   no bar",
+        "KZZ  int*x  -  data  -  53 | not a number",
+        "GROUP  short  NVSH | columns are missing",
+        "HEAD  MBAD",
+    ],
+)
+def test_bad_lines_are_named(bad: str) -> None:
+    text = offsets.TABLE.read_text()
+    line = len(text.splitlines()) + 1
+    with pytest.raises(TableError, match=rf"groups\.table:{line}: ") as caught:
+        read_table(text + bad + "\n")
+    assert bad.strip() in str(caught.value)
+
+
+def test_a_field_before_the_first_group_is_refused() -> None:
+    with pytest.raises(TableError, match="before the first GROUP"):
+        read_table("KB  int  block  next  -  53 | lost\n")
+
+
+PROBE = """
+from offsets.generated import KX
+from udec_ia.heap.accessors import getr
+from udec_ia.heap.jit import kernel
+
+@kernel
+def probe(h, iad):
+    return getr(h, iad, KX)
+"""
+
+SCRIPT = """
+from offsets import generated as g
+from udec_ia.heap.accessors import putr
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.jit import is_cached
+from udec_ia.heap.memory import find
+from udec_ia.heap.probe import probe
+from udec_ia.heap.words import scheme
+
+kept = is_cached()
+h = MainArray(scheme("i32r64")).h
+iad = find(h, g.NVBL)
+putr(h, iad, g.KX, 7.5)
+print(kept, probe(h, iad), h.ci[g.MFREE] - iad, g.NVBL[1], g.KX[1])
+"""
+
+
+def run_probe(tree: Path, cache: Path) -> tuple[bool, float, int, int, int]:
+    """A compiled kernel in a process of its own, on an interpreted store of 7.5 in KX of a block.
+
+    Were kernels in the cache? KX as the kernel reads it; size of a block as the kernel's FIND takes it and
+    as the table has it; offset of KX in the table.
+    """
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(tree),
+        "UDEC_CACHE": str(cache),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT], cwd=tree, env=environment, capture_output=True, text=True, timeout=240
+    )
+    assert done.returncode == 0, done.stderr
+    kept, value, taken, size, kx = done.stdout.split()
+    return kept == "True", float(value), int(taken), int(size), int(kx)
+
+
+def test_a_changed_table_changes_the_very_next_run(tmp_path: Path) -> None:
+    """With the same cache folder: kernels are kept as long as the table stays, and never a run longer."""
+    tree, cache = tmp_path / "tree", tmp_path / "cache"
+    here = offsets.TABLE.parent.parent
+    for package in ("offsets", "udec_ia"):
+        shutil.copytree(here / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
+    (tree / "udec_ia" / "heap" / "probe.py").write_text(PROBE)
+    first = run_probe(tree, cache)
+    again = run_probe(tree, cache)
+    assert (first[0], again[0]) == (False, True)
+    assert first[1:] == again[1:]
+    assert first[1] == 7.5
+    assert first[2] == first[3]
+
+    table = tree / "offsets" / "groups.table"
+    lines = table.read_text().splitlines()
+    at = next(i for i, line in enumerate(lines) if line.startswith("KX "))
+    lines.insert(at, "KXNEW  real  -  data  m  ours | a field before KX")
+    table.write_text("\n".join(lines) + "\n")
+    changed = run_probe(tree, cache)
+    assert changed[4] == first[4] + 1
+    assert changed[3] > first[3]
+    assert changed[1] == 7.5
+    assert changed[2] == changed[3]
