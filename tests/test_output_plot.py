@@ -134,6 +134,20 @@ def test_domain_around_sharp_corners() -> None:
     assert area(outer.polygon) == pytest.approx(-2.0)
 
 
+def test_virtual_contacts_add_no_area_to_a_domain() -> None:
+    """Wherever a virtual contact happens to stand, the loop crosses there and back by the same way.
+
+    With the right contact virtual, the loop of the joint closes along it, from one block's arc to the other's
+    and so does the outer loop: together they still cover what they covered before.
+    """
+    h = two_blocks().h
+    before = sum(area(domain.polygon) for domain in domain_polygons(h))
+    right = list(groups(h, "contact"))[1]
+    puti(h, right, g.KCCOD, 4)
+    putr(h, right, g.KXC, 17.0)
+    assert sum(area(domain.polygon) for domain in domain_polygons(h)) == pytest.approx(before)
+
+
 def test_what_stands_still_is_drawn_once() -> None:
     h = two_blocks().h
     lower, upper = groups(h, "block")

@@ -194,12 +194,17 @@ def domain_polygons(h: Memory) -> Iterator[Domain]:
 
 
 def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
-    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7)."""
+    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7).
+
+    Each step begins where the last one ended, but for a virtual contact: there the loop crosses to the other
+    block, and back by the same way.
+    """
     steps = list(loop(h, domain))
     for (before, block), (item, _) in zip([steps[-1], *steps[:-1]], steps, strict=True):
+        previous, start = _stand(h, before, block)
         corner, place = _stand(h, item, block)
+        yield start
         if corner:
-            previous, start = _stand(h, before, block)
             yield from _arc(
                 h, corner, start if previous == corner else _tangent(h, corner, arriving=True), place
             )
@@ -208,16 +213,22 @@ def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
 
 
 def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
-    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place."""
+    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place.
+
+    Where a virtual contact stands means nothing: it is taken to the beginning of its corner's arc.
+    """
     if kind_of(h, item) == "corner":
-        is_round = getr(h, item, g.KRAD) > 0.0
-        place = _tangent(h, item, arriving=False) if is_round else point(h, item, g.KXP, g.KYP)
-        return item if is_round else 0, place
+        rounded = getr(h, item, g.KRAD) > 0.0
+        place = _tangent(h, item, arriving=False) if rounded else point(h, item, g.KXP, g.KYP)
+        return item if rounded else 0, place
     first = iget(h, item, g.KB1) == block
     corner = iget(h, item, g.KCP1 if first else g.KCP2)
-    on_edge = iget(h, item, g.KCCOD) in (VIRTUAL, EDGE_CORNER if first else CORNER_EDGE)
-    is_round = not on_edge and getr(h, corner, g.KRAD) > 0.0
-    return corner if is_round else 0, point(h, item, g.KXC, g.KYC)
+    code = iget(h, item, g.KCCOD)
+    rounded = getr(h, corner, g.KRAD) > 0.0
+    if code == VIRTUAL:
+        return 0, _tangent(h, corner, arriving=True) if rounded else point(h, corner, g.KXP, g.KYP)
+    on_arc = rounded and code != (EDGE_CORNER if first else CORNER_EDGE)
+    return corner if on_arc else 0, point(h, item, g.KXC, g.KYC)
 
 
 def _tangent(h: Memory, corner: int, arriving: bool) -> tuple[float, float]:
