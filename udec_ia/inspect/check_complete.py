@@ -149,26 +149,34 @@ def _inside(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
     return np.asarray(crossed % 2 == 1)
 
 
+def _in_rounded(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
+    """True for each point that lies in the rounded outline of its block: the polygon without its tips."""
+    pair, place = ragged(o.count[block])
+    j = o.first[block[pair]] + place
+    from_centre = point[pair] - o.c[j]
+    tip = (dot(from_centre, o.t[j]) >= 0) & (dot(from_centre, o.t[o.after[j]]) <= 0) & (o.r[j] > 0)
+    tip &= (np.hypot(*from_centre.T) > o.r[j]) & (np.hypot(*(point[pair] - o.p[j]).T) <= o.d)
+    in_tip = np.bincount(pair[tip], minlength=len(block)) > 0
+    return _inside(o, point, block) & ~in_tip
+
+
 def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
-    """Pairs of blocks with straight edges that cross, or of which one lies inside the other."""
+    """Pairs of blocks whose straight edges cross, or of which one has a point of its outline in the other."""
+    start = o.p[o.before] + o.start[:, None] * o.t
+    end = o.p[o.before] + o.end[:, None] * o.t
+    outwards = o.p - o.c
+    top = o.c + (np.maximum(o.r, 0) / np.maximum(np.hypot(*outwards.T), o.slack))[:, None] * outwards
     pair, place = ragged(o.count[a] * o.count[b])
     i = o.first[a[pair]] + place // o.count[b[pair]]
     j = o.first[b[pair]] + place % o.count[b[pair]]
-    ends = [
-        (o.p[o.before[k]] + o.start[k][:, None] * o.t[k], o.p[o.before[k]] + o.end[k][:, None] * o.t[k])
-        for k in (i, j)
-    ]
     slack = 2 * np.maximum(o.slack[i], o.slack[j])
-    sides = []
-    for (p, q), k in ((ends[0], j), (ends[1], i)):
-        u, v = (dot(end - o.p[k], o.e[k]) for end in (p, q))
-        sides.append((np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack))
-    crossed = np.unique(pair[sides[0] & sides[1]])
-    found = {(int(o.block[a[k]]), int(o.block[b[k]])) for k in crossed}
+    cut = np.ones(len(pair), bool)
+    for k, m in ((i, j), (j, i)):
+        u, v = (dot(point[k] - o.p[m], o.e[m]) for point in (start, end))
+        cut &= (np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack)
+    bad = [pair[cut]]
     for inner, outer in ((a, b), (b, a)):
         pair, place = ragged(o.count[inner])
         k = o.first[inner[pair]] + place
-        start = o.p[o.before[k]] + o.start[k][:, None] * o.t[k]
-        swallowed = np.bincount(pair[~_inside(o, start, outer[pair])], minlength=len(inner)) == 0
-        found |= {(int(o.block[a[k]]), int(o.block[b[k]])) for k in np.flatnonzero(swallowed)}
-    return sorted(found)
+        bad += [pair[_in_rounded(o, point[k], outer[pair])] for point in (start, end, top)]
+    return [(int(o.block[a[k]]), int(o.block[b[k]])) for k in np.unique(np.concatenate(bad))]

@@ -12,7 +12,7 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import HOSTS, KR, LISTED, TABLE, State, names
+from udec_ia.inspect.check_groups import FORWARD, HOSTS, KL, KR, LISTED, TABLE, State, names
 from udec_ia.kernels.touch import VIRTUAL
 
 (KNB,) = names("corner", "host")
@@ -75,8 +75,17 @@ def _check_items(state: State, block: int, ring: list[int]) -> None:
                 )
         if state.get(iad, back) != before:
             state.report(
-                3, f"{back} of {name} is {state.get(iad, back)}, but {before} precedes it on block@{block}"
+                3,
+                f"{back} of {name} is {state.get(iad, back)}, but {_link(state, block, before)} leads to it, "
+                f"on block@{block}",
             )
+
+
+def _link(state: State, block: int, iad: int) -> str:
+    """The clockwise link of the item at `iad` on `block`, in words."""
+    if state.kind_at(iad) == "corner":
+        return f"{KL} of corner@{iad}"
+    return f"{FORWARD[state.hosts(iad).index(block)]} of contact@{iad}"
 
 
 def _check_contacts(state: State) -> None:
