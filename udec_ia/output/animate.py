@@ -13,8 +13,8 @@ import numpy as np
 
 from offsets.generated import MCTOT
 from udec_ia.heap.accessors import Memory
+from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for
 from udec_ia.output.outline import State, snapshot
-from udec_ia.output.plot import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture

@@ -46,7 +46,7 @@ class Outlines:
 class Contacts:
     """All contacts: place (n, 2) in m, force on block KB2 (n, 2) in N/m, virtual (n,), address (n,).
 
-    link (n, 2, 2): the two corners that the contact belongs to, in m; for a virtual one all that is known.
+    link (n, 2, 2): the two corners that the contact belongs to, in m; of a virtual one all that is known.
     """
 
     place: Any
@@ -133,7 +133,7 @@ def curves(o: Outlines) -> tuple[Any, Any, Any]:
     d, r = o.rounding, o.radius[:, None]
     is_round = (o.radius > 0.0) & (d > 0.0)
     tangent_in, tangent_out = o.corner + d * back, o.corner + d * ahead
-    middle = o.centre + r * _unit(o.corner - o.centre)
+    middle = apex(o.corner, o.centre, o.radius)
     along = _unit(tangent_out - tangent_in)
     turn = 2.0 * np.arctan2(d, r)
     handle = r * (4.0 / 3.0) * np.tan(turn / 8.0)
@@ -159,6 +159,20 @@ def curves(o: Outlines) -> tuple[Any, Any, Any]:
     return vertices[keep], codes[keep], np.repeat(block[:, None], 8, axis=1)[keep]
 
 
+def apex(corner: Any, centre: Any, radius: Any) -> Any:
+    """The middle of the arc of each corner, or the corner itself where it is sharp.
+
+    Arrays: corner and centre (..., 2), radius (...).
+    """
+    r = radius[..., None]
+    return np.where(r > 0.0, centre + r * _unit(corner - centre), corner)
+
+
+def _apex(h: Memory, corners: Any) -> Any:
+    points = _points(h, corners, g.KXP, g.KYP), _points(h, corners, g.KXCP, g.KYCP)
+    return apex(*points, _reals(h, corners, g.KRAD))
+
+
 def _unit(v: Any) -> Any:
     length = np.hypot(v[..., 0], v[..., 1])[..., None]
     return v / np.where(length > 0.0, length, 1.0)
@@ -182,7 +196,7 @@ def contact_forces(h: Memory) -> Contacts:
         place=_points(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
         virtual=np.array([code == VIRTUAL for code in codes], bool),
-        link=_points(h, np.array(pairs, np.int64).reshape(-1, 2), g.KXP, g.KYP),
+        link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
         address=iads,
     )
 
@@ -215,7 +229,7 @@ def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
 def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
     """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place.
 
-    Where a virtual contact stands means nothing: it is taken to the beginning of its corner's arc.
+    Where a virtual contact stands means nothing: it is taken to the middle of its corner's arc.
     """
     if kind_of(h, item) == "corner":
         rounded = getr(h, item, g.KRAD) > 0.0
@@ -224,11 +238,9 @@ def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
     first = iget(h, item, g.KB1) == block
     corner = iget(h, item, g.KCP1 if first else g.KCP2)
     code = iget(h, item, g.KCCOD)
-    rounded = getr(h, corner, g.KRAD) > 0.0
-    if code == VIRTUAL:
-        return 0, _tangent(h, corner, arriving=True) if rounded else point(h, corner, g.KXP, g.KYP)
-    on_arc = rounded and code != (EDGE_CORNER if first else CORNER_EDGE)
-    return corner if on_arc else 0, point(h, item, g.KXC, g.KYC)
+    on_arc = getr(h, corner, g.KRAD) > 0.0 and code != (EDGE_CORNER if first else CORNER_EDGE)
+    place = tuple(_apex(h, np.int64(corner))) if code == VIRTUAL else point(h, item, g.KXC, g.KYC)
+    return corner if on_arc else 0, place
 
 
 def _tangent(h: Memory, corner: int, arriving: bool) -> tuple[float, float]:

@@ -8,34 +8,32 @@ has the colour of its material, what moves gets a shade for each state, the dark
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
-from udec_ia.output.outline import Contacts, Domain, Outlines, State, curves, snapshot
+from udec_ia.output.draw import (
+    HATCH_WIDTH,
+    INK,
+    draw_addresses,
+    draw_blocks,
+    draw_contacts,
+    draw_domains,
+    limits,
+    paper,
+    scale_for,
+)
+from udec_ia.output.outline import State, snapshot
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FIT = (7.0, 5.5)  # inches that the blocks may fill when no plot scale is set
-LARGEST = 40.0  # inches that they may fill at any plot scale
-MARGINS = (0.75, 0.25, 0.55, 0.45)  # left, right, bottom, top, in inches
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
 KEY_WIDTH = 1.35  # inches for the key on the right
-KEY_STATES = 10  # states that the key names; of more, an even selection
 DPI = 150
-POINT = 1.0 / 72.0  # inch
-INK = "#33302b"
-HATCH = "#b7ab93"
-HATCH_WIDTH = 0.4
-ROCKS = ("#ecdfc4", "#c9d6c5", "#d9c9d3", "#c7d5e0", "#e6cdb8", "#d5d3ae", "#cdc8e0", "#dfd7cf")
-TINTS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#a6761d")
-FORCE = "#b3261e"
-PIECE = 2000  # blocks in one compound path
 
 
 class Plots:
@@ -109,13 +107,11 @@ class Frame:
         figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
         draw_blocks(axes, self.states, inches)
         for state in self.states:
-            for i, domain in enumerate(state.domains):
-                if not domain.outer:
-                    _domain(axes, domain, TINTS[i % len(TINTS)])
+            draw_domains(axes, state.domains)
             if state.contacts is not None:
-                _contacts(axes, state.contacts, state.addresses, box)
+                draw_contacts(axes, state.contacts, state.addresses, box)
             if state.addresses:
-                _addresses(axes, state.outlines, inches)
+                draw_addresses(axes, state.outlines, inches)
         return figure
 
     def _notes(self) -> list[str]:
@@ -126,248 +122,3 @@ class Frame:
             return outer
         force = np.hypot(*last.contacts.force.T).max(initial=0.0)
         return [*outer, f"largest contact force: {force:.4g} N/m"]
-
-
-def limits(states: list[State]) -> tuple[float, float, float, float]:
-    """x and y range over all states, with a margin of 4 %.
-
-    What is thrown further than the whole first state is wide must not shrink the rest to a dot: the range
-    ends there.
-    """
-    lows = np.array([state.outlines.corner.min(axis=0) for state in states if len(state.outlines.corner)])
-    highs = np.array([state.outlines.corner.max(axis=0) for state in states if len(state.outlines.corner)])
-    if not len(lows):
-        return 0.0, 1.0, 0.0, 1.0
-    size = max(highs[0] - lows[0])
-    low = np.maximum(lows.min(axis=0), lows[0] - size) - 0.04 * size
-    high = np.minimum(highs.max(axis=0), highs[0] + size) + 0.04 * size
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
-
-
-def scale_for(box: tuple[float, float, float, float], scale: float) -> float:
-    """Inches per metre: `scale` if it is set and the picture stays within LARGEST, else what fits."""
-    width, height = box[1] - box[0], box[3] - box[2]
-    if scale > 0.0:
-        return min(scale, LARGEST / max(width, height))
-    return min(FIT[0] / width, FIT[1] / height)
-
-
-def paper(
-    box: tuple[float, float, float, float], inches: float, key: float = 0.0, notes: float = 0.0
-) -> tuple[Figure, Axes]:
-    """An empty picture of the range `box` in metres, `inches` per metre.
-
-    key, notes: inches to be left free on the right and at the bottom.
-    """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    left, right, bottom, top = MARGINS
-    bottom += notes
-    width, height = (box[1] - box[0]) * inches, (box[3] - box[2]) * inches
-    size = (max(left + width + right + key, 4.0), bottom + height + top)
-    figure = Figure(size, facecolor="white")
-    FigureCanvasAgg(figure)
-    axes = figure.add_axes((left / size[0], bottom / size[1], width / size[0], height / size[1]))
-    axes.set(xlim=box[:2], ylim=box[2:], xlabel="x (m)", ylabel="y (m)")
-    axes.tick_params(labelsize=8, colors=INK, width=0.6)
-    for spine in axes.spines.values():
-        spine.set(linewidth=0.6, color="#8a857c")
-    return figure, axes
-
-
-def draw_blocks(axes: Axes, states: list[State], inches: float) -> None:
-    """All blocks of all states, each drawn again only where it has moved, and a key to the shades."""
-    from matplotlib import colormaps
-
-    drawn = _drawn(states, 0.25 * POINT / inches)
-    moved = list(_moved(states, drawn))
-    shades = colormaps["YlGnBu"](np.linspace(0.3, 0.95, len(states)))
-    for state, new, shade in zip(states, drawn, shades, strict=True):
-        moving = np.isin(state.outlines.address, moved)
-        _still(axes, state.outlines, new & ~moving, inches)
-        _blocks(axes, state.outlines, new & moving, (*shade[:3], 0.3), tuple(shade), inches)
-    if len(states) > 1:
-        _key(axes, states, shades)
-
-
-def _key(axes: Axes, states: list[State], shades: Any) -> None:
-    """Which shade is which state, on the right of the picture."""
-    from matplotlib.patches import Patch
-
-    named = np.linspace(0, len(states) - 1, min(len(states), KEY_STATES)).round().astype(int)
-    patches = [
-        Patch(
-            facecolor=(*shades[i][:3], 0.3),
-            edgecolor=shades[i],
-            label=f"{states[i].cycle}    {states[i].time:.4g} s",
-        )
-        for i in named
-    ]
-    axes.legend(
-        handles=patches,
-        title="cycle, time",
-        loc="upper left",
-        bbox_to_anchor=(1.01, 1.0),
-        fontsize=8,
-        title_fontsize=8,
-        frameon=False,
-    )
-
-
-def _drawn(states: list[State], tolerance: float) -> list[Any]:
-    """For each state: which of its blocks are to be drawn, being new or visibly elsewhere than last drawn."""
-    last: dict[int, Any] = {}
-    masks = []
-    for state in states:
-        o = state.outlines
-        shape = np.hstack([o.corner, o.centre])
-        mask = np.zeros(len(o.address), bool)
-        for i, address in enumerate(o.address.tolist()):
-            here = shape[o.first[i] : o.first[i + 1]]
-            before = last.get(address)
-            if before is None or before.shape != here.shape or abs(here - before).max() > tolerance:
-                mask[i] = True
-                last[address] = here
-        masks.append(mask)
-    return masks
-
-
-def _moved(states: list[State], drawn: list[Any]) -> set[int]:
-    """Addresses of the blocks that are drawn more than once, or are gone in the last state."""
-    seen: set[int] = set()
-    moved: set[int] = set()
-    for state, mask in zip(states, drawn, strict=True):
-        now = set(state.outlines.address[mask].tolist())
-        moved |= now & seen
-        seen |= now
-    return moved | (seen - set(states[-1].outlines.address.tolist()))
-
-
-def _still(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
-    """Blocks in the colours of their materials; fixed ones hatched."""
-    for material in np.unique(o.material[chosen]):
-        face = ROCKS[(material - 1) % len(ROCKS)]
-        here = chosen & (o.material == material)
-        _blocks(axes, o, here & ~o.fixed, face, INK, inches)
-        _blocks(axes, o, here & o.fixed, face, INK, inches, hatched=True)
-
-
-def _blocks(
-    axes: Axes, o: Outlines, chosen: Any, face: Any, edge: Any, inches: float, hatched: bool = False
-) -> None:
-    """The chosen blocks in one colour, with their centroids: as few compound paths as the renderer bears."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Curve
-
-    if not chosen.any():
-        return
-    vertices, codes, block = curves(o)
-    thin = min(1.0, 0.03 * _diameter(o) * inches / POINT)
-    indices = np.flatnonzero(chosen)
-    for start in range(0, len(indices), PIECE):
-        piece = np.isin(block, indices[start : start + PIECE])
-        curve = Curve(vertices[piece], codes[piece])
-        if hatched:
-            axes.add_patch(PathPatch(curve, facecolor=face, edgecolor=HATCH, linewidth=0.0, hatch="////"))
-        axes.add_patch(
-            PathPatch(curve, facecolor="none" if hatched else face, edgecolor=edge, linewidth=thin)
-        )
-    size = min(6.0, 0.12 * _diameter(o) * inches / POINT)
-    x, y = o.centroid[chosen].T
-    axes.plot(x, y, "+", color=INK, markersize=size, markeredgewidth=0.6 * thin, zorder=2.5)
-
-
-def _diameter(o: Outlines) -> float:
-    """Median over the blocks of the greater side of the bounding box, in m."""
-    sides = np.maximum.reduceat(o.corner, o.first[:-1]) - np.minimum.reduceat(o.corner, o.first[:-1])
-    return float(np.median(sides.max(axis=1)))
-
-
-def _contacts(
-    axes: Axes, contacts: Contacts, addresses: bool, box: tuple[float, float, float, float]
-) -> None:
-    """Contacts as points, forces as lines (the longest 15 % of the picture), virtual contacts dashed."""
-    from matplotlib.collections import LineCollection
-
-    real = ~contacts.virtual
-    size = np.hypot(*contacts.force.T)
-    longest = size.max(initial=0.0)
-    if longest > 0.0:
-        half = contacts.force * (0.075 * max(box[1] - box[0], box[3] - box[2]) / longest)
-        lines = np.stack([contacts.place - half, contacts.place + half], axis=1)[real]
-        axes.add_collection(
-            LineCollection(list(lines), colors=FORCE, linewidths=1.2, capstyle="round", zorder=4)
-        )
-    for loaded, face in ((size > 0.0, FORCE), (size == 0.0, "white")):
-        x, y = contacts.place[real & loaded].T
-        axes.plot(
-            x,
-            y,
-            "o",
-            markersize=3,
-            markerfacecolor=face,
-            markeredgecolor=FORCE,
-            markeredgewidth=0.6,
-            zorder=5,
-        )
-    links = list(contacts.link[contacts.virtual])
-    axes.add_collection(LineCollection(links, colors=INK, linewidths=0.8, linestyles="--", zorder=4))
-    if addresses:
-        places = np.where(contacts.virtual[:, None], contacts.link.mean(axis=1), contacts.place)
-        for place, address in zip(places, contacts.address, strict=True):
-            axes.annotate(
-                str(address), place, (3, 3), textcoords="offset points", fontsize=6, color=FORCE, zorder=6
-            )
-
-
-def _domain(axes: Axes, domain: Domain, tint: str) -> None:
-    """One domain, tinted and named by its address."""
-    from matplotlib.patches import Polygon
-
-    axes.add_patch(Polygon(domain.polygon, facecolor=(tint, 0.35), edgecolor=tint, linewidth=1.2, zorder=3))
-    label = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    x, y = _middle(domain.polygon)
-    axes.text(
-        x, y, str(domain.address), ha="center", va="center", fontsize=6, color=tint, zorder=6, bbox=label
-    )
-
-
-def _middle(polygon: Any) -> tuple[float, float]:
-    """Where to name a domain: its centroid, or the middle of its points when it is a closed joint."""
-    x, y = (polygon - polygon[0]).T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    if abs(cross.sum()) < 1e-3 * np.ptp(x) * np.ptp(y) or cross.sum() == 0.0:
-        return tuple(polygon.mean(axis=0))
-    weighted = [(cross * (v + np.roll(v, -1))).sum() / (3.0 * cross.sum()) for v in (x, y)]
-    return float(polygon[0, 0] + weighted[0]), float(polygon[0, 1] + weighted[1])
-
-
-def _addresses(axes: Axes, o: Outlines, inches: float) -> None:
-    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read."""
-    middles = np.repeat(o.centroid, np.diff(o.first), axis=0)
-    room = np.maximum.reduceat(np.abs(o.corner - middles).max(axis=1), o.first[:-1]) * 2.0 * inches / POINT
-    for i in np.flatnonzero(room > 16.0):
-        axes.annotate(
-            str(o.address[i]),
-            o.centroid[i],
-            (0, 3),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=min(9.0, 0.2 * room[i]),
-            color=INK,
-            zorder=6,
-        )
-        if room[i] > 90.0:
-            for j in range(o.first[i], o.first[i + 1]):
-                place = o.corner[j] + 0.14 * (o.centroid[i] - o.corner[j])
-                axes.annotate(
-                    str(o.corner_address[j]),
-                    place,
-                    ha="center",
-                    va="center",
-                    fontsize=6,
-                    color="#6b665d",
-                    zorder=6,
-                )
