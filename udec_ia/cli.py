@@ -59,6 +59,9 @@ def _run(args: argparse.Namespace) -> int:
         print(f"udec: --mtop {args.mtop}: {error}", file=sys.stderr)
         return MISUSE
     model.animate = args.animate
+    model.progress = sys.stdout
+    if args.deck is not None:
+        model.name = args.deck.stem
     if not is_cached():
         print("compiling once for this machine, up to a minute ...", file=sys.stderr, flush=True)
     if args.deck is not None:
