@@ -9,9 +9,31 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from offsets.table import RATIOS, TABLE, Field, Group, HeadCode, Layout, Table, TableError, lay_out, read_table
+from offsets.table import (
+    RATIOS,
+    TABLE,
+    Field,
+    Group,
+    HeadCode,
+    Layout,
+    Table,
+    TableError,
+    lay_out,
+    read_table,
+)
 
-__all__ = ["RATIOS", "TABLE", "Field", "Group", "HeadCode", "Layout", "Table", "TableError", "lay_out", "read_table"]
+__all__ = [
+    "RATIOS",
+    "TABLE",
+    "Field",
+    "Group",
+    "HeadCode",
+    "Layout",
+    "Table",
+    "TableError",
+    "lay_out",
+    "read_table",
+]
 
 
 def _keep_current() -> None:

@@ -23,7 +23,13 @@ BANNER = "AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do no
 
 def python_text(table: Table) -> str:
     """The text of generated.py."""
-    lines = [f'"""{BANNER}', "", "Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.", '"""', ""]
+    lines = [
+        f'"""{BANNER}',
+        "",
+        "Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.",
+        '"""',
+        "",
+    ]
     lines += [f'DIGEST = "{table.digest}"', ""]
     lines += [f"{head.name} = {head.value}  # {head.text}" for head in table.heads]
     for group in table.groups:

@@ -6,13 +6,30 @@ numbers that the command takes, and raises UdecError with the number that the co
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import io
 from pathlib import Path
-from typing import Any
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Self, TextIO
 
+from offsets.generated import MCTOT, NBLK, NCON, TIME
+from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.ops import settings
+from udec_ia.ops.create import create
+from udec_ia.ops.cycle import cycle
+from udec_ia.ops.delete import delete
+from udec_ia.ops.rounding import round_corners
+from udec_ia.ops.split import Boxes, split
+
+if TYPE_CHECKING:
+    from udec_ia.output.animate import Animation
+    from udec_ia.output.plot import Plots
+
+RESTART_FILE = "restart.h5"
+PICTURES = 40  # pictures that an animation takes during one CYCLE command
+LINKS = 6  # invariants up to this number are about links, the others about numbers
 
 
 class Model:
@@ -27,8 +44,279 @@ class Model:
         self.array = MainArray(scheme(build), mtop)
         self.mtop = mtop
         self.out = Path(out)
+        self.name = "udec"
+        self.deck_log: list[str] = []
+        self.progress: TextIO | None = None
+        self.animate = False
+        self.started = False
+        self._saved: list[Path] = []
+        self._plots: Plots | None = None
+        self._animation: Animation | None = None
+        self._boxes = Boxes()
+        self._touched = False  # RSET has changed a word since the heap was last known to be sound
+        self._clock = perf_counter()
+        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
 
     @property
     def h(self) -> Memory:
         """The memory that the compiled routines work on (changes identity when the array grows)."""
         return self.array.h
+
+    # ---- starting, saving, ending
+
+    def start(self) -> None:
+        """START: a cold start; whatever was there is gone."""
+        self.array = MainArray(self.array.scheme, self.mtop)
+        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        self._boxes.forget()
+        self._touched = False
+        self.started = True
+
+    def save(self, path: str | Path | None = None) -> Path:
+        """SAVE: write the restart file, by default restart.h5 in the folder for files."""
+        from udec_ia.restart import save
+
+        written = save(self.array, self._file(path), self.deck_log)
+        if written not in self._saved:
+            self._saved.append(written)
+        return written
+
+    def restart(self, path: str | Path | None = None) -> None:
+        """RESTART: go on from a restart file. Error 29 if it cannot be used; the model is then as it was."""
+        from udec_ia.restart import load
+
+        self.array, self.deck_log = load(self._file(path))
+        self._boxes.forget()
+        self._touched = False
+        self.started = True
+
+    @classmethod
+    def restore(cls, path: str | Path) -> Self:
+        """A new model from a restart file, in the word scheme of the file."""
+        model = cls()
+        model.restart(Path(path).absolute())
+        return model
+
+    def stop(self) -> str:
+        """STOP: write what is still open and return the line that sums up the run."""
+        from udec_ia.inspect.table import table
+        from udec_ia.output.progress import summary
+
+        files = list(self._saved)
+        if self._plots is not None:
+            files += self._plots.close()
+        if self._animation is not None:
+            files.append(self._animation.save(self.out / f"{self.name}.gif", self.h))
+            self._animation = None
+        forces = table(self.array, "contact")["KCFN"]
+        h = self.h
+        return summary(
+            int(h.ci[MCTOT]),
+            float(h.cr[TIME]),
+            int(h.ci[NBLK]),
+            int(h.ci[NCON]),
+            float(forces.max(initial=0)),
+            files,
+            perf_counter() - self._clock,
+        )
+
+    def _ready(self, sound: bool = True) -> None:
+        """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
+
+        A routine that follows pointers must never meet one that RSET has damaged: error 20.
+        """
+        if not self.started:
+            self.start()
+        if sound and self._touched:
+            from udec_ia.inspect.check import check
+
+            broken = [violation for violation in check(self.array) if violation.invariant <= LINKS]
+            if broken:
+                advice = "RSET has damaged the main array: put the old value back, or RESTART"
+                raise UdecError(20, str(broken[0]), advice)
+            self._touched = False
+
+    def _file(self, path: str | Path | None) -> Path:
+        return self.out / (RESTART_FILE if path is None else path)
+
+    # ---- the block system
+
+    def block(self, *xy: float, material: int = 1, constitutive: int = 1) -> int:
+        """BLOCK: create the block with the corners x1, y1, x2, y2, ..., clockwise. Returns its address."""
+        if len(xy) % 2:
+            raise UdecError(8, f"{len(xy)} coordinates given")
+        self._ready()
+        return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
+
+    def split(self, x1: float, y1: float, x2: float, y2: float) -> int:
+        """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks."""
+        self._ready()
+        return split(self.array, self._boxes, x1, y1, x2, y2)
+
+    def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:
+        """DELETE: remove the blocks whose centroids lie in the range. Returns their number."""
+        self._ready()
+        self._boxes.forget()
+        return delete(self.array, (x1, x2, y1, y2))
+
+    def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
+        """FIX: hold the blocks in the range. Returns their number."""
+        self._ready()
+        return settings.set_fixity(self.array, (x1, x2, y1, y2), True)
+
+    def free(self, x1: float, x2: float, y1: float, y2: float) -> int:
+        """FREE: let the blocks in the range move. Returns their number."""
+        self._ready()
+        return settings.set_fixity(self.array, (x1, x2, y1, y2), False)
+
+    def change(
+        self,
+        x1: float,
+        x2: float,
+        y1: float,
+        y2: float,
+        type: str | None = None,
+        material: int | None = None,
+        constitutive: int | None = None,
+    ) -> int:
+        """CHANGE: attributes of the blocks in the range. Returns their number."""
+        self._ready()
+        return settings.change(self.array, (x1, x2, y1, y2), type, material, constitutive)
+
+    def generate(
+        self,
+        x1: float,
+        x2: float,
+        y1: float,
+        y2: float,
+        mode: str,
+        gridpoints: list[tuple[float, float]] | None = None,
+        zones: list[tuple[int, int, int]] | None = None,
+        edge: float | None = None,
+    ) -> None:
+        """GENERATE: zones of a fully-deformable block. Error 24 without a block in the range, else 23."""
+        self._ready()
+        settings.generate(self.array, (x1, x2, y1, y2))
+
+    def round(self, d: float) -> None:
+        """ROUND: round every corner with the circle tangent at the distance d from it."""
+        self._ready()
+        round_corners(self.array, d)
+
+    def rset(self, v: float, ia: int, ioff: int) -> None:
+        """RSET: put the real value v at offset ioff of the group at address ia."""
+        self._ready(sound=False)
+        settings.rset(self.array, v, ia, ioff)
+        self._boxes.forget()
+        self._touched = True
+
+    # ---- numbers
+
+    def property(
+        self,
+        material: int,
+        *,
+        bulk: float | None = None,
+        cohesion: float | None = None,
+        density: float | None = None,
+        kn: float | None = None,
+        friction: float | None = None,
+        ks: float | None = None,
+        g: float | None = None,
+    ) -> None:
+        """PROPERTY: set properties of a material; those not given stay as they are."""
+        self._ready(sound=False)
+        settings.set_property(
+            self.array,
+            material,
+            bulk=bulk,
+            cohesion=cohesion,
+            density=density,
+            kn=kn,
+            friction=friction,
+            ks=ks,
+            g=g,
+        )
+
+    def gravity(self, gx: float, gy: float) -> None:
+        """GRAVITY: accelerations in the x and y directions."""
+        self._ready(sound=False)
+        settings.set_gravity(self.array, gx, gy)
+
+    def damping(self, fcrit: float, freq: float, only: str | None = None) -> None:
+        """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping)."""
+        self._ready(sound=False)
+        settings.set_damping(self.array, fcrit, freq, only)
+
+    def fraction(self, f: float) -> None:
+        """FRACTION: fraction of the critical time-step to be used."""
+        self._ready(sound=False)
+        settings.set_fraction(self.array, f)
+
+    def scale(self, s: float) -> None:
+        """SCALE: plot scale."""
+        self._ready(sound=False)
+        settings.set_scale(self.array, s)
+
+    # ---- running
+
+    def cycle(self, n: int) -> int:
+        """CYCLE: n calculation cycles. Returns how many were completed."""
+        from udec_ia.output.report import Report
+
+        self._ready()
+        self._boxes.forget()
+        if self.animate and self._animation is None:
+            from udec_ia.output.animate import Animation
+
+            self._animation = Animation(self.name)
+        report = Report(lambda: self.h, n, self.progress, self._animation)
+        try:
+            return cycle(self.array, n, report, max(1, n // PICTURES) if self.animate else None)
+        finally:
+            report.close()
+
+    def run(self, text_or_path: str | Path, stream: TextIO | None = None) -> str | None:
+        """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned."""
+        from udec_ia.deck.monitor import run_deck
+
+        out = io.StringIO() if stream is None else stream
+        run_deck(self, text_or_path, out)
+        return out.getvalue() if isinstance(out, io.StringIO) else None
+
+    # ---- looking
+
+    def table(self, kind: str) -> Any:
+        """One row a group: `address`, then the fields by the names of the table (see inspect.table)."""
+        from udec_ia.inspect.table import table
+
+        return table(self.array, kind)
+
+    def check(self) -> list[Any]:
+        """All violations of the invariants of the map; empty when it is sound."""
+        from udec_ia.inspect.check import check
+
+        return list(check(self.array))
+
+    def print(self, *what: str) -> str:
+        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist"."""
+        from udec_ia.output.printout import printout
+
+        return printout(self.h, *what)
+
+    def dump(self, n: int, m: int) -> str:
+        """DUMP: the words from address n to address m."""
+        from udec_ia.output.dump import dump
+
+        return dump(self.h, n, m)
+
+    def plot(
+        self, n: int = 0, contacts: bool = False, domains: bool = False, addresses: bool = False
+    ) -> None:
+        """PLOT: start a frame (0) or draw over the last one (1)."""
+        from udec_ia.output.plot import Plots
+
+        self._ready()
+        if self._plots is None:
+            self._plots = Plots(self.out, self.name)
+        self._plots.draw(self.h, n, contacts, domains, addresses)

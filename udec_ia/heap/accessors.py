@@ -17,10 +17,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload, register_jitable
+from numba.extending import overload
 
 Offset = tuple[int, int, int]
 Address = int
+HEAD: Offset = (0, 0, 0)  # head code of a group
 
 
 class Memory(NamedTuple):
@@ -76,6 +77,11 @@ def size_of(h: Memory, nv: Offset) -> int:
 def real(h: Memory, value: float) -> Any:
     """`value` as a real of the scheme at hand: a bare literal would widen 32-bit arithmetic."""
     return h.cr.dtype.type(value)
+
+
+def rounding(h: Memory) -> Any:
+    """Distance from 1 to the next real of the scheme at hand."""
+    return np.finfo(h.cr.dtype).eps
 
 
 @overload(iget)
@@ -138,10 +144,12 @@ def _real(h, value):  # type: ignore[no-untyped-def]
     return impl
 
 
-@register_jitable
-def head(h: Memory, iad: Address) -> int:
-    """Head code of the group at `iad` (MRIG, MSDEF, MFDEF, MCOR, MCON or MDOM)."""
-    return iget(h, iad, HEAD)
+@overload(rounding)
+def _rounding(h):  # type: ignore[no-untyped-def]
+    kind = h.types[3].dtype
+    eps = float(np.finfo(str(kind)).eps)
 
+    def impl(h):  # type: ignore[no-untyped-def]
+        return kind(eps)
 
-HEAD: Offset = (0, 0, 0)
+    return impl

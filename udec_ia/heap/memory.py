@@ -103,3 +103,14 @@ def room(h: Memory, words: int) -> bool:
         h.ci[NWANT] = words
         return False
     return True
+
+
+@kernel
+def room_for_two(h: Memory, nv: Offset, nw: Offset) -> bool:
+    """True if a group of size `nv` and one of the other size `nw` can be found; else asks for them."""
+    words = np.int64(0)
+    if _chain(h, np.int64(size_of(h, nv)))[0] == 0:
+        words += size_of(h, nv)
+    if _chain(h, np.int64(size_of(h, nw)))[0] == 0:
+        words += size_of(h, nw)
+    return words == 0 or room(h, words)

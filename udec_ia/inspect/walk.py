@@ -161,7 +161,9 @@ def other_block(h: Memory, contact: int, block: int) -> int:
     """The block on the other side of `contact`, seen from `block`."""
     one, two = iget(h, contact, KB1), iget(h, contact, KB2)
     if block not in (one, two):
-        raise Unsound(f"contact@{contact} stands in the list of block@{block} but names it neither KB1 nor KB2")
+        raise Unsound(
+            f"contact@{contact} stands in the list of block@{block} but names it neither KB1 nor KB2"
+        )
     return two if block == one else one
 
 

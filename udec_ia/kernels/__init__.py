@@ -1,0 +1,5 @@
+"""The compiled routines: lists, geometry, topology and the passes of the calculation cycle.
+
+One source serves all five word schemes and also runs interpreted (NUMBA_DISABLE_JIT=1). Kernels do no
+I/O; an error is left in the common block (NERR, IERAD) for the caller to raise.
+"""

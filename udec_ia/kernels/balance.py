@@ -1,0 +1,88 @@
+"""What the time-step and the progress line need to know of the whole model, in one walk each."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    AKN,
+    AKS,
+    GRAVX,
+    GRAVY,
+    IBPNT,
+    ICPNT,
+    KB,
+    KBFIX,
+    KBFX,
+    KBFY,
+    KBM,
+    KC,
+    KCC,
+    KCM,
+    KCONS,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.shape import makeb
+
+
+@kernel
+def make_masses(h: Memory) -> None:
+    """Masses and moments of inertia of all blocks from the densities as they are now."""
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        makeb(h, ib)
+        ib = iget(h, ib, KB)
+
+
+@kernel
+def least_mass(h: Memory) -> tuple[float, int, int]:
+    """Least mass of a free block (of any block if none is free), a block without mass or 0, and a block
+    of another constitutive number than 1 or 0."""
+    free, least = real(h, np.inf), real(h, np.inf)
+    massless, foreign = np.int64(0), np.int64(0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        mass = getr(h, ib, KBM)
+        if not mass > 0:
+            massless = ib
+        if iget(h, ib, KCONS) != 1:
+            foreign = ib
+        least = min(least, mass)
+        if iget(h, ib, KBFIX) == 0:
+            free = min(free, mass)
+        ib = iget(h, ib, KB)
+    return (free if free < np.inf else least), massless, foreign
+
+
+@kernel
+def greatest_stiffness(h: Memory) -> tuple[float, int, int]:
+    """Greatest joint stiffness of a contact, a contact without stiffness or 0, and a contact of another
+    constitutive number than 1 or 0."""
+    most = real(h, 0.0)
+    undefined, foreign = np.int64(0), np.int64(0)
+    ic = h.ci[ICPNT]
+    while ic != 0:
+        m = iget(h, ic, KCM) - 1
+        kn, ks = h.cr[AKN + m], h.cr[AKS + m]
+        if not min(kn, ks) > 0:
+            undefined = ic
+        if iget(h, ic, KCC) != 1:
+            foreign = ic
+        most = max(most, max(kn, ks))
+        ic = iget(h, ic, KC)
+    return most, undefined, foreign
+
+
+@kernel
+def unbalanced(h: Memory) -> float:
+    """Greatest resultant of contact forces and weight on a free block."""
+    most = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        if iget(h, ib, KBFIX) == 0:
+            bm = getr(h, ib, KBM)
+            fx, fy = getr(h, ib, KBFX) + bm * h.cr[GRAVX], getr(h, ib, KBFY) + bm * h.cr[GRAVY]
+            most = max(most, fx * fx + fy * fy)
+        ib = iget(h, ib, KB)
+    return np.sqrt(most)

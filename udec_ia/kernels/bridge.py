@@ -1,0 +1,251 @@
+"""Making and deleting contacts, and with them domains (MAKEC, BRIDGE, DELC).
+
+A new contact across a domain cuts it in two; a deleted contact merges the two domains it stood
+between. Either way the contacts around one of the two loops must be told their new domain: both loops
+are walked in step until the shorter one closes, and the shorter one is relabelled. So a contact made
+or broken on a large domain costs as much as its small side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    ETOL,
+    ICPNT,
+    IDPNT,
+    IODPNT,
+    KB1,
+    KB2,
+    KC,
+    KCB,
+    KCC,
+    KCCOD,
+    KCFN,
+    KCFS,
+    KCM,
+    KCONS,
+    KCS,
+    KD,
+    KD1,
+    KD2,
+    KDB,
+    KDLOOP,
+    KMAT,
+    KUMAX,
+    KXP,
+    KYP,
+    MCON,
+    MDOM,
+    NCON,
+    NDOM,
+    NMADE,
+    NVCN,
+    NVDO,
+    NVIRT,
+    UPEND,
+)
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import find, lose
+from udec_ia.kernels.lists import (
+    dellst,
+    insert_after,
+    is_contact,
+    is_corner,
+    nextcp,
+    other,
+    take_out,
+    to_front,
+)
+from udec_ia.kernels.shape import geo
+from udec_ia.kernels.touch import VIRTUAL, coord
+
+
+@kernel
+def nextd(h: Memory, iad: int, ib: int) -> tuple[int, int]:
+    """Next item around a domain and the block that is walked after it (NEXTD).
+
+    `iad` is the current item, `ib` the block whose list continues from it.
+    """
+    item = nextcp(h, ib, iad)
+    if is_contact(h, item):
+        return item, other(h, ib, item)
+    return item, np.int64(ib)
+
+
+@kernel
+def flag(h: Memory, idm: int) -> None:
+    """Ask for an update of domain `idm` in the next domain pass."""
+    putr(h, idm, KUMAX, h.cr[ETOL] + h.cr[ETOL])
+    h.cr[UPEND] = h.cr[ETOL]
+
+
+@kernel
+def maked(h: Memory) -> int:
+    """A new domain group at the head of the domain list, its loop not yet known."""
+    idm = find(h, NVDO)
+    puti(h, idm, HEAD, MDOM)
+    to_front(h, IDPNT, KD, KDB, idm)
+    h.ci[NDOM] += 1
+    return idm
+
+
+@kernel
+def makec(h: Memory, ib: int, jb: int, icod: int, idleft: int, idright: int) -> int:
+    """A new contact of blocks `ib` and `jb` at the head of the contact list (MAKEC).
+
+    Its material and constitutive numbers are those of block `ib` (report 4.3); it stands in no block's
+    list yet.
+    """
+    ic = find(h, NVCN)
+    puti(h, ic, HEAD, MCON)
+    puti(h, ic, KB1, ib)
+    puti(h, ic, KB2, jb)
+    puti(h, ic, KD1, idleft)
+    puti(h, ic, KD2, idright)
+    puti(h, ic, KCM, iget(h, ib, KMAT))
+    puti(h, ic, KCC, iget(h, ib, KCONS))
+    puti(h, ic, KCCOD, icod)
+    to_front(h, ICPNT, KC, KCB, ic)
+    h.ci[NCON] += 1
+    h.ci[NMADE] += 1
+    return ic
+
+
+@kernel
+def losec(h: Memory, ic: int) -> None:
+    """Take contact `ic`, which stands in no block's list any more, off the contact list and lose it."""
+    if iget(h, ic, KCCOD) == VIRTUAL:
+        h.ci[NVIRT] -= 1
+    dellst(h, ICPNT, KC, KCB, ic)
+    puti(h, ic, HEAD, 0)
+    lose(h, ic, NVCN)
+    h.ci[NCON] -= 1
+
+
+@kernel
+def no_force(h: Memory, ic: int) -> None:
+    """Contact `ic` carries no force and remembers no sliding."""
+    zero = real(h, 0.0)
+    putr(h, ic, KCFN, zero)
+    putr(h, ic, KCFS, zero)
+    putr(h, ic, KCS, zero)
+
+
+@kernel
+def to_virtual(h: Memory, ic: int) -> None:
+    """Contact `ic`, a bridge of the map, has opened: it stays as a virtual contact."""
+    no_force(h, ic)
+    puti(h, ic, KCCOD, VIRTUAL)
+    h.ci[NVIRT] += 1
+
+
+@kernel
+def relabel(h: Memory, iad: int, ib: int, idm: int) -> None:
+    """Give the loop that goes through (iad, ib) the domain `idm`."""
+    item, block = np.int64(iad), np.int64(ib)
+    while True:
+        before = block
+        item, block = nextd(h, item, block)
+        if is_contact(h, item):
+            if iget(h, item, KB1) == before:
+                puti(h, item, KD1, idm)
+            else:
+                puti(h, item, KD2, idm)
+        if item == iad and block == ib:
+            return
+
+
+@kernel
+def left_is_shorter(h: Memory, ic: int) -> bool:
+    """True if the loop to the left of contact `ic` has no more items than the one to its right."""
+    ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
+    litem, lblock = ic, jb
+    ritem, rblock = ic, ib
+    while True:
+        litem, lblock = nextd(h, litem, lblock)
+        if litem == ic and lblock == jb:
+            return True
+        ritem, rblock = nextd(h, ritem, rblock)
+        if ritem == ic and rblock == ib:
+            return False
+
+
+@kernel
+def loop_area(h: Memory, iad: int, ib: int) -> float:
+    """Area inside the loop through (iad, ib); negative if the loop is the outline of the whole map.
+
+    Only corners count: contacts lie next to them, and a loop of contacts alone has no area to speak of.
+    """
+    twice = real(h, 0.0)
+    fx, fy = twice, twice  # first corner of the loop
+    ax, ay = twice, twice  # corner before the current one
+    first = True
+    item, block = np.int64(iad), np.int64(ib)
+    while True:
+        if is_corner(h, item):
+            bx, by = getr(h, item, KXP), getr(h, item, KYP)
+            if first:
+                fx, fy, ax, ay, first = bx, by, bx, by, False
+            twice += (ax - fx) * (by - fy) - (bx - fx) * (ay - fy)
+            ax, ay = bx, by
+        item, block = nextd(h, item, block)
+        if item == iad and block == ib:
+            return twice * real(h, 0.5)
+
+
+@kernel
+def cut_domain(h: Memory, ic: int, idm: int) -> int:
+    """Contact `ic` has just been put across domain `idm`: split it (BRIDGE). Returns the new domain."""
+    idnew = maked(h)
+    block = iget(h, ic, KB2) if left_is_shorter(h, ic) else iget(h, ic, KB1)
+    relabel(h, ic, block, idnew)
+    puti(h, idnew, KDLOOP, ic)
+    puti(h, idm, KDLOOP, ic)
+    if idm == h.ci[IODPNT]:
+        area, _, _, _ = geo(h, block)
+        if loop_area(h, ic, block) < -area * real(h, 0.5):
+            h.ci[IODPNT] = idnew
+    return idnew
+
+
+@kernel
+def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int) -> int:
+    """Make a contact of code `icod` across domain `idm` (BRIDGE).
+
+    It is put after item `iad` of block `ib` and after item `jad` of block `jb`, both of whose exposures
+    lie on the domain. Returns the contact; the domain to its left or right is new.
+    """
+    ic = makec(h, ib, jb, icod, idm, idm)
+    insert_after(h, ib, iad, ic)
+    insert_after(h, jb, jad, ic)
+    coord(h, ic)
+    cut_domain(h, ic, idm)
+    return ic
+
+
+@kernel
+def delc(h: Memory, ic: int) -> None:
+    """Delete contact `ic`, which separates two domains, and merge these (DELC)."""
+    ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
+    if left_is_shorter(h, ic):
+        gone, kept = iget(h, ic, KD1), iget(h, ic, KD2)
+        relabel(h, ic, jb, kept)
+    else:
+        gone, kept = iget(h, ic, KD2), iget(h, ic, KD1)
+        relabel(h, ic, ib, kept)
+    item, block = nextd(h, ic, jb)
+    while is_corner(h, item) or item == ic:
+        item, block = nextd(h, item, block)
+    puti(h, kept, KDLOOP, item)
+    if h.ci[IODPNT] == gone:
+        h.ci[IODPNT] = kept
+    flag(h, kept)
+    take_out(h, ib, ic)
+    take_out(h, jb, ic)
+    losec(h, ic)
+    dellst(h, IDPNT, KD, KDB, gone)
+    puti(h, gone, HEAD, 0)
+    lose(h, gone, NVDO)
+    h.ci[NDOM] -= 1

@@ -1,0 +1,196 @@
+"""Where a line crosses a block, and whether the block can be split there.
+
+The line is given by its start (x1, y1), its unit vector (c, s) and its length z. Corners count as on
+the line when they are so to rounding. The crossings are ordered along the line; between the first and
+the second, the third and the fourth ... the line runs inside the block. The block is split there if
+both ends lie within the given line: a line that ends inside a block leaves it whole.
+
+Nothing is ever moved to a corner that is merely near: a cut that would leave an edge shorter than the
+smallest allowed, or that runs almost along an edge, is refused with its coordinates.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import DTOL, KP, KR, KXP, KYP, LROUND, MCTOT
+from udec_ia.heap.accessors import Memory, getr, iget, real, rounding
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.lists import next_corner
+
+MOST = 64  # crossings of one block that can be handled
+OK, TOO_CLOSE, TOO_SHORT = 0, 1, 2
+GRAZING = 0.01  # sine of the smallest angle between a cut and an edge
+SHORTEST = 1.0e-3  # shortest new edge, as a part of the cut edge, while the rounding length is still open
+T, X, Y = 0, 1, 2
+CORNER, AT = 0, 1
+
+
+@kernel
+def slack(h: Memory, x: float, y: float) -> float:
+    """Distance that counts as zero at (x, y): a thousand roundings of the coordinates."""
+    return (abs(x) + abs(y)) * real(h, 1024.0) * rounding(h)
+
+
+@kernel
+def side(h: Memory, ip: int, line: Any, eps: float) -> int:
+    """-1, 0 or 1: corner `ip` lies to the right of the line, on it, or to the left."""
+    d = (getr(h, ip, KYP) - line[1]) * line[2] - (getr(h, ip, KXP) - line[0]) * line[3]
+    if d > eps:
+        return 1
+    if d < -eps:
+        return -1
+    return 0
+
+
+@kernel
+def is_reflex(h: Memory, ib: int, ip: int) -> bool:
+    """True if the outline turns anticlockwise at corner `ip` of block `ib`."""
+    ia, iq = iget(h, ip, KR), next_corner(h, ib, ip)
+    ux, uy = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
+    vx, vy = getr(h, iq, KXP) - getr(h, ip, KXP), getr(h, iq, KYP) - getr(h, ip, KYP)
+    return ux * vy - uy * vx > 0
+
+
+@kernel
+def _edge_crossing(h: Memory, ip: int, line: Any) -> tuple[float, float, float]:
+    """Where the line meets the edge that ends at `ip`: distance along the line, x and y.
+
+    The edge is taken from its lesser end, so that two blocks that share it get the same point.
+    """
+    ia = iget(h, ip, KR)
+    ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
+    if bx < ax or (bx == ax and by < ay):
+        ax, ay, bx, by = bx, by, ax, ay
+    da = (ay - line[1]) * line[2] - (ax - line[0]) * line[3]
+    db = (by - line[1]) * line[2] - (bx - line[0]) * line[3]
+    part = da / (da - db)
+    x, y = ax + (bx - ax) * part, ay + (by - ay) * part
+    return (x - line[0]) * line[2] + (y - line[1]) * line[3], x, y
+
+
+@kernel
+def _corner_crosses(h: Memory, ib: int, ip: int, line: Any, eps: float) -> int:
+    """Corner `ip` lies on the line: 1 if the line passes from side to side of the outline here.
+
+    0 if it does not, -1 if it touches a reflex corner from inside or runs between two of them. A line
+    that runs along an edge from a convex to a reflex corner goes in or out at the reflex one.
+    """
+    before = side(h, iget(h, ip, KR), line, eps)
+    iq = next_corner(h, ib, ip)
+    after = side(h, iq, line, eps)
+    reflex = is_reflex(h, ib, ip)
+    if before != 0 and after != 0:
+        if before != after:
+            return 1
+        return -1 if reflex else 0
+    if before == 0 and after == 0:
+        return 0  # a flat corner on an edge along the line
+    if before == 0:
+        far, beyond = iget(h, ip, KR), side(h, iget(h, iget(h, ip, KR), KR), line, eps)
+        here = after
+    else:
+        far, beyond = iq, side(h, next_corner(h, ib, iq), line, eps)
+        here = before
+    if beyond == here or beyond == 0:
+        return -1 if reflex else 0
+    if reflex == is_reflex(h, ib, far):
+        return -1
+    return 1 if reflex else 0
+
+
+@kernel
+def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
+    """Crossings of the outline of block `ib` with the line, in order along the line.
+
+    where: rows (distance along the line, x, y). which: rows (corner, 1 at that corner or 0 on the edge
+    that ends at it). Returns their number, or -1 if the block cannot be treated (the place is in row 0).
+    """
+    ip0 = iget(h, ib, KP)
+    eps = slack(h, getr(h, ip0, KXP), getr(h, ip0, KYP)) + slack(h, line[0], line[1])
+    n = 0
+    ip = ip0
+    while True:
+        here, before = side(h, ip, line, eps), side(h, iget(h, ip, KR), line, eps)
+        at = here == 0
+        hit = here * before < 0
+        if at:
+            what = _corner_crosses(h, ib, ip, line, eps)
+            x, y = getr(h, ip, KXP), getr(h, ip, KYP)
+            if what < 0:
+                where[0, X], where[0, Y] = x, y
+                return -1
+            hit = what == 1
+            t = (x - line[0]) * line[2] + (y - line[1]) * line[3]
+        elif hit:
+            t, x, y = _edge_crossing(h, ip, line)
+        if hit:
+            if n == MOST:
+                return -1
+            k = n
+            while k > 0 and where[k - 1, T] > t:
+                where[k], which[k] = where[k - 1], which[k - 1]
+                k -= 1
+            where[k, T], where[k, X], where[k, Y] = t, x, y
+            which[k, CORNER], which[k, AT] = ip, 1 if at else 0
+            n += 1
+        ip = iget(h, ip, KR)
+        if ip == ip0:
+            return n
+
+
+@kernel
+def first_cut(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
+    """Row of the first of two crossings between which block `ib` is split; -1 for none, -2 if refused."""
+    n = crossings(h, ib, line, where, which)
+    if n < 0:
+        return -2
+    for k in range(0, n - 1, 2):
+        eps = slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])
+        if where[k, T] >= -eps and where[k + 1, T] <= line[4] + eps:
+            return k
+    return -1
+
+
+@kernel
+def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: int) -> int:
+    """Can a cut end at (x, y), which is corner `ip` (at = 1) or on the edge that ends there?"""
+    iq = ip if at == 0 else next_corner(h, ib, ip)
+    for k in range(1 + at):
+        iend = ip if k == 0 else iq
+        ia = iget(h, iend, KR)
+        ux, uy = getr(h, iend, KXP) - getr(h, ia, KXP), getr(h, iend, KYP) - getr(h, ia, KYP)
+        z = np.sqrt(ux * ux + uy * uy)
+        along = at == 1 and abs(ux * line[3] - uy * line[2]) <= slack(h, x, y) * real(h, 4.0)
+        if abs(ux * line[3] - uy * line[2]) < z * real(h, GRAZING) and not along:
+            return TOO_CLOSE
+        if at == 0:
+            vx, vy = x - getr(h, ia, KXP), y - getr(h, ia, KYP)
+            part = np.sqrt(vx * vx + vy * vy)
+            if h.ci[LROUND] == 1 or h.ci[MCTOT] > 0:
+                if min(part, z - part) < (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999):
+                    return TOO_SHORT
+            elif min(part, z - part) < z * real(h, SHORTEST):
+                return TOO_CLOSE
+    return OK
+
+
+@kernel
+def fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
+    """Can block `ib` be split between its crossings `k` and `k` + 1? The place is put in row 0 if not."""
+    for row in range(k, k + 2):
+        x, y = where[row, X], where[row, Y]
+        what = _end_fits(h, ib, line, x, y, which[row, CORNER], which[row, AT])
+        if what != OK:
+            where[0, X], where[0, Y] = x, y
+            return what
+    z = where[k + 1, T] - where[k, T]
+    shortest = z * real(h, 0.0)
+    if h.ci[LROUND] == 1 or h.ci[MCTOT] > 0:
+        shortest = (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999)
+    if z < shortest:
+        where[0, X], where[0, Y] = where[k, X], where[k, Y]
+        return TOO_SHORT
+    return OK

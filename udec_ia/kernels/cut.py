@@ -1,0 +1,237 @@
+"""SPLIT: all blocks in the path of a line are split (SPLIT, TRUE; report 2.7).
+
+The whole path is looked at before anything is changed, so a line that one block refuses changes
+nothing. Then the blocks are cut one by one, and last the domains at the ends of the cracks are updated:
+corners of halves that lie opposite each other get their contacts. A line that was interrupted for want
+of memory is simply begun again: what is cut already lies along it and is not cut twice.
+
+The blocks in the path are found in a list of boxes (four reals and an address a block), which is kept
+beside the heap while one split follows another: looking through boxes that lie together in memory is
+what keeps the thousandth line as cheap, block for block, as the first.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import (
+    DTOL,
+    ETOL,
+    IBPNT,
+    KB,
+    KCCOD,
+    KCP1,
+    KCP2,
+    KL,
+    KLB,
+    KP,
+    KR,
+    KRAD,
+    KUMAX,
+    KXC,
+    KXP,
+    KYC,
+    KYP,
+    LROUND,
+    MCTOT,
+    NSHORT,
+    NVBL,
+    NVCN,
+    NVCR,
+    NVDO,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, puti, real, size_of
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import room
+from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, fits
+from udec_ia.kernels.ford import settle, settle_all
+from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
+from udec_ia.kernels.shape import crad, zcs
+from udec_ia.kernels.split import corner_on_edge, spli
+from udec_ia.kernels.tolerances import set_rounding
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.update import update
+
+DONE, NO_MEMORY, NO_BOXES, REFUSED_CLOSE, REFUSED_SHORT = 0, 1, 2, 3, 4
+
+
+@kernel
+def enter_box(h: Memory, ib: int, box: Any) -> None:
+    """Fill `box` (x and y from, x and y to) for block `ib`."""
+    ip0 = iget(h, ib, KP)
+    x, y = getr(h, ip0, KXP), getr(h, ip0, KYP)
+    ax, ay, bx, by = x, y, x, y
+    ip = iget(h, ip0, KR)
+    while ip != ip0:
+        x, y = getr(h, ip, KXP), getr(h, ip, KYP)
+        ax, ay, bx, by = min(ax, x), min(ay, y), max(bx, x), max(by, y)
+        ip = iget(h, ip, KR)
+    box[0], box[1], box[2], box[3] = ax, ay, bx, by
+
+
+@kernel
+def enter_boxes(h: Memory, boxes: Any, blocks: Any) -> int:
+    """Fill `boxes` and `blocks` from the block list; returns the number of blocks."""
+    n = 0
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        enter_box(h, ib, boxes[n])
+        blocks[n] = ib
+        n += 1
+        ib = iget(h, ib, KB)
+    return n
+
+
+@kernel
+def in_path(box: Any, line: Any, far: Any) -> bool:
+    """True unless the box lies clear of the line, or on one side of it."""
+    if max(line[0], far[0]) < box[0] or min(line[0], far[0]) > box[2]:
+        return False
+    if max(line[1], far[1]) < box[1] or min(line[1], far[1]) > box[3]:
+        return False
+    x, y = (box[0] + box[2]) / 2 - line[0], (box[1] + box[3]) / 2 - line[1]
+    return abs(y * line[2] - x * line[3]) <= (
+        (box[2] - box[0]) * abs(line[3]) + (box[3] - box[1]) * abs(line[2])
+    )
+
+
+@kernel
+def path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where: Any) -> tuple[int, int]:
+    """Rows of the blocks that the line splits: status and their number.
+
+    When a block refuses, its address is returned instead of the number, the place in row 0 of `where`.
+    """
+    which = np.empty((MOST, 2), np.int64)
+    far = (line[0] + line[2] * line[4], line[1] + line[3] * line[4])
+    found = 0
+    for k in range(n):
+        if not in_path(boxes[k], line, far):
+            continue
+        first = first_cut(h, blocks[k], line, where, which)
+        if first == -2:
+            return REFUSED_CLOSE, blocks[k]
+        if first >= 0:
+            what = fits(h, blocks[k], line, where, which, first)
+            if what != OK:
+                return REFUSED_CLOSE + what - 1, blocks[k]
+            rows[found] = k
+            found += 1
+    return DONE, found
+
+
+@kernel
+def _code(h: Memory, ic: int) -> None:
+    """A crack contact stands on the arcs of both corners, or on the edge where one is not convex."""
+    if getr(h, iget(h, ic, KCP1), KRAD) <= 0:
+        puti(h, ic, KCCOD, EDGE_CORNER)
+    elif getr(h, iget(h, ic, KCP2), KRAD) <= 0:
+        puti(h, ic, KCCOD, CORNER_EDGE)
+    else:
+        puti(h, ic, KCCOD, CORNER_CORNER)
+
+
+@kernel
+def _settle_around(h: Memory, ib: int, ip: int) -> None:
+    """Bring the contacts near the new corner `ip` of block `ib` up to date.
+
+    They stand on its arc and on its two edges; contacts farther off are as they were.
+    """
+    reach = h.cr[DTOL] * real(h, 3.0)
+    x, y = getr(h, ip, KXP), getr(h, ip, KYP)
+    for forwards in (True, False):
+        item = nextcp(h, ib, ip) if forwards else prevcp(h, ib, ip)
+        while not is_corner(h, item):
+            following = nextcp(h, ib, item) if forwards else prevcp(h, ib, item)
+            if iget(h, item, KCCOD) != VIRTUAL:
+                if abs(getr(h, item, KXC) - x) + abs(getr(h, item, KYC) - y) > reach + reach:
+                    break
+                settle(h, item)
+            item = following
+
+
+@kernel
+def _shortest(h: Memory, ib: int) -> float:
+    """Length of the shortest edge of block `ib`."""
+    ip0 = iget(h, ib, KP)
+    least, _, _ = zcs(h, ip0)
+    ip = iget(h, ip0, KR)
+    while ip != ip0:
+        z, _, _ = zcs(h, ip)
+        least = min(least, z)
+        ip = iget(h, ip, KR)
+    return least
+
+
+@kernel
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
+    """Split block `ib` between its crossings `k` and `k` + 1; returns the new block."""
+    ia, iz = which[k, CORNER], which[k + 1, CORNER]
+    if which[k, AT] == 0:
+        ia = corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
+    if which[k + 1, AT] == 0:
+        iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
+    jb = spli(h, ib, ia, iz)
+    if h.ci[LROUND] == 0 and h.ci[MCTOT] == 0:
+        least = min(_shortest(h, ib), _shortest(h, jb))
+        if least < h.cr[DTOL] * real(h, 4.0):
+            set_rounding(h, least * real(h, 0.125))
+    h.ci[NSHORT] += crad(h, ib) + crad(h, jb)
+    for b in (ib, jb):
+        end = iget(h, iget(h, b, KP), KR)  # the crack runs from this corner to KP
+        _code(h, iget(h, end, KL))
+        _code(h, iget(h, end, KLB))
+    for b in (ib, jb):
+        twin = iget(h, b, KP)
+        _settle_around(h, b, twin)
+        _settle_around(h, b, iget(h, twin, KR))
+    return jb
+
+
+@kernel
+def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
+    """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out."""
+    for k in range(first, n):
+        ib = blocks[k]
+        ip = iget(h, ib, KP)
+        item = iget(h, ip, KL)
+        while item != ip:
+            idm = idomp(h, ib, item)
+            if getr(h, idm, KUMAX) > h.cr[ETOL] and not update(h, idm):
+                return False
+            item = nextcp(h, ib, item)
+    return True
+
+
+@kernel
+def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, found: int) -> tuple[int, int]:
+    """Split the blocks in the given rows and update the domains at the cracks' ends.
+
+    Returns the status and the new number of boxes.
+    """
+    where, which = np.empty((MOST, 3), h.cr.dtype), np.empty((MOST, 2), np.int64)
+    first = n
+    rounding_length = h.cr[DTOL]
+    need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 2 * size_of(h, NVCN) + size_of(h, NVDO)
+    for r in range(found):
+        row, following = rows[r], n
+        while True:
+            k = first_cut(h, blocks[row], line, where, which)
+            if k < 0:
+                if following == n:
+                    break
+                row = following  # a new block may be crossed once more
+                following += 1
+                continue
+            if n == len(blocks):
+                return NO_BOXES, n
+            if not room(h, need):
+                return NO_MEMORY, n
+            blocks[n] = _cut_block(h, blocks[row], where, which, k)
+            enter_box(h, blocks[row], boxes[row])
+            enter_box(h, blocks[n], boxes[n])
+            n += 1
+    if h.cr[DTOL] != rounding_length:
+        settle_all(h)
+    return (DONE if update_cracks(h, blocks, first, n) else NO_MEMORY), n

@@ -1,0 +1,45 @@
+"""The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts.
+
+JPHASE says which pass comes next, so that a cycle that had to stop because an update ran out of memory
+can be taken up again at that very point and goes on as if it had not stopped.
+"""
+
+from __future__ import annotations
+
+from offsets.generated import JPHASE, MCTOT, NBROKE, NERR, TDEL, TIME
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.domains import accumulate
+from udec_ia.kernels.ford import ford_all
+from udec_ia.kernels.motion import motion_all
+from udec_ia.kernels.update import update_all
+
+BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
+
+
+@kernel
+def run_cycles(h: Memory, n: int) -> int:
+    """Up to `n` cycles; returns how many were completed. Stops early when NERR is set."""
+    done = 0
+    while done < n:
+        if h.ci[JPHASE] == BLOCKS:
+            fastest = motion_all(h)
+            h.ci[JPHASE] = DOMAINS if accumulate(h, fastest) else CONTACTS
+        if h.ci[JPHASE] == DOMAINS:
+            if not update_all(h):
+                return done
+            h.ci[JPHASE] = CONTACTS
+        if h.ci[JPHASE] == CONTACTS:
+            broken = h.ci[NBROKE]
+            ford_all(h)
+            h.ci[JPHASE] = BLOCKS if h.ci[NBROKE] == broken else BROKEN
+        if h.ci[JPHASE] == BROKEN:  # domains that merged are looked through at once
+            if not update_all(h):
+                return done
+            h.ci[JPHASE] = BLOCKS
+        h.ci[MCTOT] += 1
+        h.cr[TIME] += h.cr[TDEL]
+        done += 1
+        if h.ci[NERR] != 0:
+            return done
+    return done

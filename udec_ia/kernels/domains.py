@@ -1,0 +1,96 @@
+"""The domain pass: fictitious displacements that trigger updates (ACCUM; report 2.2).
+
+In every domain the greatest relative velocities in x and in y between any two of its corners and contact
+points are multiplied by the time-step and summed. When the sum exceeds ETOL = ATOL/sqrt(2), something
+may have come near enough to touch, and the domain is updated.
+
+A contact point counts with the velocities of both its blocks: any point of a domain's boundary then moves
+no faster than two points that were looked at, and no contact can be missed.
+
+While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
+block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
+hundredth of ETOL. A scene at rest pays nothing for its domains.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    HTOL,
+    IDPNT,
+    KB1,
+    KB2,
+    KCCOD,
+    KD,
+    KDLOOP,
+    KTD,
+    KUMAX,
+    KX,
+    KXC,
+    KXD,
+    KXDP,
+    KY,
+    KYC,
+    KYD,
+    KYDP,
+    TDEL,
+    UPEND,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.bridge import nextd
+from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.segments import loop_start
+from udec_ia.kernels.touch import VIRTUAL
+
+
+@kernel
+def velocity_at(h: Memory, ib: int, x: float, y: float) -> tuple[float, float]:
+    """Velocity of the point of block `ib` that is at (x, y)."""
+    td = getr(h, ib, KTD)
+    return getr(h, ib, KXD) - td * (y - getr(h, ib, KY)), getr(h, ib, KYD) + td * (x - getr(h, ib, KX))
+
+
+@kernel
+def relative_velocity(h: Memory, idm: int) -> float:
+    """Greatest relative velocity, in x or in y, between two points of domain `idm` (ACCUM)."""
+    if iget(h, idm, KDLOOP) == 0:
+        return real(h, 0.0)
+    start, first = loop_start(h, idm)
+    item, block = start, first
+    far = real(h, np.inf)
+    lx, ly, hx, hy = far, far, -far, -far
+    while True:
+        item, block = nextd(h, item, block)
+        if is_corner(h, item):
+            vx, vy = getr(h, item, KXDP), getr(h, item, KYDP)
+            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+        elif iget(h, item, KCCOD) != VIRTUAL:
+            x, y = getr(h, item, KXC), getr(h, item, KYC)
+            vx, vy = velocity_at(h, iget(h, item, KB1), x, y)
+            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+            vx, vy = velocity_at(h, iget(h, item, KB2), x, y)
+            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+        if item == start and block == first:
+            return max(hx - lx, hy - ly)
+
+
+@kernel
+def accumulate(h: Memory, fastest: float) -> bool:
+    """Sum the fictitious displacements of one step; False while the pass can wait.
+
+    fastest: a bound on the velocity of any point of any block in this step.
+    """
+    dt = h.cr[TDEL]
+    bound = (fastest + fastest) * dt
+    waiting = h.cr[UPEND]
+    if waiting + bound < h.cr[HTOL]:
+        h.cr[UPEND] = waiting + bound
+        return False
+    idm = h.ci[IDPNT]
+    while idm != 0:
+        putr(h, idm, KUMAX, getr(h, idm, KUMAX) + waiting + relative_velocity(h, idm) * dt)
+        idm = iget(h, idm, KD)
+    h.cr[UPEND] = real(h, 0.0)
+    return True

@@ -1,0 +1,214 @@
+"""The contact pass: forces from relative displacements (FORD, CVEL, PUTFCE); report 2.6.
+
+Constitutive number 1: a linear spring normal to the contact, one along it, and Coulomb friction:
+
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0
+    dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
+
+The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
+apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
+Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
+stored forces; it vanishes along a contact that slips and in an open one.
+"""
+
+from __future__ import annotations
+
+from offsets.generated import (
+    AKN,
+    AKS,
+    AMU,
+    BETA,
+    BTOL,
+    COH,
+    DTOL2,
+    FTOL,
+    IBPNT,
+    ICPNT,
+    IERAD,
+    KB,
+    KB1,
+    KB2,
+    KBFT,
+    KBFX,
+    KBFY,
+    KC,
+    KCCOD,
+    KCFN,
+    KCFS,
+    KCM,
+    KCN,
+    KCS,
+    KD1,
+    KD2,
+    KL1,
+    KTD,
+    KX,
+    KXC,
+    KXD,
+    KXDC,
+    KY,
+    KYC,
+    KYD,
+    KYDC,
+    NBROKE,
+    NERR,
+    TDEL,
+    WFRIC,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.lists import is_contact, other
+from udec_ia.kernels.reclass import reclass
+from udec_ia.kernels.touch import VIRTUAL, coord
+
+OVERLAP_TOO_GREAT = 15
+RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
+
+
+@kernel
+def settle(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Code, place, coordinates and overlap of contact `ic` as its geometry asks; normal and overlap."""
+    for _ in range(RECLASSIFICATIONS):
+        if not reclass(h, ic):
+            break
+    return coord(h, ic)
+
+
+@kernel
+def has_twin(h: Memory, ic: int) -> bool:
+    """True if the next contact on block KB1 is one of the same two blocks, nearer than FTOL."""
+    ib = iget(h, ic, KB1)
+    jc = iget(h, ic, KL1)
+    if not is_contact(h, jc) or other(h, ib, jc) != iget(h, ic, KB2) or iget(h, jc, KCCOD) == VIRTUAL:
+        return False
+    dx, dy = getr(h, jc, KXC) - getr(h, ic, KXC), getr(h, jc, KYC) - getr(h, ic, KYC)
+    return dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL]
+
+
+@kernel
+def drop(h: Memory, ic: int, overlap: float) -> bool:
+    """Delete contact `ic`, or make it virtual, if it is open beyond BTOL or idle beside a twin."""
+    idle = overlap <= 0 or getr(h, ic, KCFN) == 0
+    if overlap >= -h.cr[BTOL] and not (idle and has_twin(h, ic)):
+        return False
+    if iget(h, ic, KD1) != iget(h, ic, KD2):
+        delc(h, ic)
+        h.ci[NBROKE] += 1
+        return True
+    if overlap < -h.cr[BTOL]:
+        to_virtual(h, ic)
+        h.ci[NBROKE] += 1
+        return True
+    return False
+
+
+@kernel
+def putfce(h: Memory, ib: int, fx: float, fy: float, x: float, y: float) -> None:
+    """Add the force (fx, fy) that acts at (x, y) to the force sums of block `ib` (PUTFCE)."""
+    putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
+    putr(h, ib, KBFY, getr(h, ib, KBFY) + fy)
+    moment = (x - getr(h, ib, KX)) * fy - (y - getr(h, ib, KY)) * fx
+    putr(h, ib, KBFT, getr(h, ib, KBFT) + moment)
+
+
+@kernel
+def cvel(h: Memory, ic: int) -> tuple[float, float]:
+    """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL)."""
+    ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
+    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+    wi, wj = getr(h, ib, KTD), getr(h, jb, KTD)
+    vxi = getr(h, ib, KXD) - wi * (y - getr(h, ib, KY))
+    vyi = getr(h, ib, KYD) + wi * (x - getr(h, ib, KX))
+    vxj = getr(h, jb, KXD) - wj * (y - getr(h, jb, KY))
+    vyj = getr(h, jb, KYD) + wj * (x - getr(h, jb, KX))
+    xd, yd = vxj - vxi, vyj - vyi
+    putr(h, ic, KXDC, xd)
+    putr(h, ic, KYDC, yd)
+    return xd, yd
+
+
+@kernel
+def ford(h: Memory, ic: int) -> None:
+    """Force and displacement calculation for contact `ic` (FORD), which may vanish in it."""
+    before = getr(h, ic, KCN)
+    nx, ny, overlap = settle(h, ic)
+    if drop(h, ic, overlap):
+        return
+    xd, yd = cvel(h, ic)
+    zero = real(h, 0.0)
+    if overlap <= zero:
+        no_force(h, ic)
+        return
+    m = iget(h, ic, KCM) - 1
+    kn, ks, dt = h.cr[AKN + m], h.cr[AKS + m], h.cr[TDEL]
+    closing = -(xd * nx + yd * ny)
+    sliding = yd * nx - xd * ny
+    dus = sliding * dt
+    fn = getr(h, ic, KCFN) + kn * (overlap - max(before, zero))
+    fs = getr(h, ic, KCFS) + ks * dus
+    putr(h, ic, KCS, getr(h, ic, KCS) + dus)
+    if fn <= zero:
+        fn, fs = zero, zero
+    most = h.cr[COH + m] + h.cr[AMU + m] * fn
+    dashpot = h.cr[BETA] * ks * sliding
+    if abs(fs) > most:
+        h.cr[WFRIC] += (abs(fs) - most) / ks * most
+        fs = most if fs > zero else -most
+        dashpot = zero
+    putr(h, ic, KCFN, fn)
+    putr(h, ic, KCFS, fs)
+    normal = fn + h.cr[BETA] * kn * closing
+    shear = fs + dashpot
+    fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
+    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+    putfce(h, iget(h, ic, KB1), -fx, -fy, x, y)
+    putfce(h, iget(h, ic, KB2), fx, fy, x, y)
+    if overlap > h.cr[DTOL2] and h.ci[NERR] == 0:
+        h.ci[NERR] = OVERLAP_TOO_GREAT
+        h.ci[IERAD] = ic
+
+
+@kernel
+def ford_all(h: Memory) -> None:
+    """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
+    ic = h.ci[ICPNT]
+    while ic != 0:
+        following = iget(h, ic, KC)
+        if iget(h, ic, KCCOD) != VIRTUAL:
+            ford(h, ic)
+        ic = following
+
+
+@kernel
+def settle_all(h: Memory) -> None:
+    """Bring every contact up to date with a changed geometry, its force as it is."""
+    ic = h.ci[ICPNT]
+    while ic != 0:
+        following = iget(h, ic, KC)
+        if iget(h, ic, KCCOD) != VIRTUAL:
+            _, _, overlap = settle(h, ic)
+            drop(h, ic, overlap)
+        ic = following
+
+
+@kernel
+def sum_all_forces(h: Memory) -> None:
+    """Force sums of all blocks from the forces stored in the contacts; the contacts stay as they are."""
+    zero = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        putr(h, ib, KBFX, zero)
+        putr(h, ib, KBFY, zero)
+        putr(h, ib, KBFT, zero)
+        ib = iget(h, ib, KB)
+    ic = h.ci[ICPNT]
+    while ic != 0:
+        if getr(h, ic, KCFN) != zero:
+            nx, ny, _ = coord(h, ic)
+            fn, fs = getr(h, ic, KCFN), getr(h, ic, KCFS)
+            fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
+            x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+            putfce(h, iget(h, ic, KB1), -fx, -fy, x, y)
+            putfce(h, iget(h, ic, KB2), fx, fy, x, y)
+        ic = iget(h, ic, KC)

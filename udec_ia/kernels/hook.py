@@ -1,0 +1,187 @@
+"""Virtual contacts: how blocks that have parted stay in the map (report 4.6).
+
+A contact whose removal would make the map fall apart stays as a virtual contact when it opens. The
+boundary of its domain is then really several loops, pieces that only virtual contacts tie together; a
+virtual contact may stand anywhere on the two pieces that it ties. So, when a piece touches another:
+
+- pieces tied by virtual contacts meet: the new contact takes the place of a virtual contact between
+  them, wherever that one stood (`rehook`);
+- a piece touches itself and thereby cuts the domain: all virtual contacts of the domain are taken out,
+  the piece's own loop is cut, and every other piece is hooked to that side of the cut on which it
+  really lies (`cut_among_pieces`).
+
+That is the logic the report found "quite straightforward" but had no time to write: a block thrown over
+others lands where it lands.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import (
+    KB1,
+    KB2,
+    KCC,
+    KCCOD,
+    KCM,
+    KCN,
+    KCONS,
+    KD1,
+    KD2,
+    KMAT,
+    KP,
+    KXC,
+    KXP,
+    KYC,
+    KYP,
+    NMADE,
+    NVIRT,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.bridge import (
+    cut_domain,
+    left_is_shorter,
+    loop_area,
+    makec,
+    nextd,
+    no_force,
+    relabel,
+)
+from udec_ia.kernels.lists import insert_after, is_corner, prevcp, take_out
+from udec_ia.kernels.touch import VIRTUAL, coord
+
+
+@kernel
+def take_contact_out(h: Memory, ic: int) -> None:
+    """Take contact `ic` out of the lists of both its blocks."""
+    take_out(h, iget(h, ic, KB1), ic)
+    take_out(h, iget(h, ic, KB2), ic)
+
+
+@kernel
+def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> None:
+    """Let contact `ic` join block `ib` (after its item `iad`) and block `jb` (after its item `jad`)."""
+    puti(h, ic, KB1, ib)
+    puti(h, ic, KB2, jb)
+    insert_after(h, ib, iad, ic)
+    insert_after(h, jb, jad, ic)
+
+
+@kernel
+def not_virtual(h: Memory, ib: int, iad: int) -> int:
+    """Item `iad` of block `ib`, or the nearest one before it that is not a virtual contact."""
+    item = np.int64(iad)
+    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
+        item = prevcp(h, ib, item)
+    return item
+
+
+@kernel
+def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) -> None:
+    """Virtual contact `iv` becomes a contact of code `icod` of blocks `ib` and `jb`.
+
+    It ties the same two parts of the map at another place, so no domain changes.
+    """
+    if iad == iv:
+        iad = prevcp(h, ib, iv)
+    if jad == iv:
+        jad = prevcp(h, jb, iv)
+    take_contact_out(h, iv)
+    put_contact(h, iv, ib, iad, jb, jad)
+    puti(h, iv, KCM, iget(h, ib, KMAT))
+    puti(h, iv, KCC, iget(h, ib, KCONS))
+    puti(h, iv, KCCOD, icod)
+    no_force(h, iv)
+    coord(h, iv)
+    h.ci[NVIRT] -= 1
+    h.ci[NMADE] += 1
+
+
+@kernel
+def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
+    """How often the loop through (iad, ib) winds around the point (x, y), anticlockwise."""
+    turns = 0
+    start = np.int64(iad)
+    item, block = np.int64(iad), np.int64(ib)
+    if is_corner(h, item):
+        ax, ay = getr(h, item, KXP) - x, getr(h, item, KYP) - y
+    else:
+        ax, ay = getr(h, item, KXC) - x, getr(h, item, KYC) - y
+    while True:
+        item, block = nextd(h, item, block)
+        if is_corner(h, item):
+            bx, by = getr(h, item, KXP) - x, getr(h, item, KYP) - y
+        else:
+            bx, by = getr(h, item, KXC) - x, getr(h, item, KYC) - y
+        side = ax * by - bx * ay
+        if ay <= 0 and by > 0 and side > 0:
+            turns += 1
+        elif ay > 0 and by <= 0 and side < 0:
+            turns -= 1
+        ax, ay = bx, by
+        if item == start and block == ib:
+            return turns
+
+
+@kernel
+def lies_in(h: Memory, iad: int, ib: int, jb: int) -> bool:
+    """True if block `jb` lies in the region bounded by the loop through (iad, ib)."""
+    ip = iget(h, jb, KP)
+    turns = winding(h, iad, ib, getr(h, ip, KXP), getr(h, ip, KYP))
+    if loop_area(h, iad, ib) > 0:
+        return turns > 0
+    return turns == 0
+
+
+@kernel
+def hook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, idm: int) -> None:
+    """Put virtual contact `iv` between two pieces on the boundary of domain `idm`."""
+    put_contact(h, iv, ib, iad, jb, jad)
+    puti(h, iv, KD1, idm)
+    puti(h, iv, KD2, idm)
+    putr(h, iv, KXC, getr(h, iget(h, jb, KP), KXP))
+    putr(h, iv, KYC, getr(h, iget(h, jb, KP), KYP))
+    putr(h, iv, KCN, real(h, 0.0))
+
+
+@kernel
+def cut_among_pieces(
+    h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int, ties: Any, pieces: Any
+) -> int:
+    """Make a contact that cuts domain `idm` while other pieces hang in the domain on virtual contacts.
+
+    ties: the virtual contacts of the domain. pieces: one row (block, item, own) a piece; the exposure
+    after the item lies on the piece; own is 1 for the piece that the new contact belongs to. There is
+    one piece more than there are ties. Returns the new domain.
+    """
+    iad = not_virtual(h, ib, iad)
+    jad = not_virtual(h, jb, jad)
+    for k in range(len(pieces)):
+        pieces[k, 1] = not_virtual(h, pieces[k, 0], pieces[k, 1])
+    for k in range(len(ties)):
+        take_contact_out(h, ties[k])
+    ic = makec(h, ib, jb, icod, idm, idm)
+    insert_after(h, ib, iad, ic)
+    insert_after(h, jb, jad, ic)
+    coord(h, ic)
+    new_is_left = left_is_shorter(h, ic)
+    idnew = cut_domain(h, ic, idm)
+    block = jb if new_is_left else ib
+    tie = 0
+    for k in range(len(pieces)):
+        if pieces[k, 2] == 1:
+            continue
+        pb, item = pieces[k, 0], pieces[k, 1]
+        side = block
+        where = idnew
+        if lies_in(h, ic, block, pb):
+            relabel(h, item, pb, idnew)
+        else:
+            side = ib if new_is_left else jb
+            where = idm
+        hook(h, ties[tie], side, ic, pb, item, where)
+        tie += 1
+    return idnew

@@ -1,0 +1,109 @@
+"""The block pass: law of motion (MOTION) and new corners (PVEL); report 2.6, physics of a rigid block.
+
+Central differences, velocities at half steps:
+
+    v := (CON1 v + (F/m + g) dt) CON2      w := (CON1 w + (M/I) dt) CON2
+
+The corners are turned with the block by the rotation whose half angle has the tangent w dt/2: it keeps
+every length to rounding, so that a block does not grow while it spins.
+"""
+
+from __future__ import annotations
+
+from offsets.generated import (
+    CON1,
+    CON2,
+    GRAVX,
+    GRAVY,
+    IBPNT,
+    KB,
+    KBFIX,
+    KBFT,
+    KBFX,
+    KBFY,
+    KBI,
+    KBM,
+    KBRO,
+    KP,
+    KR,
+    KTD,
+    KX,
+    KXCP,
+    KXD,
+    KXDP,
+    KXP,
+    KY,
+    KYCP,
+    KYD,
+    KYDP,
+    KYP,
+    TDEL,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+
+
+@kernel
+def pvel(h: Memory, ib: int, x: float, y: float) -> None:
+    """Corner velocities and coordinates of block `ib` (PVEL), whose centroid was at (x, y) before."""
+    dt = h.cr[TDEL]
+    one = real(h, 1.0)
+    xd, yd, td = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KTD)
+    xn, yn = getr(h, ib, KX), getr(h, ib, KY)
+    half = td * dt * real(h, 0.5)
+    below = one + half * half
+    c, s = (one - half * half) / below, (half + half) / below
+    ip0 = iget(h, ib, KP)
+    ip = ip0
+    while True:
+        rx, ry = getr(h, ip, KXP) - x, getr(h, ip, KYP) - y
+        nx, ny = c * rx - s * ry, s * rx + c * ry
+        putr(h, ip, KXP, xn + nx)
+        putr(h, ip, KYP, yn + ny)
+        putr(h, ip, KXDP, xd - td * ny)
+        putr(h, ip, KYDP, yd + td * nx)
+        rx, ry = getr(h, ip, KXCP) - x, getr(h, ip, KYCP) - y
+        putr(h, ip, KXCP, xn + (c * rx - s * ry))
+        putr(h, ip, KYCP, yn + (s * rx + c * ry))
+        ip = iget(h, ip, KR)
+        if ip == ip0:
+            return
+
+
+@kernel
+def motion(h: Memory, ib: int) -> float:
+    """Law of motion for block `ib` (MOTION); resets its force sums.
+
+    Returns a bound on the velocity, in x or in y, of any point of the block.
+    """
+    zero = real(h, 0.0)
+    fx, fy, ft = getr(h, ib, KBFX), getr(h, ib, KBFY), getr(h, ib, KBFT)
+    putr(h, ib, KBFX, zero)
+    putr(h, ib, KBFY, zero)
+    putr(h, ib, KBFT, zero)
+    if iget(h, ib, KBFIX) == 1:
+        return zero
+    dt, con1, con2 = h.cr[TDEL], h.cr[CON1], h.cr[CON2]
+    bm = getr(h, ib, KBM)
+    xd = (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2
+    yd = (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2
+    td = (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2
+    x, y = getr(h, ib, KX), getr(h, ib, KY)
+    putr(h, ib, KXD, xd)
+    putr(h, ib, KYD, yd)
+    putr(h, ib, KTD, td)
+    putr(h, ib, KX, x + xd * dt)
+    putr(h, ib, KY, y + yd * dt)
+    pvel(h, ib, x, y)
+    return max(abs(xd), abs(yd)) + abs(td) * getr(h, ib, KBRO)
+
+
+@kernel
+def motion_all(h: Memory) -> float:
+    """Move every block; returns the greatest velocity bound."""
+    fastest = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        fastest = max(fastest, motion(h, ib))
+        ib = iget(h, ib, KB)
+    return fastest

@@ -1,0 +1,270 @@
+"""Which segments of a domain are near enough for a contact: the search of UPDT.
+
+A contact is formed where two segments of different blocks come nearer than ATOL (report 2.2): an arc and
+an edge, or two arcs. The arc must face what it is near to: the other side of its block is someone
+else's business. Small domains try all pairs. In large ones - the outer domain, an open cavity - every
+segment is entered in the cells of a grid that its surroundings cover, and only segments that share a
+cell are tried, so that the cost grows with the length of the boundary and not with its square.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import (
+    ATOL,
+    CTOL,
+    DTOL,
+    FTOL,
+    GTOL,
+    KCCOD,
+    KR,
+    KRAD,
+    KXC,
+    KXCP,
+    KXP,
+    KYC,
+    KYCP,
+    KYP,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.lists import corner_of, is_contact, is_corner, nextcp, other, prevcp
+from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, on_arc
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, lean, meet
+
+FACING = 0.5  # sine of the angle by which a facing arc may have turned away between two updates
+AROUND = 6  # items looked at on either side for a contact of the same two blocks
+SMALL = 48  # segments of a domain in which all pairs are tried
+
+
+@kernel
+def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
+    """Can the arc of corner `ip` and the edge that ends at `iq` have a contact? And their overlap."""
+    zero = real(h, 0.0)
+    ex, ey, overlap, along, z = ce(h, ip, iq)
+    if overlap < -h.cr[ATOL] or overlap > h.cr[CTOL]:
+        return False, overlap
+    low = h.cr[DTOL] if getr(h, iget(h, iq, KR), KRAD) > 0 else zero
+    high = h.cr[DTOL] if getr(h, iq, KRAD) > 0 else zero
+    if along < low or along > z - high:
+        return False, overlap
+    ahead, behind = lean(h, ip, -ex, -ey)
+    return max(ahead, behind) <= real(h, FACING), overlap
+
+
+@kernel
+def arc_on_arc(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
+    """Can the arcs of corners `ip` and `iq` have a contact? And their overlap."""
+    dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
+    reach = getr(h, ip, KRAD) + getr(h, iq, KRAD) + h.cr[ATOL]
+    if dx * dx + dy * dy > reach * reach:
+        return False, -reach
+    _, _, overlap = cc(h, ip, iq)
+    if overlap > h.cr[CTOL]:
+        return False, overlap
+    ahead1, behind1 = lean(h, ip, dx, dy)
+    ahead2, behind2 = lean(h, iq, -dx, -dy)
+    return max(max(ahead1, behind1), max(ahead2, behind2)) <= h.cr[GTOL], overlap
+
+
+@kernel
+def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
+    """True if a contact on the arc of corner `ip` of block `ib` stands on segment (jp, jarc) already."""
+    ic = prevcp(h, ib, ip)
+    while is_contact(h, ic):
+        if iget(h, ic, KCCOD) != VIRTUAL:
+            if not on_arc(h, ib, ic):
+                return False
+            jb = other(h, ib, ic)
+            if corner_of(h, jb, ic) == jp and on_arc(h, jb, ic) == (jarc == 1):
+                return True
+        ic = prevcp(h, ib, ic)
+    return False
+
+
+@kernel
+def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bool:
+    """True if near item `iad` of block `ib` a contact with block `jb` stands within FTOL of (x, y)."""
+    ahead, behind = nextcp(h, ib, iad), np.int64(iad)
+    for _ in range(AROUND):
+        for ic in (ahead, behind):
+            if is_contact(h, ic) and other(h, ib, ic) == jb and iget(h, ic, KCCOD) != VIRTUAL:
+                dx, dy = getr(h, ic, KXC) - x, getr(h, ic, KYC) - y
+                if dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL]:
+                    return True
+        ahead, behind = nextcp(h, ib, ahead), prevcp(h, ib, behind)
+    return False
+
+
+@kernel
+def _place(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
+    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
+    ia = iget(h, ip, KR)
+    tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
+    if on_arc(h, ib, ic):  # along the chord of the arc, which is normal to the line to the centre
+        tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
+    z = np.sqrt(tx * tx + ty * ty)
+    return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
+
+
+@kernel
+def _misplaced(h: Memory, ib: int, ip: int, arc: int, iad: int, x: float, y: float) -> float:
+    """By how much the point (x, y) lies outside the exposure of a segment that follows item `iad`."""
+    worst = real(h, 0.0)
+    if not is_corner(h, iad) and corner_of(h, ib, iad) == ip and on_arc(h, ib, iad) == (arc == 1):
+        worst = max(worst, _place(h, ib, ip, iad, x, y))
+    after = nextcp(h, ib, iad)
+    if not is_corner(h, after) and corner_of(h, ib, after) == ip and on_arc(h, ib, after) == (arc == 1):
+        worst = max(worst, -_place(h, ib, ip, after, x, y))
+    return worst
+
+
+@kernel
+def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
+    """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
+
+    Urgent is the greatest overlap at the place in the list where the contact belongs.
+    """
+    zero = real(h, 0.0)
+    ib, ip, iarc = seg[i, BLOCK], seg[i, CORNER], seg[i, ARC]
+    jb, jp, jarc = seg[j, BLOCK], seg[j, CORNER], seg[j, ARC]
+    if ib == jb or iarc + jarc == 0:
+        return 0, zero
+    if iarc + jarc == 2:
+        code = CORNER_CORNER
+        can, overlap = arc_on_arc(h, ip, jp)
+    elif iarc == 1:
+        code = CORNER_EDGE
+        can, overlap = arc_on_edge(h, ip, jp)
+    else:
+        code = EDGE_CORNER
+        can, overlap = arc_on_edge(h, jp, ip)
+    if not can:
+        return 0, zero
+    if iarc == 1:
+        had = _has_contact(h, ib, ip, jp, jarc)
+    else:
+        had = _has_contact(h, jb, jp, ip, iarc)
+    if had:
+        return 0, zero
+    _, _, _, x, y = meet(h, code, ip, jp)
+    if _one_beside(h, ib, seg[i, ITEM], jb, x, y) or _one_beside(h, jb, seg[j, ITEM], ib, x, y):
+        return 0, zero
+    wrong = max(
+        _misplaced(h, ib, ip, iarc, seg[i, ITEM], x, y), _misplaced(h, jb, jp, jarc, seg[j, ITEM], x, y)
+    )
+    if wrong > h.cr[DTOL]:
+        return 0, zero
+    return code, overlap - wrong
+
+
+@kernel
+def _box(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float]:
+    """Surroundings of segment `i`: x and y from, x and y to; grown by half of ATOL on all sides."""
+    ip = seg[i, CORNER]
+    half = h.cr[ATOL] * real(h, 0.5)
+    if seg[i, ARC] == 1:
+        x, y = getr(h, ip, KXCP), getr(h, ip, KYCP)
+        half += getr(h, ip, KRAD)
+        return x - half, y - half, x + half, y + half
+    ia = iget(h, ip, KR)
+    ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
+    return min(ax, bx) - half, min(ay, by) - half, max(ax, bx) + half, max(ay, by) + half
+
+
+@kernel
+def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+    """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
+    best, bi, bj = 0, 0, 0
+    most = real(h, 0.0)
+    for i in range(n):
+        ax, ay, bx, by = _box(h, seg, i)
+        for j in range(i + 1, n):
+            if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
+                continue
+            cx, cy, dx, dy = _box(h, seg, j)
+            if cx > bx or dx < ax or cy > by or dy < ay:
+                continue
+            code, urgent = judge(h, seg, i, j)
+            if code != 0 and (best == 0 or urgent > most):
+                best, bi, bj, most = code, i, j, urgent
+    return best, bi, bj
+
+
+@kernel
+def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
+    """Enter every segment in the cells it covers; an edge piece by piece, so a long slant stays thin.
+
+    Returns the number of entries; with empty arrays it only counts them.
+    """
+    m = 0
+    half = h.cr[ATOL] * real(h, 0.5)
+    for i in range(n):
+        ip = seg[i, CORNER]
+        if seg[i, ARC] == 1:
+            ax, ay = getr(h, ip, KXCP), getr(h, ip, KYCP)
+            bx, by = ax, ay
+            grow = half + getr(h, ip, KRAD)
+            pieces = 1
+        else:
+            ia = iget(h, ip, KR)
+            ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
+            grow = half
+            pieces = 1 + int(max(abs(bx - ax), abs(by - ay)) / cell)
+        for k in range(pieces):
+            px, py = ax + (bx - ax) * k / pieces, ay + (by - ay) * k / pieces
+            qx, qy = ax + (bx - ax) * (k + 1) / pieces, ay + (by - ay) * (k + 1) / pieces
+            for cx in range(
+                int(np.floor((min(px, qx) - grow) / cell)), int(np.floor((max(px, qx) + grow) / cell)) + 1
+            ):
+                for cy in range(
+                    int(np.floor((min(py, qy) - grow) / cell)), int(np.floor((max(py, qy) + grow) / cell)) + 1
+                ):
+                    if len(key) > 0:
+                        key[m] = cx * 0x40000000 + cy
+                        row[m] = i
+                    m += 1
+    return m
+
+
+@kernel
+def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+    """As _search_all, but only pairs that share a cell of a grid as wide as the mean edge is long."""
+    total = real(h, 0.0)
+    for i in range(n):
+        ax, ay, bx, by = _box(h, seg, i)
+        total += max(bx - ax, by - ay)
+    cell = total / real(h, n)
+    nothing = np.empty(0, np.int64)
+    m = _cells(h, seg, n, cell, nothing, nothing)
+    key, row = np.empty(m, np.int64), np.empty(m, np.int64)
+    _cells(h, seg, n, cell, key, row)
+    order = np.argsort(key, kind="mergesort")
+    best, bi, bj = 0, 0, 0
+    most = real(h, 0.0)
+    first = 0
+    while first < m:
+        last = first
+        while last < m and key[order[last]] == key[order[first]]:
+            last += 1
+        for u in range(first, last):
+            for v in range(u + 1, last):
+                i, j = row[order[u]], row[order[v]]
+                if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
+                    continue
+                code, urgent = judge(h, seg, i, j)
+                if code != 0 and (best == 0 or urgent > most):
+                    best, bi, bj, most = code, i, j, urgent
+        first = last
+    return best, bi, bj
+
+
+@kernel
+def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+    """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none."""
+    if n <= SMALL:
+        return _search_all(h, seg, n)
+    return _search_cells(h, seg, n)

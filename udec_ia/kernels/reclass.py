@@ -1,0 +1,149 @@
+"""Contact re-classification (report 2.5; QUERY, MVFOR, MVBAK).
+
+As blocks slide, one and the same contact passes from the edge to the arc of a rounded corner and on to
+the next edge: only its code changes and, past a corner, its place in the block's list. The force goes
+on without a break because both forms agree where they meet; GTOL keeps the code from flickering there.
+
+MVFOR and MVBAK of 1980 took along the contacts that stood between. Here a contact waits for them: each
+moves when its own geometry says so, and the order of the list stays the order of the map.
+
+A corner on an edge keeps its corner when its block rolls over to the next one, which then has a contact
+of its own - unless the flat between the two is shorter than FTOL. Two contacts so close are one: the
+contact is handed from corner to corner, and the report's ball rolls on a single contact.
+"""
+
+from __future__ import annotations
+
+from offsets.generated import (
+    DTOL,
+    FTOL,
+    GTOL,
+    KB1,
+    KB2,
+    KCCOD,
+    KCP1,
+    KCP2,
+    KR,
+    KRAD,
+    KXCP,
+    KYCP,
+    NSHORT,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, puti
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.lists import (
+    corner_of,
+    insert_after,
+    is_corner,
+    next_corner,
+    nextcp,
+    prevcp,
+    take_out,
+)
+from udec_ia.kernels.shape import zcs
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, ce, lean
+
+
+@kernel
+def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
+    """Move contact `ic` forwards past its corner on block `ib`, with the new code (MVFOR).
+
+    False, and nothing changes, while another contact stands between them.
+    """
+    ip = corner_of(h, ib, ic)
+    if nextcp(h, ib, ic) != ip:
+        return False
+    take_out(h, ib, ic)
+    insert_after(h, ib, ip, ic)
+    puti(h, ic, KCCOD, code)
+    return True
+
+
+@kernel
+def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
+    """Move contact `ic` backwards past the corner before it on block `ib`, with the new code (MVBAK).
+
+    False, and nothing changes, while another contact stands between them.
+    """
+    ip = prevcp(h, ib, ic)
+    if not is_corner(h, ip):
+        return False
+    take_out(h, ib, ic)
+    insert_after(h, ib, prevcp(h, ib, ip), ic)
+    puti(h, ic, KCCOD, code)
+    return True
+
+
+@kernel
+def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z: float) -> bool:
+    """Corner `ip` has come near an end of the edge of block `ib` that ends at `iq`."""
+    code = iget(h, ic, KCCOD)
+    g = h.cr[GTOL]
+    ia = iget(h, iq, KR)
+    if along < h.cr[DTOL] - g:
+        rad = getr(h, ia, KRAD)
+        if rad > 0:
+            return mvbak(h, ic, ib, CORNER_CORNER)
+        return rad == 0 and along < -g and mvbak(h, ic, ib, code)
+    rad = getr(h, iq, KRAD)
+    if rad > 0:
+        puti(h, ic, KCCOD, CORNER_CORNER)
+        return True
+    return rad == 0 and along > z + g and mvfor(h, ic, ib, code)
+
+
+@kernel
+def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
+    """Hand a contact on an edge from corner `ip` of block `ib` to the next corner, over a short flat.
+
+    (nx, ny) points from the circle's centre to the edge.
+    """
+    code = iget(h, ic, KCCOD)
+    ahead, behind = lean(h, ip, nx, ny)
+    slack = h.cr[GTOL] / h.cr[DTOL]
+    twice = h.cr[DTOL] + h.cr[DTOL]
+    if ahead > slack:
+        iq = next_corner(h, ib, ip)
+        z, _, _ = zcs(h, iq)
+        return z - twice < h.cr[FTOL] and getr(h, iq, KRAD) > 0 and mvfor(h, ic, ib, code)
+    if behind > slack:
+        z, _, _ = zcs(h, ip)
+        short = z - twice < h.cr[FTOL] and getr(h, iget(h, ip, KR), KRAD) > 0
+        return short and mvbak(h, ic, ib, code)
+    return False
+
+
+@kernel
+def _off_the_corner(h: Memory, ic: int) -> bool:
+    """A corner/corner contact whose line of centres has left one of the two arcs."""
+    ip, iq = iget(h, ic, KCP1), iget(h, ic, KCP2)
+    dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
+    ahead1, behind1 = lean(h, ip, dx, dy)
+    ahead2, behind2 = lean(h, iq, -dx, -dy)
+    most = max(max(ahead1, behind1), max(ahead2, behind2))
+    if most <= h.cr[GTOL]:
+        return False
+    if most == ahead1:
+        return mvfor(h, ic, iget(h, ic, KB1), EDGE_CORNER)
+    if most == ahead2:
+        return mvfor(h, ic, iget(h, ic, KB2), CORNER_EDGE)
+    puti(h, ic, KCCOD, EDGE_CORNER if most == behind1 else CORNER_EDGE)
+    return True
+
+
+@kernel
+def reclass(h: Memory, ic: int) -> bool:
+    """Give contact `ic` the code that its geometry asks for; True if code or place changed."""
+    code = iget(h, ic, KCCOD)
+    if code == CORNER_CORNER:
+        return _off_the_corner(h, ic)
+    if code == CORNER_EDGE:
+        ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
+        ip, iq = iget(h, ic, KCP1), iget(h, ic, KCP2)
+    else:
+        ib, jb = iget(h, ic, KB2), iget(h, ic, KB1)
+        ip, iq = iget(h, ic, KCP2), iget(h, ic, KCP1)
+    ex, ey, _, along, z = ce(h, ip, iq)
+    border = h.cr[DTOL] - h.cr[GTOL]
+    changed = (along < border or z - along < border) and _off_the_edge(h, ic, jb, ip, iq, along, z)
+    return changed or (h.ci[NSHORT] != 0 and _roll(h, ic, ib, ip, -ex, -ey))

@@ -1,0 +1,114 @@
+"""Taking a block out of the map (DELB).
+
+First the contacts that separate two domains go, each merging its two; what is left ties the block to
+its neighbours as bridges of the map. All but one of these are then put from the block to the first
+neighbour, as virtual contacts, so that what the block held together stays one connected map; the last
+one goes with the block.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    IBPNT,
+    KB,
+    KB1,
+    KB2,
+    KBB,
+    KCCOD,
+    KD1,
+    KD2,
+    KDLOOP,
+    KL,
+    KP,
+    KR,
+    NBLK,
+    NVBL,
+    NVCR,
+)
+from udec_ia.heap.accessors import HEAD, Memory, iget, puti
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import lose
+from udec_ia.kernels.bridge import delc, flag, losec, to_virtual
+from udec_ia.kernels.lists import (
+    dellst,
+    insert_after,
+    is_contact,
+    is_corner,
+    nextcp,
+    other,
+    take_out,
+)
+from udec_ia.kernels.touch import VIRTUAL
+
+
+@kernel
+def _delete_separating(h: Memory, ib: int) -> None:
+    """Delete the contacts of block `ib` that have two different domains on their sides."""
+    ip = iget(h, ib, KP)
+    item = iget(h, ip, KL)
+    while item != ip:
+        following = nextcp(h, ib, item)
+        if is_contact(h, item) and iget(h, item, KD1) != iget(h, item, KD2):
+            delc(h, item)
+        item = following
+
+
+@kernel
+def _pass_on(h: Memory, ib: int, ic: int, jb: int, after: int) -> None:
+    """Put bridge `ic` of block `ib` to block `jb` instead, after its item `after`, as a virtual contact."""
+    take_out(h, ib, ic)
+    puti(h, ic, KB1 if iget(h, ic, KB1) == ib else KB2, jb)
+    insert_after(h, jb, after, ic)
+    if iget(h, ic, KCCOD) != VIRTUAL:
+        to_virtual(h, ic)
+
+
+@kernel
+def _next_contact(h: Memory, ib: int, ic: int) -> int:
+    """Next contact after contact `ic` in the list of block `ib`; `ic` itself if there is no other."""
+    item = nextcp(h, ib, ic)
+    while is_corner(h, item):
+        item = nextcp(h, ib, item)
+    return item
+
+
+@kernel
+def delb(h: Memory, ib: int) -> None:
+    """Delete block `ib` (DELB). The map must have another contact left when it is gone."""
+    _delete_separating(h, ib)
+    ip = iget(h, ib, KP)
+    first = np.int64(0)
+    jb = np.int64(0)
+    item = iget(h, ip, KL)
+    while item != ip:
+        following = nextcp(h, ib, item)
+        if is_contact(h, item):
+            if first == 0:
+                first, jb = item, other(h, ib, item)
+            else:
+                _pass_on(h, ib, item, jb, first)
+        item = following
+    idm = iget(h, first, KD1)
+    puti(h, idm, KDLOOP, _next_contact(h, jb, first))
+    flag(h, idm)
+    take_out(h, jb, first)
+    losec(h, first)
+    _lose_corners(h, ip)
+    dellst(h, IBPNT, KB, KBB, ib)
+    puti(h, ib, HEAD, 0)
+    lose(h, ib, NVBL)
+    h.ci[NBLK] -= 1
+
+
+@kernel
+def _lose_corners(h: Memory, ip0: int) -> None:
+    ip = ip0
+    while True:
+        before = iget(h, ip, KR)
+        puti(h, ip, HEAD, 0)
+        lose(h, ip, NVCR)
+        if before == ip0:
+            return
+        ip = before

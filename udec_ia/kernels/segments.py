@@ -1,0 +1,126 @@
+"""The boundary of a domain as a sequence of segments, corner arcs and edges (NEXTDS of the report).
+
+A contact can arise only between two segments of the same domain (2.2). Going round the loop, a segment
+is noted wherever an arc or an edge comes into view: after a contact the segment it stands on, then, at
+each corner, the corner's arc and the next edge. One and the same arc or edge is noted once for every
+exposure that it has in the domain.
+
+A row of the array: block, corner, arc, item, piece.
+  corner  the corner of the arc, or the corner where the edge ends
+  arc     1 for an arc, 0 for an edge
+  item    the item of the block's list before the exposure: a contact on it is put after this item
+  piece   number of the piece; pieces of one loop are tied together by virtual contacts only
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KRAD
+from udec_ia.heap.accessors import Memory, getr, iget
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.bridge import nextd
+from udec_ia.kernels.lists import corner_of, is_corner, next_corner
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+
+BLOCK, CORNER, ARC, ITEM, PIECE = 0, 1, 2, 3, 4
+COLUMNS = 5
+
+
+@kernel
+def on_arc(h: Memory, ib: int, ic: int) -> bool:
+    """True if contact `ic` stands on the arc of its corner on block `ib` (QUERY)."""
+    code = iget(h, ic, KCCOD)
+    if code == CORNER_CORNER:
+        return True
+    return code == (CORNER_EDGE if iget(h, ic, KB1) == ib else EDGE_CORNER)
+
+
+@kernel
+def loop_start(h: Memory, idm: int) -> tuple[int, int]:
+    """Contact KDLOOP of domain `idm` and the block that is walked after it."""
+    ic = iget(h, idm, KDLOOP)
+    if iget(h, ic, KD1) == idm:
+        return ic, iget(h, ic, KB2)
+    return ic, iget(h, ic, KB1)
+
+
+@kernel
+def count_items(h: Memory, idm: int) -> int:
+    """Number of items passed on the way round domain `idm`."""
+    start, first = loop_start(h, idm)
+    item, block = start, first
+    n = 0
+    while True:
+        item, block = nextd(h, item, block)
+        n += 1
+        if item == start and block == first:
+            return n
+
+
+@kernel
+def _note(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -> int:
+    seg[n, BLOCK] = ib
+    seg[n, CORNER] = ip
+    seg[n, ARC] = arc
+    seg[n, ITEM] = item
+    seg[n, PIECE] = piece
+    return n + 1
+
+
+@kernel
+def _note_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
+    """Note the arc of corner `ip` if it is convex; other corners carry no contact."""
+    if getr(h, ip, KRAD) > 0:
+        return _note(seg, n, ib, ip, 1, item, piece)
+    return n
+
+
+@kernel
+def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
+    """Fill `seg` with the segments of domain `idm` and `ties` with its virtual contacts.
+
+    A row of `ties`: the virtual contact, the piece it was reached from, the piece it led to first.
+    Returns the number of segments and the number of ties; there is one piece more than there are ties.
+    """
+    start, first = loop_start(h, idm)
+    item, block = start, first
+    n, nties, depth, piece = 0, 0, 0, 0
+    way_back = np.empty(len(ties), np.int64)
+    corner = corner_of(h, block, item)
+    arc = on_arc(h, block, item)
+    n = _note_arc(h, seg, n, block, corner, item, 0) if arc else _note(seg, n, block, corner, 0, item, 0)
+    while True:
+        last, before = item, block
+        item, block = nextd(h, item, block)
+        if is_corner(h, item):
+            if not arc:
+                n = _note_arc(h, seg, n, block, item, last, piece)
+            arc = False
+            corner = next_corner(h, block, item)
+            n = _note(seg, n, block, corner, 0, item, piece)
+            continue
+        if on_arc(h, before, item) and not arc:
+            n = _note_arc(h, seg, n, before, corner, last, piece)
+        if item == start and block == first:
+            return n, nties
+        if iget(h, item, KCCOD) == VIRTUAL:
+            if depth > 0 and ties[way_back[depth - 1], 0] == item:
+                depth -= 1
+                piece = ties[way_back[depth], 1]
+            else:
+                ties[nties, 0] = item
+                ties[nties, 1] = piece
+                ties[nties, 2] = nties + 1
+                way_back[depth] = nties
+                depth += 1
+                nties += 1
+                piece = nties
+        corner = corner_of(h, block, item)
+        arc = on_arc(h, block, item)
+        if arc:
+            n = _note_arc(h, seg, n, block, corner, item, piece)
+        else:
+            n = _note(seg, n, block, corner, 0, item, piece)

@@ -1,0 +1,132 @@
+"""Shape of a block: area, centroid, inertia (GEO, INERT, MAKEB) and rounded corners (CRAD).
+
+A block's outline is the polygon through its corners, clockwise. Mass and moment of inertia are those
+of the unrounded polygon (report 2.3). Each corner is rounded by the arc that is tangent to its two
+edges at the distance DTOL from the corner; the arc's radius is D tan(theta/2), theta the interior
+angle. With t the unit vector along an edge, clockwise, and Jt = (ty, -tx) pointing into the block:
+
+    centre = corner - D t_in + R J t_in = corner + D t_out + R J t_out
+
+A concave corner gets R < 0: it carries no contact, the edges at it count down to the corner itself.
+A flat corner (R would be infinite) gets R = 0 and is a point of one long edge.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    DENS,
+    DTOL,
+    FTOL,
+    KBI,
+    KBM,
+    KBRO,
+    KMAT,
+    KP,
+    KR,
+    KRAD,
+    KX,
+    KXCP,
+    KXP,
+    KY,
+    KYCP,
+    KYP,
+)
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.lists import next_corner
+
+FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a straight edge
+
+
+@kernel
+def geo(h: Memory, ib: int) -> tuple[float, float, float, float]:
+    """Area, centroid x and y, and second moment of area about the centroid (GEO, INERT).
+
+    Sums over the triangles that a first corner makes with every edge; a clockwise outline is positive.
+    """
+    ip0 = iget(h, ib, KP)
+    x0, y0 = getr(h, ip0, KXP), getr(h, ip0, KYP)
+    twice, sx, sy, second = real(h, 0.0), real(h, 0.0), real(h, 0.0), real(h, 0.0)
+    ip = ip0
+    while True:
+        iq = iget(h, ip, KR)  # the edge from iq to ip
+        ax, ay = getr(h, iq, KXP) - x0, getr(h, iq, KYP) - y0
+        bx, by = getr(h, ip, KXP) - x0, getr(h, ip, KYP) - y0
+        cross = bx * ay - ax * by
+        twice += cross
+        sx += cross * (ax + bx)
+        sy += cross * (ay + by)
+        second += cross * ((ax * ax + ay * ay) + (ax * bx + ay * by) + (bx * bx + by * by))
+        ip = iq
+        if ip == ip0:
+            break
+    area = twice * real(h, 0.5)
+    three = real(h, 3.0)
+    cx, cy = sx / (three * twice), sy / (three * twice)
+    return area, x0 + cx, y0 + cy, second / real(h, 12.0) - area * (cx * cx + cy * cy)
+
+
+@kernel
+def makeb(h: Memory, ib: int) -> None:
+    """Install centroid, mass, moment of inertia and greatest corner distance of block `ib` (MAKEB)."""
+    area, x, y, second = geo(h, ib)
+    putr(h, ib, KX, x)
+    putr(h, ib, KY, y)
+    dens = h.cr[DENS + iget(h, ib, KMAT) - 1]
+    putr(h, ib, KBM, dens * area)
+    putr(h, ib, KBI, dens * second)
+    ip0 = iget(h, ib, KP)
+    far = real(h, 0.0)
+    ip = ip0
+    while True:
+        dx, dy = getr(h, ip, KXP) - x, getr(h, ip, KYP) - y
+        far = max(far, dx * dx + dy * dy)
+        ip = iget(h, ip, KR)
+        if ip == ip0:
+            break
+    putr(h, ib, KBRO, np.sqrt(far))
+
+
+@kernel
+def zcs(h: Memory, ip: int) -> tuple[float, float, float]:
+    """Length and unit vector of the edge that ends at corner `ip` (ZCS)."""
+    ia = iget(h, ip, KR)
+    dx, dy = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
+    z = np.sqrt(dx * dx + dy * dy)
+    return z, dx / z, dy / z
+
+
+@kernel
+def crad(h: Memory, ib: int) -> int:
+    """Radius and circle centre for each corner of block `ib` (CRAD).
+
+    Returns the number of edges whose straight part is shorter than FTOL.
+    """
+    d = h.cr[DTOL]
+    short = 0
+    ip0 = iget(h, ib, KP)
+    ip = ip0
+    while True:
+        iq = next_corner(h, ib, ip)
+        z, c1, s1 = zcs(h, ip)
+        _, c2, s2 = zcs(h, iq)
+        if z - d - d < h.cr[FTOL]:
+            short += 1
+        turn = c2 * s1 - c1 * s2  # sine of the clockwise turn
+        rad = real(h, 0.0)
+        x, y = getr(h, ip, KXP), getr(h, ip, KYP)
+        if abs(turn) >= real(h, FLAT):
+            if abs(s1 - s2) > abs(c1 - c2):  # the form with the larger denominator (report 2.3)
+                rad = d * (c1 + c2) / (s1 - s2)
+            else:
+                rad = d * (s1 + s2) / (c2 - c1)
+            x += d * c2 + rad * s2
+            y += d * s2 - rad * c2
+        putr(h, ip, KRAD, rad)
+        putr(h, ip, KXCP, x)
+        putr(h, ip, KYCP, y)
+        ip = iq
+        if ip == ip0:
+            return short

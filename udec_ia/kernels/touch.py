@@ -1,0 +1,95 @@
+"""Geometry of one contact: corner on edge (CE), corner on corner (CC), contact point (COORD).
+
+Everything is measured from circle centres c with radii r (report 2.3, 2.5). Normals point from block
+KB1 to block KB2; the overlap is positive when the rounded outlines overlap.
+
+    corner/edge     overlap = r - (c - a).e        e outward normal of the edge that starts at a
+    corner/corner   overlap = r1 + r2 - |c2 - c1|  normal along c2 - c1
+
+The contact point lies on the normal through the circle's centre, in the middle of the overlap. Where
+a contact passes from edge to arc, both forms give the same normal and the same overlap.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import DTOL, KCCOD, KCN, KCP1, KCP2, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.shape import zcs
+
+CORNER_CORNER = 1
+CORNER_EDGE = 2
+EDGE_CORNER = 3
+VIRTUAL = 4
+
+
+@kernel
+def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
+    """Corner `ip` against the edge that ends at corner `iq` (CE).
+
+    Returns the edge's outward normal (x, y), the overlap, the distance of the circle's centre along the
+    edge from its start, and the length of the edge.
+    """
+    ia = iget(h, iq, KR)
+    z, c, s = zcs(h, iq)
+    x, y = getr(h, ip, KXCP) - getr(h, ia, KXP), getr(h, ip, KYCP) - getr(h, ia, KYP)
+    return -s, c, getr(h, ip, KRAD) - (y * c - x * s), x * c + y * s, z
+
+
+@kernel
+def cc(h: Memory, ip: int, iq: int) -> tuple[float, float, float]:
+    """Corner `ip` of block KB1 against corner `iq` of block KB2 (CC): normal (x, y) and overlap."""
+    dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
+    z = np.sqrt(dx * dx + dy * dy)
+    return dx / z, dy / z, getr(h, ip, KRAD) + getr(h, iq, KRAD) - z
+
+
+@kernel
+def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
+    """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
+
+    Returns its component along the edge that leaves the corner and minus its component along the edge
+    that arrives: with (x, y) drawn from the circle's centre, both are negative or zero inside the arc.
+    With m = centre - corner, t_out = (D m - R Jm)/m.m and -t_in = (D m + R Jm)/m.m.
+    """
+    d, r = h.cr[DTOL], getr(h, ip, KRAD)
+    mx, my = getr(h, ip, KXCP) - getr(h, ip, KXP), getr(h, ip, KYCP) - getr(h, ip, KYP)
+    mm = mx * mx + my * my
+    along = d * (x * mx + y * my)
+    across = r * (x * my - y * mx)
+    return (along - across) / mm, (along + across) / mm
+
+
+@kernel
+def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[float, float]:
+    """Contact point of corner `ip`, whose circle touches something in direction (nx, ny)."""
+    reach = getr(h, ip, KRAD) - overlap * real(h, 0.5)
+    return getr(h, ip, KXCP) + nx * reach, getr(h, ip, KYCP) + ny * reach
+
+
+@kernel
+def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float]:
+    """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2."""
+    if code == CORNER_CORNER:
+        nx, ny, overlap = cc(h, ip, iq)
+        x, y = point_on(h, ip, nx, ny, overlap)
+    elif code == CORNER_EDGE:
+        ex, ey, overlap, _, _ = ce(h, ip, iq)
+        nx, ny = -ex, -ey
+        x, y = point_on(h, ip, nx, ny, overlap)
+    else:
+        nx, ny, overlap, _, _ = ce(h, iq, ip)
+        x, y = point_on(h, iq, -nx, -ny, overlap)
+    return nx, ny, overlap, x, y
+
+
+@kernel
+def coord(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Update the coordinates and the overlap of contact `ic` (COORD); returns normal and overlap."""
+    nx, ny, overlap, x, y = meet(h, iget(h, ic, KCCOD), iget(h, ic, KCP1), iget(h, ic, KCP2))
+    putr(h, ic, KXC, x)
+    putr(h, ic, KYC, y)
+    putr(h, ic, KCN, overlap)
+    return nx, ny, overlap

@@ -1,0 +1,115 @@
+"""Updating a domain: look for new contacts in it and make them (UPDATE, UPDT; report 2.2).
+
+An update makes the most urgent contact that the domain needs and looks again, in both parts if the
+domain was cut, until nothing more is needed. Every single contact leaves a sound map; when memory runs
+out the update stops between two contacts and can be taken up again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import ETOL, IDPNT, KD, KD1, KD2, KDLOOP, KUMAX, NVCN, NVDO, NVIRT
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import room_for_two
+from udec_ia.kernels.bridge import bridge
+from udec_ia.kernels.hook import cut_among_pieces, not_virtual, rehook
+from udec_ia.kernels.near import search
+from udec_ia.kernels.segments import BLOCK, COLUMNS, ITEM, PIECE, collect, count_items
+
+NOTHING, MADE, CUT, NO_ROOM = 0, 1, 2, 3
+WAITING = 64  # domains that may wait for their turn in one update
+
+
+@kernel
+def tie_between(ties: Any, one: int, two: int) -> int:
+    """Row of a virtual contact on the way from piece `one` to piece `two`.
+
+    Piece k + 1 was first reached over tie k, so the ties form a tree rooted in piece 0, and a piece has a
+    greater number than the one it was reached from: going up from the greater of two different numbers
+    always goes along the way between them.
+    """
+    return max(one, two) - 1
+
+
+@kernel
+def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
+    """One exposure of every piece: rows (block, item, 1 for the piece `own`)."""
+    pieces = np.zeros((nties + 1, 3), np.int64)
+    for i in range(n):
+        k = seg[i, PIECE]
+        if pieces[k, 0] == 0:
+            pieces[k, 0] = seg[i, BLOCK]
+            pieces[k, 1] = not_virtual(h, seg[i, BLOCK], seg[i, ITEM])
+            pieces[k, 2] = 1 if k == own else 0
+    return pieces
+
+
+@kernel
+def updt(h: Memory, idm: int) -> tuple[int, int]:
+    """Make the most urgent contact in domain `idm` (UPDT): what was done, and the new domain or 0."""
+    zero = np.int64(0)
+    if iget(h, idm, KDLOOP) == 0:
+        return NOTHING, zero
+    items = count_items(h, idm)
+    seg = np.empty((2 * items + 2, COLUMNS), np.int64)
+    ties = np.empty((min(h.ci[NVIRT], items), 3), np.int64)
+    n, nties = collect(h, idm, seg, ties)
+    code, i, j = search(h, seg, n)
+    if code == 0:
+        return NOTHING, zero
+    ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
+    one, two = seg[i, PIECE], seg[j, PIECE]
+    if one != two:
+        rehook(h, ties[tie_between(ties, one, two), 0], ib, iad, jb, jad, code)
+        return MADE, zero
+    if not room_for_two(h, NVCN, NVDO):
+        return NO_ROOM, zero
+    if nties > 0:
+        pieces = _pieces(h, seg, n, nties, one)
+        return CUT, cut_among_pieces(h, ib, iad, jb, jad, code, idm, ties[:nties, 0].copy(), pieces)
+    ic = bridge(h, ib, iad, jb, jad, code, idm)
+    return CUT, iget(h, ic, KD1) if iget(h, ic, KD2) == idm else iget(h, ic, KD2)
+
+
+@kernel
+def update(h: Memory, idm: int) -> bool:
+    """Update domain `idm` and every domain that is cut from it (UPDATE). False if memory ran out."""
+    waiting = np.empty(WAITING, np.int64)
+    waiting[0] = idm
+    n = 1
+    while n > 0:
+        here = waiting[n - 1]
+        done, idnew = updt(h, here)
+        if done == NO_ROOM:
+            return False
+        if done == NOTHING:
+            putr(h, here, KUMAX, real(h, 0.0))
+            n -= 1
+        elif done == CUT:
+            putr(h, idnew, KUMAX, getr(h, here, KUMAX))
+            if n < WAITING:  # else it keeps its displacement and is found by the next pass
+                waiting[n] = waiting[n - 1]
+                waiting[n - 1] = idnew
+                n += 1
+    return True
+
+
+@kernel
+def update_all(h: Memory) -> bool:
+    """Update every domain whose fictitious displacement exceeds ETOL. False if memory ran out."""
+    again = True
+    while again:
+        again = False
+        idm = h.ci[IDPNT]
+        while idm != 0:
+            following = iget(h, idm, KD)
+            if getr(h, idm, KUMAX) > h.cr[ETOL]:
+                if not update(h, idm):
+                    return False
+                again = True
+            idm = following
+    return True

@@ -1,0 +1,92 @@
+"""BLOCK: the single block that everything else is cut from (CREATE)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from offsets.generated import DTOL, IODPNT, KL, KLB, KP, KR, LROUND, NBLK, NVBL, NVCR, NVDO
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import puti, size_of
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.bridge import maked
+from udec_ia.kernels.shape import makeb
+from udec_ia.kernels.split import makep, new_block
+from udec_ia.kernels.tolerances import default_rounding, set_rounding
+from udec_ia.ops.limits import constitutive_number, finite, material_number
+from udec_ia.ops.memory import require
+from udec_ia.ops.rounding import check_rounding
+
+Point = tuple[float, float]
+
+
+def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
+    """Create the block with the given corners (clockwise). Returns its address.
+
+    Errors 4, 5, 6, 9 for what is wrong with it, 18 for a second block.
+    """
+    h = array.h
+    if h.ci[NBLK] > 0:
+        raise UdecError(18, "", "cut the existing block with SPLIT, take parts away with DELETE")
+    material_number(material)
+    constitutive_number(constitutive)
+    if len(corners) < 3:
+        raise UdecError(5, f"{len(corners)} given")
+    for x, y in corners:
+        finite(x, y)
+    _check_outline(corners)
+    require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
+    h = array.h
+    ib = new_block(h, material, constitutive)
+    ips = [makep(h, ib, h.cr.dtype.type(x), h.cr.dtype.type(y)) for x, y in corners]
+    for here, following in zip(ips, ips[1:] + ips[:1], strict=True):
+        puti(h, here, KL, following)
+        puti(h, following, KLB, here)
+        puti(h, following, KR, here)
+    puti(h, ib, KP, ips[0])
+    h.ci[IODPNT] = maked(h)
+    makeb(h, ib)
+    set_rounding(h, h.cr[DTOL] if h.ci[LROUND] else default_rounding(h))
+    check_rounding(array)
+    return int(ib)
+
+
+def _check_outline(corners: Sequence[Point]) -> None:
+    """Error 6 unless the corners, taken clockwise, enclose an area and no two edges meet elsewhere."""
+    n = len(corners)
+    edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
+    twice = sum(b[0] * a[1] - a[0] * b[1] for a, b in edges)
+    if not twice > 0:
+        raise UdecError(6, "the corners must be given clockwise")
+    for i, (a, b) in enumerate(edges):
+        if a == b:
+            raise UdecError(6, f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row")
+        for j in range(i + 1, n):
+            if j - i in (1, n - 1):
+                shared, end = (b, edges[j][1]) if j - i == 1 else (a, edges[j][0])
+                start = a if j - i == 1 else b
+                if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
+                    raise UdecError(6, f"the outline turns back on itself at ({shared[0]:g}, {shared[1]:g})")
+            elif _meet(a, b, *edges[j]):
+                raise UdecError(6, f"the outline crosses itself near ({a[0]:g}, {a[1]:g})")
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+
+
+def _along(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
+
+
+def _meet(a: Point, b: Point, c: Point, d: Point) -> bool:
+    """True if the closed segments ab and cd have a point in common."""
+
+    def between(p: Point, q: Point, r: Point) -> bool:
+        inside_x = min(p[0], q[0]) <= r[0] <= max(p[0], q[0])
+        return inside_x and min(p[1], q[1]) <= r[1] <= max(p[1], q[1])
+
+    t = (_turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b))
+    if (t[0] > 0) != (t[1] > 0) and (t[2] > 0) != (t[3] > 0) and 0 not in t:
+        return True
+    pairs = zip(t, ((a, b, c), (a, b, d), (c, d, a), (c, d, b)), strict=True)
+    return any(turn == 0 and between(*points) for turn, points in pairs)

@@ -1,0 +1,152 @@
+"""CYCLE: prepare (INI), then run the calculation cycle in pieces (report 2.6).
+
+Between two pieces the caller hears how far the run has come; the pieces are as long as fits a few reports
+a second and have no influence on the results.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from time import perf_counter
+
+from offsets.generated import (
+    AKN,
+    AKS,
+    ALPB,
+    ALPHA,
+    C1B,
+    C2B,
+    CON1,
+    CON2,
+    DTOL2,
+    FRAC,
+    IBPNT,
+    IERAD,
+    KB1,
+    KB2,
+    KCM,
+    KCN,
+    KMAT,
+    KXC,
+    KYC,
+    MCTOT,
+    NBLK,
+    NCON,
+    NCYC,
+    NERR,
+    TDEL,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
+from udec_ia.kernels.cycle import run_cycles
+from udec_ia.ops.memory import find_room
+from udec_ia.ops.rounding import check_rounding, settle_default
+
+REPORT_SECONDS = 0.2
+FIRST_PIECE = 10
+Report = Callable[[int], None]
+
+
+def prepare(array: MainArray) -> None:
+    """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
+
+    Errors 11, 12, 13, 14 and 16; 23 for a constitutive number that has no law yet.
+    """
+    h = array.h
+    if h.ci[NBLK] == 0:
+        raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
+    if h.ci[MCTOT] == 0:
+        make_masses(h)
+    settle_default(array)
+    h = array.h
+    check_rounding(array)
+    h.cr[TDEL] = h.cr[FRAC] * critical_step(array)
+    for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
+        half = h.cr[alpha] * h.cr[TDEL] / 2
+        if half >= 1:
+            detail = (
+                f"the damping coefficient {h.cr[alpha]:g} times the time-step {h.cr[TDEL]:g} is not below 2"
+            )
+            raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
+        h.cr[con1] = 1 - half
+        h.cr[con2] = 1 / (1 + half)
+
+
+def critical_step(array: MainArray) -> float:
+    """The 1980 estimate of the critical time-step, 2 sqrt(M/K): least mass, greatest joint stiffness.
+
+    It is only approximate (4.6): a block that rests on several contacts has a shorter one.
+    """
+    h = array.h
+    mass, massless, foreign = least_mass(h)
+    if massless:
+        m = iget(h, massless, KMAT)
+        detail = f"block@{massless} has material {m}, whose density is not set"
+        raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
+    if h.ci[NCON] == 0:
+        m = iget(h, int(h.ci[IBPNT]), KMAT)
+        stiffness, undefined, other = max(h.cr[AKN + m - 1], h.cr[AKS + m - 1]), 0, 0
+        if not stiffness > 0:
+            raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
+    else:
+        stiffness, undefined, other = greatest_stiffness(h)
+    if undefined:
+        m = iget(h, undefined, KCM)
+        detail = f"contact@{undefined} has material {m}"
+        raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
+    if foreign or other:
+        raise UdecError(
+            23, "constitutive numbers 2 to 5", "use constitutive number 1", group=int(foreign or other)
+        )
+    return 2 * math.sqrt(float(mass) / float(stiffness))
+
+
+def cycle(array: MainArray, n: int, report: Report | None = None, every: int | None = None) -> int:
+    """Run `n` cycles. Returns how many were completed.
+
+    report: called with the number of cycles done so far, every `every` cycles or a few times a second.
+    Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
+    """
+    if n < 0:
+        raise UdecError(28, f"the number of cycles must not be negative, it is {n}")
+    prepare(array)
+    array.h.ci[NCYC] = n
+    done, piece = 0, every or FIRST_PIECE
+    while done < n:
+        start = perf_counter()
+        done += int(run_cycles(array.h, min(piece, n - done)))
+        _raise_error(array)
+        if report is not None:
+            report(done)
+        if every is not None:
+            continue
+        seconds = max(perf_counter() - start, 1e-6)
+        piece = max(1, min(int(piece * REPORT_SECONDS / seconds), 4 * piece))
+    return done
+
+
+def _raise_error(array: MainArray) -> None:
+    """Find memory if that is what a kernel stopped for; else raise the error it left behind."""
+    h = array.h
+    number = int(h.ci[NERR])
+    if number == 0:
+        return
+    if number == 1:
+        find_room(array)
+        return
+    ic = int(h.ci[IERAD])
+    h.ci[NERR] = h.ci[IERAD] = 0
+    m = iget(h, ic, KCM)
+    detail = (
+        f"contact@{ic} of block@{iget(h, ic, KB1)} and block@{iget(h, ic, KB2)} at "
+        f"({getr(h, ic, KXC):g}, {getr(h, ic, KYC):g}) overlaps by {getr(h, ic, KCN):g}, more than "
+        f"{h.cr[DTOL2]:g}, in cycle {int(h.ci[MCTOT])}"
+    )
+    advice = (
+        f"KN of material {m} is {h.cr[AKN + m - 1]:g}, the time-step {h.cr[TDEL]:g} is {h.cr[FRAC]:g} of "
+        "the critical one: take a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+    )
+    raise UdecError(number, detail, advice, group=ic)

@@ -1,0 +1,77 @@
+"""ROUND: the rounding length, and with it all tolerances (report 4.4)."""
+
+from __future__ import annotations
+
+from offsets.generated import DTOL, IBPNT, IDPNT, KD, KUMAX, KXP, KYP, LROUND, MCTOT
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget, putr
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.ford import settle_all
+from udec_ia.kernels.tolerances import default_rounding, edges, set_rounding
+from udec_ia.kernels.update import update_all
+from udec_ia.ops.limits import finite
+from udec_ia.ops.memory import find_room
+
+
+def check_rounding(array: MainArray) -> None:
+    """Error 14 if an edge cannot hold the roundings of its two corners."""
+    h = array.h
+    if h.ci[IBPNT] == 0:
+        return
+    _, least, ip = edges(h)
+    d = float(h.cr[DTOL])
+    if 2 * d > least * (1 + 1e-6):
+        x, y = getr(h, ip, KXP), getr(h, ip, KYP)
+        raise UdecError(
+            14,
+            f"{d:g}, but the edge that ends at ({x:g}, {y:g}) is only {least:g} long",
+            f"the rounding length must not exceed half the shortest edge, {least / 2:g}",
+            group=int(ip),
+        )
+
+
+def refresh(array: MainArray) -> None:
+    """Bring all contacts and domains up to date with a changed rounding length."""
+    h = array.h
+    settle_all(h)
+    idm = int(h.ci[IDPNT])
+    limit = h.cr[DTOL]
+    while idm != 0:
+        putr(h, idm, KUMAX, limit)
+        idm = iget(h, idm, KD)
+    update_flagged(array)
+
+
+def update_flagged(array: MainArray) -> None:
+    """Update every flagged domain, finding memory as needed."""
+    while not update_all(array.h):
+        find_room(array)
+
+
+def round_corners(array: MainArray, d: float) -> None:
+    """ROUND d. Error 28 if `d` is not positive, error 14 if an edge is too short for it."""
+    finite(d)
+    if d <= 0:
+        raise UdecError(28, f"the rounding length must be positive, it is {d:g}")
+    h = array.h
+    before, given = h.cr[DTOL], h.ci[LROUND]
+    h.cr[DTOL] = d
+    try:
+        check_rounding(array)
+    except UdecError:
+        h.cr[DTOL], h.ci[LROUND] = before, given
+        raise
+    h.ci[LROUND] = 1
+    set_rounding(h, h.cr[DTOL])
+    refresh(array)
+
+
+def settle_default(array: MainArray) -> None:
+    """Before the first cycle: without ROUND, take our own rounding length for the finished block system."""
+    h = array.h
+    if h.ci[LROUND] == 1 or h.ci[MCTOT] > 0:
+        return
+    d = default_rounding(h)
+    if d != h.cr[DTOL]:
+        set_rounding(h, d)
+        refresh(array)

@@ -1,0 +1,93 @@
+"""SPLIT: blocks are cut by a line (report 2.7)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from offsets.generated import DTOL, MCTOT, NBLK
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.cross import MOST, X, Y
+from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
+from udec_ia.ops.forces import renew_forces
+from udec_ia.ops.limits import finite
+from udec_ia.ops.memory import find_room
+from udec_ia.ops.rounding import update_flagged
+
+
+class Boxes:
+    """The boxes of all blocks, kept from one SPLIT to the next as long as nothing else moved a block."""
+
+    def __init__(self) -> None:
+        self.boxes = np.zeros((0, 4))
+        self.blocks = np.zeros(0, np.int64)
+        self.n = 0
+
+    def forget(self) -> None:
+        """Blocks have moved or gone: look at the block list again next time."""
+        self.n = 0
+
+    def enter(self, array: MainArray) -> None:
+        """Make sure that all blocks of the list are entered."""
+        count = int(array.h.ci[NBLK])
+        if len(self.blocks) < 2 * count:
+            self._resize(array, max(4 * count, 64))
+        if self.n != count:
+            self.n = enter_boxes(array.h, self.boxes, self.blocks)
+
+    def _resize(self, array: MainArray, size: int) -> None:
+        boxes, blocks = np.zeros((size, 4), array.h.cr.dtype), np.zeros(size, np.int64)
+        boxes[: self.n], blocks[: self.n] = self.boxes[: self.n], self.blocks[: self.n]
+        self.boxes, self.blocks = boxes, blocks
+
+
+def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: float) -> int:
+    """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
+
+    A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
+    runs too close to a corner or an edge.
+    """
+    finite(x1, y1, x2, y2)
+    z = math.hypot(x2 - x1, y2 - y1)
+    if not 0 < z < math.inf:
+        raise UdecError(
+            28, "the two ends of the line are the same point" if z == 0 else "the line is too long"
+        )
+    before = int(array.h.ci[NBLK])
+    if before == 0:
+        return 0
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z], array.h.cr.dtype)
+    while not _cut(array, boxes, line):
+        boxes.forget()
+    if array.h.ci[MCTOT] > 0:
+        renew_forces(array)
+    return int(array.h.ci[NBLK]) - before
+
+
+def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
+    """Cut along the line; False if it has to be begun again with more memory."""
+    boxes.enter(array)
+    h = array.h
+    rows, where = np.empty(boxes.n, np.int64), np.empty((MOST, 3), h.cr.dtype)
+    status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
+    if status != DONE:
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]))
+    status, boxes.n = cut_path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found)
+    if status == NO_MEMORY:
+        try:
+            find_room(array)
+        finally:
+            boxes.forget()
+        update_flagged(array)
+    return bool(status == DONE)
+
+
+def _refuse(array: MainArray, status: int, ib: int, x: float, y: float) -> None:
+    place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
+    if status == REFUSED_SHORT:
+        d = float(array.h.cr[DTOL])
+        detail = f"the cut {place} leaves an edge shorter than {2 * d:g}"
+        raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
+    raise UdecError(27, place, "move the line, or let it pass exactly through the corner", group=ib)

@@ -1,0 +1,49 @@
+"""What is done with a run while it goes on: progress is shown and pictures are taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TextIO
+
+from offsets.generated import FRAC, NBROKE, NMADE, TDEL, TIME
+from udec_ia.heap.accessors import Memory
+from udec_ia.kernels.balance import unbalanced
+
+if TYPE_CHECKING:
+    from udec_ia.output.animate import Animation
+    from udec_ia.output.progress import Progress
+
+
+class Report:
+    """Called by CYCLE now and then with the number of cycles done.
+
+    memory: gives the memory of the model as it is now. total: cycles of the command. stream: where progress
+    shows; None for nowhere. animation: where pictures go; None for nowhere.
+    """
+
+    def __init__(
+        self, memory: Callable[[], Memory], total: int, stream: TextIO | None, animation: Animation | None
+    ) -> None:
+        self.memory = memory
+        self.total = total
+        self.stream = stream
+        self.animation = animation
+        self.progress: Progress | None = None
+
+    def __call__(self, done: int) -> None:
+        h = self.memory()
+        if self.animation is not None:
+            self.animation.add(h)
+        if self.stream is None:
+            return
+        if self.progress is None:
+            from udec_ia.output.progress import Progress
+
+            self.progress = Progress(self.stream, self.total, float(h.cr[TDEL]), float(h.cr[FRAC]))
+        made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
+        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h)), made, broken)
+
+    def close(self) -> None:
+        """Take the progress off the screen."""
+        if self.progress is not None:
+            self.progress.close()
