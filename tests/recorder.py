@@ -21,8 +21,8 @@ class Recorder:
         self.started = False
         self.deck_log: list[str] = []
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
-        self.answers: dict[str, object] = {"save": Path("results/error.h5")}
-        self.failures: dict[str, Exception] = {}
+        self.answers: dict[str, object] = {"save": Path("results/rescue.h5")}
+        self.failures: dict[str, BaseException] = {}
 
     def __getattr__(self, name: str) -> Any:
         if name not in METHODS:

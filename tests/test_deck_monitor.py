@@ -70,19 +70,35 @@ def test_commands_that_were_obeyed_are_logged() -> None:
     assert model.deck_log == ["START", "BLOCK 0 0", "+ 1 1", "+ 1 1", "CYCLE 5"]
 
 
-def test_an_error_saves_the_state_and_names_the_file() -> None:
+def test_an_error_saves_the_state_names_the_file_and_ends_the_run() -> None:
     model, error = refused("START\nGRAVITY 0\n")
-    assert model.calls[-1] == ("save", ((Path("results") / "error.h5").absolute(),), {})
-    assert error.saved == str(Path("results/error.h5"))
+    assert model.calls[1:] == [("save", ((Path("results") / "rescue.h5").absolute(),), {}), ("stop", (), {})]
+    assert error.saved == str(Path("results/rescue.h5"))
     assert str(error).endswith(f"is saved in {error.saved}")
 
 
 def test_a_failing_save_does_not_hide_the_error() -> None:
-    model = Recorder()
+    model, out = Recorder(), io.StringIO()
     model.failures["save"] = OSError(28, "No space left on device")
-    _, error = refused("START\nCYCLE 10.5\n", model)
-    assert (error.number, error.saved) == (10, None)
-    assert "No space left on device" in str(error)
+    with pytest.raises(UdecError) as caught:
+        run_deck(model, "START\nCYCLE 10.5\n", out)
+    assert (caught.value.number, caught.value.saved) == (10, None)
+    assert "could not be saved and closed: [Errno 28] No space left" in out.getvalue()
+
+
+def test_a_damaged_main_array_is_not_saved() -> None:
+    model = Recorder()
+    model.fails("cycle", 20)
+    assert refused("START\nCYCLE 1\n", model)[1].saved is None
+    assert model.names == ["start", "cycle", "stop"]
+
+
+def test_an_interrupted_run_is_saved() -> None:
+    model = Recorder()
+    model.failures["cycle"] = KeyboardInterrupt()
+    with pytest.raises(KeyboardInterrupt, match=r"rescue\.h5"):
+        run_deck(model, "START\nCYCLE 1\n", io.StringIO())
+    assert model.names == ["start", "cycle", "save", "stop"]
 
 
 @pytest.mark.parametrize(

@@ -112,7 +112,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         print(f"udec: {error.filename}: {error.strerror}", file=sys.stderr)
         return ERROR
-    except KeyboardInterrupt:
-        print("\ninterrupted", file=sys.stderr)
+    except KeyboardInterrupt as interrupt:
+        saved = interrupt.args[0] if interrupt.args else None
+        print(
+            "\ninterrupted" + (f": what was computed is saved in {saved}" if saved else ""), file=sys.stderr
+        )
         return INTERRUPTED
     return status

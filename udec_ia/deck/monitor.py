@@ -22,7 +22,8 @@ from udec_ia.errors import UdecError
 if TYPE_CHECKING:
     from udec_ia.model import Model
 
-RESCUE = "error.h5"  # restart file written because of an error, in the folder for files
+DAMAGED = 20  # after this error the main array is not worth saving: RESTART would refuse it
+RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
 
 class Monitor:
@@ -41,7 +42,8 @@ class Monitor:
     def run(self, lines: Iterable[str], file: str) -> None:
         """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
 
-        Raises UdecError at the first error, after the state has been saved on a restart file.
+        Raises UdecError at the first error, and KeyboardInterrupt, after the state has been saved. The
+        restart file is named by UdecError.saved, and by the argument of KeyboardInterrupt.
         """
         try:
             for statement in statements(lines, file):
@@ -49,8 +51,10 @@ class Monitor:
                 if self.ended:
                     return
         except UdecError as error:
-            self._rescue(error)
+            error.saved = self._rescue(sound=error.number != DAMAGED)
             raise
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(self._rescue()) from None
 
     def obey(self, statement: Statement) -> None:
         """Echo and obey one statement. Raises UdecError with its place."""
@@ -104,14 +108,21 @@ class Monitor:
         self.out.write(text + "\n")
         self.out.flush()
 
-    def _rescue(self, error: UdecError) -> None:
-        """Save what was computed before `error`; a second failure must not hide the first."""
+    def _rescue(self, *, sound: bool = True) -> str | None:
+        """Save the state if it is sound, and end the run. Returns the name of the restart file.
+
+        A failure here must not hide what has gone wrong before.
+        """
         if not self.model.started:
-            return
+            return None
+        saved = None
         try:
-            error.saved = str(self.model.save((self.model.out / RESCUE).absolute()))
+            if sound:
+                saved = str(self.model.save((self.model.out / RESCUE).absolute()))
+            self.stop()
         except Exception as failure:
-            error.advice += f"\nthe state could not be saved: {failure}"
+            self._write(f"the run could not be saved and closed: {failure}")
+        return saved
 
 
 def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
