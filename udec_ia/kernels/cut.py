@@ -51,7 +51,7 @@ from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.shape import crad, zcs
 from udec_ia.kernels.split import corner_on_edge, spli
 from udec_ia.kernels.tolerances import set_rounding
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.update import update
 
 DONE, NO_MEMORY, NO_BOXES, REFUSED_CLOSE, REFUSED_SHORT = 0, 1, 2, 3, 4
@@ -122,14 +122,13 @@ def path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where
 
 
 @kernel
-def _code(h: Memory, ic: int) -> None:
+def _settle_crack(h: Memory, ic: int) -> None:
     """A crack contact stands on the arcs of both corners, or on the edge where one is not convex."""
     if getr(h, iget(h, ic, KCP1), KRAD) <= 0:
         puti(h, ic, KCCOD, EDGE_CORNER)
     elif getr(h, iget(h, ic, KCP2), KRAD) <= 0:
         puti(h, ic, KCCOD, CORNER_EDGE)
-    else:
-        puti(h, ic, KCCOD, CORNER_CORNER)
+    settle(h, ic)
 
 
 @kernel
@@ -178,10 +177,9 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
         if least < h.cr[DTOL] * real(h, 4.0):
             set_rounding(h, least * real(h, 0.125))
     h.ci[NSHORT] += crad(h, ib) + crad(h, jb)
-    for b in (ib, jb):
-        end = iget(h, iget(h, b, KP), KR)  # the crack runs from this corner to KP
-        _code(h, iget(h, end, KL))
-        _code(h, iget(h, end, KLB))
+    end = iget(h, iget(h, jb, KP), KR)  # the crack runs from this corner to KP
+    _settle_crack(h, iget(h, end, KL))
+    _settle_crack(h, iget(h, end, KLB))
     for b in (ib, jb):
         twin = iget(h, b, KP)
         _settle_around(h, b, twin)
