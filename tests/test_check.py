@@ -233,6 +233,8 @@ DAMAGES: list[tuple[str, Damage, int]] = [
     ("contact code unknown", first_int("contact", g.KCCOD, 5), 7),
     ("contact code 0", first_int("contact", g.KCCOD, 0), 7),
     ("overlap of the record", first("contact", g.KCN, 0.001), 7),
+    ("contact point across", first("contact", g.KXC, 0.11), 7),
+    ("contact point along", first("contact", g.KYC, 1.01), 7),
     ("overlap beyond DTOL2", deep, 7),
     ("virtual contact that is no bridge", virtual_with_force, 4),
     ("virtual contact with a force", virtual_with_force, 9),
@@ -273,7 +275,7 @@ def test_overlap_must_be_that_of_the_outlines(name: str) -> None:
     array = two_blocks(name)
     shift(array.h, 0.0, -0.25 * ROUNDING)
     assert numbers(check(array)) == {7}
-    set_contacts(array.h, KCN=0.25 * ROUNDING)
+    set_contacts(array.h, KCN=0.25 * ROUNDING, KYC=SIDE - 0.125 * ROUNDING)
     assert check(array) == []
     set_contacts(array.h, KCN=0.2501 * ROUNDING)
     assert len(check(array)) == 2
@@ -367,7 +369,7 @@ def test_one_of_two_contacts_missing_is_named() -> None:
     array = two_blocks()
     h = array.h
     shift(h, 0.0, -0.2 * ROUNDING)
-    set_contacts(h, KCN=0.2 * ROUNDING)
+    set_contacts(h, KCN=0.2 * ROUNDING, KYC=SIDE - 0.1 * ROUNDING)
     assert check(array) == []
     _, right = addresses(h, "contact")
     puti(h, right, g.KCCOD, 4)

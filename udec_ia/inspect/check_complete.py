@@ -1,8 +1,8 @@
 """Invariant 8: no two blocks overlap or touch without a contact between them.
 
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
-pairs of an arc with an edge or another arc. Every point where the outlines penetrate each other needs a
-contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
+pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
+needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
 
 def _contact_points(state: State, touch: Touches) -> dict[tuple[int, int], list[tuple[float, float]]]:
     """Contact points of the real contacts of each pair of blocks."""
-    columns = [state.column("contact", name)[touch.row].tolist() for name in (*HOSTS, "KXC", "KYC")]
+    hosts = [state.column("contact", name)[touch.row].tolist() for name in HOSTS]
     joined: dict[tuple[int, int], list[tuple[float, float]]] = defaultdict(list)
-    for one, two, x, y in zip(*columns, strict=True):
+    for one, two, (x, y) in zip(*hosts, touch.point.tolist(), strict=True):
         joined[min(one, two), max(one, two)].append((x, y))
     return joined
 
@@ -89,7 +89,7 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
 
 
 def _penetrations(o: Outlines, a: Numbers, b: Numbers) -> Iterator[tuple[int, int, float, float, float, str]]:
-    """(block, block, x, y, depth, what) for each place where block a and block b penetrate each other."""
+    """(block, block, x, y, depth, what) for each place where block a and block b touch or overlap."""
     i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
     for finds, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
         k, m, point, depth = finds
@@ -100,7 +100,7 @@ def _penetrations(o: Outlines, a: Numbers, b: Numbers) -> Iterator[tuple[int, in
 
 
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-    """Arcs of corners i whose point that lies deepest under the edge of corner j lies in the block there.
+    """Arcs of corners i whose point deepest under the edge of corner j is on the edge or in the block.
 
     The deepest point of an arc that does not face the edge is one of its ends.
     """
@@ -116,10 +116,10 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers,
     )
     depth = dot(deepest - o.p[j], inward)
     slack = 2 * np.maximum(o.slack[i], o.slack[j])
-    keep = (depth > slack) & (depth <= o.d) & (-early <= AWRY) & (late <= AWRY)
+    keep = (depth >= -slack) & (depth <= o.d) & (-early <= AWRY) & (late <= AWRY)
     keep &= dot(inward, o.p[i] - o.c[i]) > 0
-    i, j, deepest, depth = i[keep], j[keep], deepest[keep], depth[keep]
-    keep = _inside(o, deepest, o.owner[j])
+    i, j, deepest, depth, slack = i[keep], j[keep], deepest[keep], depth[keep], slack[keep]
+    keep = (depth <= slack) | _inside(o, deepest, o.owner[j])
     return i[keep], j[keep], deepest[keep], depth[keep]
 
 
@@ -130,7 +130,7 @@ def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, 
     between = o.c[j] - o.c[i]
     distance = np.hypot(*between.T)
     depth = o.r[i] + o.r[j] - distance
-    keep = (depth > 2 * np.maximum(o.slack[i], o.slack[j])) & (distance > 0)
+    keep = (depth >= -2 * np.maximum(o.slack[i], o.slack[j])) & (distance > 0)
     for k, towards in ((i, between), (j, -between)):
         keep &= (dot(towards, o.t[k]) >= 0) & (dot(towards, o.t[o.after[k]]) <= 0)
     i, j, depth = i[keep], j[keep], depth[keep]

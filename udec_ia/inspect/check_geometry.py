@@ -17,11 +17,12 @@ from offsets import generated
 from udec_ia.inspect.check_groups import TABLE, Numbers, State, names
 from udec_ia.inspect.check_map import AHEAD
 from udec_ia.kernels.shape import FLAT
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, VIRTUAL
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 NOT_NEGATIVE = ("KBM", "KBI")
 MATERIALS = ("KMAT", "KCM")
+ROUNDING_SLACK = 1e-6  # the part of an edge that error 14 lets its two roundings overlap
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
 
@@ -178,7 +179,7 @@ def check_outlines(state: State, o: Outlines) -> None:
     area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
     for i in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
-    for i in np.flatnonzero(~(o.z >= 2 * o.d - 2 * o.slack)):
+    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= 2 * o.d - 2 * o.slack)):
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
@@ -220,7 +221,8 @@ class Touches:
     """The contacts that can be compared with the outlines; arrays with one element for each.
 
     row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
-    outlines; overlap: from the outlines; slack: what it may be off by rounding.
+    outlines; overlap, point: from the outlines, the point in the middle of the overlap; slack: what they may
+    be off by rounding.
     """
 
     row: Numbers
@@ -228,6 +230,7 @@ class Touches:
     i: Numbers
     j: Numbers
     overlap: Numbers
+    point: Numbers
     slack: Numbers
 
 
@@ -244,19 +247,26 @@ def touches(state: State, o: Outlines) -> Touches:
     at = np.flatnonzero(comparable)
     code, i, j = code[at], ends[0][at], ends[1][at]
     between = o.c[j] - o.c[i]
+    distance = np.hypot(*between.T)
+    cases = [code == CORNER_CORNER, code == CORNER_EDGE]
     overlap = np.select(
-        [code == CORNER_CORNER, code == CORNER_EDGE],
-        [
-            o.r[i] + o.r[j] - np.hypot(*between.T),
-            o.r[i] - dot(o.c[i] - o.p[j], o.e[j]),
-        ],
+        cases,
+        [o.r[i] + o.r[j] - distance, o.r[i] - dot(o.c[i] - o.p[j], o.e[j])],
         o.r[j] - dot(o.c[j] - o.p[i], o.e[i]),
     )
-    return Touches(at, code, i, j, overlap, 2 * np.maximum(o.slack[i], o.slack[j]))
+    normal = np.select(
+        [case[:, None] for case in cases], [between / distance[:, None], -o.e[j]], o.e[i]
+    )  # from block KB1 to block KB2
+    point = np.where(
+        (code == EDGE_CORNER)[:, None],
+        o.c[j] - (o.r[j] - overlap / 2)[:, None] * normal,
+        o.c[i] + (o.r[i] - overlap / 2)[:, None] * normal,
+    )
+    return Touches(at, code, i, j, overlap, point, 2 * np.maximum(o.slack[i], o.slack[j]))
 
 
 def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
-    """Invariant 7: the overlap of each contact is that of the outlines and within DTOL2."""
+    """Invariant 7: overlap and place of each contact are those of the outlines, the overlap within DTOL2."""
     contacts = state.address["contact"][touch.row]
     noted = state.column("contact", "KCN")[touch.row]
     for k in np.flatnonzero(np.abs(noted - touch.overlap) > touch.slack):
@@ -264,6 +274,13 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
             7,
             f"KCN of contact@{contacts[k]} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
             f"corner@{o.corner[touch.j[k]]} the outlines overlap by {touch.overlap[k]}",
+        )
+    where = np.stack([state.column("contact", name)[touch.row] for name in ("KXC", "KYC")], axis=1)
+    for k in np.flatnonzero(np.abs(where - touch.point).max(axis=1, initial=0.0) > touch.slack):
+        state.report(
+            7,
+            f"KXC, KYC of contact@{contacts[k]} are {where[k, 0]}, {where[k, 1]}, but the outlines meet at "
+            f"{touch.point[k, 0]}, {touch.point[k, 1]}",
         )
     most = state.tolerance("DTOL2")
     for k in np.flatnonzero(np.maximum(noted, touch.overlap) > most + touch.slack):

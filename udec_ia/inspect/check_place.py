@@ -2,7 +2,8 @@
 
 A contact stands on the edge that ends at a corner, or on the arc of the corner. Both are measured clockwise
 from the start of the edge, the arc by its length. Positions may be off by GTOL, which keeps codes from
-flickering, and a contact does not pass a corner while another contact stands between them.
+flickering; and a contact does not pass a corner while another contact stands between them, so it may pass a
+cycle late.
 """
 
 from __future__ import annotations
@@ -58,17 +59,15 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:
     """Invariants 3 and 7."""
-    close = neighbours(state, set())
+    if not len(touch.row):
+        return
     places = [place(o, touch, side) for side in (0, 1)]
     for side, here in enumerate(places):
-        _check_segment(state, o, touch, here, side, close)
-    virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
-    _check_order(state, o, touch, places, neighbours(state, set(virtual.tolist())))
+        _check_segment(state, o, touch, here, side)
+    _check_order(state, touch, places)
 
 
-def _check_segment(
-    state: State, o: Outlines, touch: Touches, here: Place, side: int, close: list[tuple[int, int, int]]
-) -> None:
+def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
     for k in np.flatnonzero(~(o.r[here.corner] > 0) & ~here.on_edge):
@@ -76,16 +75,14 @@ def _check_segment(
             7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
         )
     slack = state.tolerance("GTOL") + touch.slack
-    waits_before = {(b, after) for b, _, after in close}
-    waits_after = {(b, before) for b, before, _ in close}
-    for beyond, waits, corner, what in (
-        (here.under, waits_before, o.before[here.corner], "before the start"),
-        (here.over, waits_after, here.corner, "after the end"),
+    for beyond, step, corner, what in (
+        (here.under, -1, o.before[here.corner], "before the start"),
+        (here.over, 1, here.corner, "after the end"),
     ):
-        concave = here.on_edge & (o.r[corner] < 0)
         for k in np.flatnonzero(beyond > slack):
-            waiting = concave[k] or (int(block[k]), int(contacts[k])) in waits
-            if beyond[k] > slack[k] + (o.d if waiting else 0.0):
+            concave = here.on_edge[k] and o.r[corner[k]] < 0
+            waits = concave or _waits(state, int(block[k]), int(contacts[k]), step)
+            if beyond[k] > slack[k] + (o.d if waits else 0.0):
                 segment = "edge" if here.on_edge[k] else "arc"
                 state.report(
                     7,
@@ -94,10 +91,19 @@ def _check_segment(
                 )
 
 
-def _check_order(
-    state: State, o: Outlines, touch: Touches, places: list[Place], close: list[tuple[int, int, int]]
-) -> None:
+def _waits(state: State, block: int, contact: int, step: int) -> bool:
+    """True if another contact stands between the contact and the corner, or has passed it just before."""
+    ring = state.rings.get(block, [])
+    if contact not in ring:
+        return False
+    i = ring.index(contact)
+    return any(state.kind_at(ring[(i + k * step) % len(ring)]) == "contact" for k in (1, 2))
+
+
+def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
     """Contacts between two corners follow each other clockwise, as far as overlaps and gaps let one say."""
+    virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
+    close = neighbours(state, set(virtual.tolist()))
     if not close:
         return
     index = np.full(len(state.address["contact"]) + 1, -1)
