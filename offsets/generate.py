@@ -59,7 +59,7 @@ def scheme_text(table: Table, scheme: str) -> str:
     ratio = rbits // ibits
     lines = [f"# {BANNER}", f"# Word scheme {scheme}: {ratio} integer(s) = 1 real", ""]
     for group in table.groups:
-        lines += _group_lines(group, ratio) + [""]
+        lines += [*_group_lines(group, ratio), ""]
     return "\n".join(lines)
 
 

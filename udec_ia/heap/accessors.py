@@ -14,7 +14,8 @@ bits on load and narrowed on store; indices are unsigned, which spares numba's n
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numba.extending import overload
@@ -22,6 +23,9 @@ from numba.extending import overload
 Offset = tuple[int, int, int]
 Address = int
 HEAD: Offset = (0, 0, 0)  # head code of a group
+
+# The integer that kernels calculate with. numba sees the 64-bit type; to a type checker it is an int.
+int64 = cast(Callable[[Any], int], np.int64)
 
 
 class Memory(NamedTuple):
@@ -85,71 +89,71 @@ def rounding(h: Memory) -> Any:
 
 
 @overload(iget)
-def _iget(h, iad, k, i=0):  # type: ignore[no-untyped-def]
+def _iget(h, iad, k, i=0):
     j, _ = _which_type(h)
 
-    def impl(h, iad, k, i=0):  # type: ignore[no-untyped-def]
+    def impl(h, iad, k, i=0):
         return np.int64(h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)])
 
     return impl
 
 
 @overload(puti)
-def _puti(h, iad, k, n, i=0):  # type: ignore[no-untyped-def]
+def _puti(h, iad, k, n, i=0):
     j, _ = _which_type(h)
 
-    def impl(h, iad, k, n, i=0):  # type: ignore[no-untyped-def]
+    def impl(h, iad, k, n, i=0):
         h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)] = n
 
     return impl
 
 
 @overload(getr)
-def _getr(h, iad, k):  # type: ignore[no-untyped-def]
+def _getr(h, iad, k):
     j, shift = _which_type(h)
 
-    def impl(h, iad, k):  # type: ignore[no-untyped-def]
+    def impl(h, iad, k):
         return h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)]
 
     return impl
 
 
 @overload(putr)
-def _putr(h, iad, k, v):  # type: ignore[no-untyped-def]
+def _putr(h, iad, k, v):
     j, shift = _which_type(h)
 
-    def impl(h, iad, k, v):  # type: ignore[no-untyped-def]
+    def impl(h, iad, k, v):
         h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)] = v
 
     return impl
 
 
 @overload(size_of)
-def _size_of(h, nv):  # type: ignore[no-untyped-def]
+def _size_of(h, nv):
     j, _ = _which_type(h)
 
-    def impl(h, nv):  # type: ignore[no-untyped-def]
+    def impl(h, nv):
         return nv[j]
 
     return impl
 
 
 @overload(real)
-def _real(h, value):  # type: ignore[no-untyped-def]
+def _real(h, value):
     kind = h.types[3].dtype
 
-    def impl(h, value):  # type: ignore[no-untyped-def]
+    def impl(h, value):
         return kind(value)
 
     return impl
 
 
 @overload(rounding)
-def _rounding(h):  # type: ignore[no-untyped-def]
+def _rounding(h):
     kind = h.types[3].dtype
     eps = float(np.finfo(str(kind)).eps)
 
-    def impl(h):  # type: ignore[no-untyped-def]
+    def impl(h):
         return kind(eps)
 
     return impl

@@ -18,10 +18,8 @@ of the next size, or 0; it has a meaning only in the first group of a chain.
 
 from __future__ import annotations
 
-import numpy as np
-
 from offsets.generated import JUNK, MFREE, MTOP, NERR, NWANT
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, puti, size_of
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.jit import kernel
 
 JNEXT: Offset = HEAD
@@ -33,8 +31,8 @@ OVERFLOW = 1  # error 1, memory overflow
 @kernel
 def _chain(h: Memory, n: int) -> tuple[int, int]:
     """First junk group of `n` words and first group of the chain before it; 0 where there is none."""
-    before = np.int64(0)
-    group = np.int64(h.ci[JUNK])
+    before = int64(0)
+    group = int64(h.ci[JUNK])
     while group != 0 and iget(h, group, JSIZE) != n:
         before = group
         group = iget(h, group, JSIZES)
@@ -55,7 +53,7 @@ def find(h: Memory, nv: Offset) -> int:
 
     Returns 0 and sets error 1 when memory cannot be found; nothing else changes then.
     """
-    n = np.int64(size_of(h, nv))
+    n = int64(size_of(h, nv))
     group, before = _chain(h, n)
     if group != 0:
         after = iget(h, group, JNEXT)
@@ -69,7 +67,7 @@ def find(h: Memory, nv: Offset) -> int:
         if group + n - 1 > h.ci[MTOP]:
             h.ci[NERR] = OVERFLOW
             h.ci[NWANT] = n
-            return np.int64(0)
+            return int64(0)
         h.ci[MFREE] = group + n
     for i in range(n):
         puti(h, group, HEAD, 0, i)
@@ -79,7 +77,7 @@ def find(h: Memory, nv: Offset) -> int:
 @kernel
 def lose(h: Memory, group: int, nv: Offset) -> None:
     """Give the group of the size `nv` at `group` back to the junk list."""
-    n = np.int64(size_of(h, nv))
+    n = int64(size_of(h, nv))
     first, before = _chain(h, n)
     if first == 0:
         puti(h, group, JSIZES, h.ci[JUNK])
@@ -108,9 +106,9 @@ def room(h: Memory, words: int) -> bool:
 @kernel
 def room_for_two(h: Memory, nv: Offset, nw: Offset) -> bool:
     """True if a group of size `nv` and one of the other size `nw` can be found; else asks for them."""
-    words = np.int64(0)
-    if _chain(h, np.int64(size_of(h, nv)))[0] == 0:
+    words = int64(0)
+    if _chain(h, int64(size_of(h, nv)))[0] == 0:
         words += size_of(h, nv)
-    if _chain(h, np.int64(size_of(h, nw)))[0] == 0:
+    if _chain(h, int64(size_of(h, nw)))[0] == 0:
         words += size_of(h, nw)
     return words == 0 or room(h, words)

@@ -21,7 +21,7 @@ from offsets.generated import (
     KCM,
     KCONS,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.shape import makeb
 
@@ -40,7 +40,7 @@ def least_mass(h: Memory) -> tuple[float, int, int]:
     """Least mass of a free block (of any block if none is free), a block without mass or 0, and a block
     of another constitutive number than 1 or 0."""
     free, least = real(h, np.inf), real(h, np.inf)
-    massless, foreign = np.int64(0), np.int64(0)
+    massless, foreign = int64(0), int64(0)
     ib = h.ci[IBPNT]
     while ib != 0:
         mass = getr(h, ib, KBM)
@@ -60,7 +60,7 @@ def greatest_stiffness(h: Memory) -> tuple[float, int, int]:
     """Greatest joint stiffness of a contact, a contact without stiffness or 0, and a contact of another
     constitutive number than 1 or 0."""
     most = real(h, 0.0)
-    undefined, foreign = np.int64(0), np.int64(0)
+    undefined, foreign = int64(0), int64(0)
     ic = h.ci[ICPNT]
     while ic != 0:
         m = iget(h, ic, KCM) - 1

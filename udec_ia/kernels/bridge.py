@@ -8,8 +8,6 @@ or broken on a large domain costs as much as its small side.
 
 from __future__ import annotations
 
-import numpy as np
-
 from offsets.generated import (
     ETOL,
     ICPNT,
@@ -45,7 +43,7 @@ from offsets.generated import (
     NVIRT,
     UPEND,
 )
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.lists import (
@@ -71,7 +69,7 @@ def nextd(h: Memory, iad: int, ib: int) -> tuple[int, int]:
     item = nextcp(h, ib, iad)
     if is_contact(h, item):
         return item, other(h, ib, item)
-    return item, np.int64(ib)
+    return item, int64(ib)
 
 
 @kernel
@@ -144,7 +142,7 @@ def to_virtual(h: Memory, ic: int) -> None:
 @kernel
 def relabel(h: Memory, iad: int, ib: int, idm: int) -> None:
     """Give the loop that goes through (iad, ib) the domain `idm`."""
-    item, block = np.int64(iad), np.int64(ib)
+    item, block = int64(iad), int64(ib)
     while True:
         before = block
         item, block = nextd(h, item, block)
@@ -182,7 +180,7 @@ def loop_area(h: Memory, iad: int, ib: int) -> float:
     fx, fy = twice, twice  # first corner of the loop
     ax, ay = twice, twice  # corner before the current one
     first = True
-    item, block = np.int64(iad), np.int64(ib)
+    item, block = int64(iad), int64(ib)
     while True:
         if is_corner(h, item):
             bx, by = getr(h, item, KXP), getr(h, item, KYP)

@@ -18,8 +18,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from offsets.generated import (
     KB1,
     KB2,
@@ -39,7 +37,7 @@ from offsets.generated import (
     NMADE,
     NVIRT,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import (
     cut_domain,
@@ -73,7 +71,7 @@ def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> Non
 @kernel
 def not_virtual(h: Memory, ib: int, iad: int) -> int:
     """Item `iad` of block `ib`, or the nearest one before it that is not a virtual contact."""
-    item = np.int64(iad)
+    item = int64(iad)
     while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
         item = prevcp(h, ib, item)
     return item
@@ -104,8 +102,8 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
 def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
     """How often the loop through (iad, ib) winds around the point (x, y), anticlockwise."""
     turns = 0
-    start = np.int64(iad)
-    item, block = np.int64(iad), np.int64(ib)
+    start = int64(iad)
+    item, block = int64(iad), int64(ib)
     if is_corner(h, item):
         ax, ay = getr(h, item, KXP) - x, getr(h, item, KYP) - y
     else:

@@ -10,8 +10,6 @@ between two successive items of its list: it is named by the block and the item 
 
 from __future__ import annotations
 
-import numpy as np
-
 from offsets.generated import (
     IODPNT,
     KB1,
@@ -29,7 +27,7 @@ from offsets.generated import (
     MCON,
     MCOR,
 )
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, puti
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti
 from udec_ia.heap.jit import kernel
 
 
@@ -103,7 +101,7 @@ def set_corner_of(h: Memory, ib: int, ic: int, ip: int) -> None:
 def nextp(h: Memory, ib: int, iad: int) -> int:
     """First corner at or after item `iad` of block `ib` (NEXTP)."""
     if is_corner(h, iad):
-        return np.int64(iad)
+        return int64(iad)
     return corner_of(h, ib, iad)
 
 
@@ -152,7 +150,7 @@ def idomp(h: Memory, ib: int, iad: int) -> int:
     while is_corner(h, item):
         item = nextcp(h, ib, item)
         if item == start:
-            return np.int64(h.ci[IODPNT])  # a lone block
+            return int64(h.ci[IODPNT])  # a lone block
     return domain_before(h, ib, item)
 
 

@@ -29,7 +29,7 @@ from offsets.generated import (
     KYCP,
     KYP,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import corner_of, is_contact, is_corner, nextcp, other, prevcp
 from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, on_arc
@@ -88,7 +88,7 @@ def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
 @kernel
 def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bool:
     """True if near item `iad` of block `ib` a contact with block `jb` stands within FTOL of (x, y)."""
-    ahead, behind = nextcp(h, ib, iad), np.int64(iad)
+    ahead, behind = nextcp(h, ib, iad), int64(iad)
     for _ in range(AROUND):
         for ic in (ahead, behind):
             if is_contact(h, ic) and other(h, ib, ic) == jb and iget(h, ic, KCCOD) != VIRTUAL:

@@ -8,8 +8,6 @@ one goes with the block.
 
 from __future__ import annotations
 
-import numpy as np
-
 from offsets.generated import (
     IBPNT,
     KB,
@@ -27,7 +25,7 @@ from offsets.generated import (
     NVBL,
     NVCR,
 )
-from udec_ia.heap.accessors import HEAD, Memory, iget, puti
+from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import lose
 from udec_ia.kernels.bridge import delc, flag, losec, to_virtual
@@ -79,8 +77,8 @@ def delb(h: Memory, ib: int) -> None:
     """Delete block `ib` (DELB). The map must have another contact left when it is gone."""
     _delete_separating(h, ib)
     ip = iget(h, ib, KP)
-    first = np.int64(0)
-    jb = np.int64(0)
+    first = int64(0)
+    jb = int64(0)
     item = iget(h, ip, KL)
     while item != ip:
         following = nextcp(h, ib, item)

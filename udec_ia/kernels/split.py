@@ -14,8 +14,6 @@ contacts cA and cB; the domains outside A and B stay as they are and are flagged
 
 from __future__ import annotations
 
-import numpy as np
-
 from offsets.generated import (
     IBPNT,
     KB,
@@ -47,7 +45,7 @@ from offsets.generated import (
     NVBL,
     NVCR,
 )
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find
 from udec_ia.kernels.bridge import flag, makec, maked
@@ -134,7 +132,7 @@ def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
 @kernel
 def _claim(h: Memory, ib: int, jb: int, iad: int, last: int) -> None:
     """Hand the items from `iad` to `last` from block `ib` to block `jb`."""
-    item = np.int64(iad)
+    item = int64(iad)
     while True:
         following = nextcp(h, ib, item)
         if is_corner(h, item):
@@ -186,7 +184,7 @@ def _to_twin(h: Memory, ib: int, crack: int, first: int, last: int, twin: int) -
         return
     link(h, ib, crack, first)
     link(h, ib, last, twin)
-    item = np.int64(first)
+    item = int64(first)
     while item != twin:
         set_corner_of(h, ib, item, twin)
         item = nextcp(h, ib, item)
@@ -197,7 +195,7 @@ def _beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
     """First and last contact between item `last` and corner `ip`; 0 and 0 if there is none."""
     first = nextcp(h, ib, last)
     if first == ip:
-        return np.int64(0), np.int64(0)
+        return int64(0), int64(0)
     return first, prevcp(h, ib, ip)
 
 

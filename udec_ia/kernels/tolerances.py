@@ -29,7 +29,7 @@ from offsets.generated import (
     KR,
     NSHORT,
 )
-from udec_ia.heap.accessors import Memory, iget, real
+from udec_ia.heap.accessors import Memory, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.shape import crad, zcs
 
@@ -53,7 +53,7 @@ def tolset(h: Memory, d: float) -> None:
 def edges(h: Memory) -> tuple[float, float, int]:
     """Mean length of all edges, length of the shortest one and the corner where it ends."""
     total, least = real(h, 0.0), real(h, np.inf)
-    n, shortest = 0, np.int64(0)
+    n, shortest = 0, int64(0)
     ib = h.ci[IBPNT]
     while ib != 0:
         ip0 = iget(h, ib, KP)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from offsets.generated import ETOL, IDPNT, KD, KD1, KD2, KDLOOP, KUMAX, NVCN, NVDO, NVIRT
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.bridge import bridge
@@ -51,7 +51,7 @@ def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
 @kernel
 def updt(h: Memory, idm: int) -> tuple[int, int]:
     """Make the most urgent contact in domain `idm` (UPDT): what was done, and the new domain or 0."""
-    zero = np.int64(0)
+    zero = int64(0)
     if iget(h, idm, KDLOOP) == 0:
         return NOTHING, zero
     items = count_items(h, idm)
