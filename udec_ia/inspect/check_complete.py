@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from math import hypot
 
 import numpy as np
 
 from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check_groups import HOSTS, Numbers, State
+
+Joined = dict[tuple[int, int], list[tuple[float, float]]]  # contact points by pair of blocks
+Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
 CHUNK = 1_000_000  # pairs looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
@@ -24,23 +28,37 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
     joined = _contact_points(state, touch)
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     for a, b in _close_blocks(o):
-        for one, two, x, y, depth, what in _penetrations(o, a, b):
-            points = joined.get((min(one, two), max(one, two)), [])
-            if not any(np.hypot(x - u, y - v) <= near + depth for u, v in points):
-                state.report(
-                    8,
-                    f"block@{one} and block@{two} overlap {depth} at ({x}, {y}), {what}, without a contact",
-                )
+        i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
+        for found, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
+            _check_meetings(state, o, joined, near, found, what)
         pairs = zip(o.block[a].tolist(), o.block[b].tolist(), strict=True)
         apart = np.array([(min(pair), max(pair)) not in joined for pair in pairs], bool)
         for one, two in _crossings(o, a[apart], b[apart]):
             state.report(8, f"block@{one} and block@{two} overlap, but there is no contact between them")
 
 
-def _contact_points(state: State, touch: Touches) -> dict[tuple[int, int], list[tuple[float, float]]]:
+def _check_meetings(
+    state: State, o: Outlines, joined: Joined, near: float, found: Meetings, what: str
+) -> None:
+    """A violation for each meeting of an arc with an edge or an arc that has no contact near it."""
+    arc, other, point, depth = found
+    blocks = [o.block[o.owner[corner]].tolist() for corner in (arc, other)]
+    for k, (one, two, (x, y), overlap) in enumerate(
+        zip(*blocks, point.tolist(), depth.tolist(), strict=True)
+    ):
+        points = joined.get((min(one, two), max(one, two)), [])
+        if not any(hypot(x - u, y - v) <= near + overlap for u, v in points):
+            state.report(
+                8,
+                f"block@{one} and block@{two} overlap by {overlap} at ({x}, {y}), where without a contact the arc "
+                f"of corner@{o.corner[arc[k]]} meets the {what} of corner@{o.corner[other[k]]}",
+            )
+
+
+def _contact_points(state: State, touch: Touches) -> Joined:
     """Contact points of the real contacts of each pair of blocks."""
     hosts = [state.column("contact", name)[touch.row].tolist() for name in HOSTS]
-    joined: dict[tuple[int, int], list[tuple[float, float]]] = defaultdict(list)
+    joined: Joined = defaultdict(list)
     for one, two, (x, y) in zip(*hosts, touch.point.tolist(), strict=True):
         joined[min(one, two), max(one, two)].append((x, y))
     return joined
@@ -88,18 +106,7 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
     return i[pair], o.first[b[pair]] + place
 
 
-def _penetrations(o: Outlines, a: Numbers, b: Numbers) -> Iterator[tuple[int, int, float, float, float, str]]:
-    """(block, block, x, y, depth, what) for each place where block a and block b touch or overlap."""
-    i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
-    for finds, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
-        k, m, point, depth = finds
-        for row in range(len(k)):
-            one, two = (int(o.block[o.owner[index[row]]]) for index in (k, m))
-            where = f"at corner@{o.corner[k[row]]} and the {what} of corner@{o.corner[m[row]]}"
-            yield one, two, float(point[row, 0]), float(point[row, 1]), float(depth[row]), where
-
-
-def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Arcs of corners i whose point deepest under the edge of corner j is on the edge or in the block.
 
     The deepest point of an arc that does not face the edge is one of its ends.
@@ -123,7 +130,7 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers,
     return i[keep], j[keep], deepest[keep], depth[keep]
 
 
-def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Pairs of arcs that overlap along their line of centres, each facing the other."""
     keep = (o.r[j] > 0) & (o.owner[i] < o.owner[j])
     i, j = i[keep], j[keep]

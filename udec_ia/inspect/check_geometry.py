@@ -107,7 +107,7 @@ def outlines(state: State) -> Outlines | None:
     The tolerance of a coordinate grows with the square root of the number of cycles: each rounds anew.
     """
     ring_of = {
-        block: [iad for iad in ring if state.kind_at(iad) == "corner"] for block, ring in state.rings.items()
+        block: [iad for iad in ring if not state.is_contact[iad]] for block, ring in state.rings.items()
     }
     corners = np.array([iad for ring in ring_of.values() for iad in ring], np.int64)
     if not len(corners):

@@ -60,7 +60,8 @@ class State:
 
     free: first unused address, as far as it can be believed. address[kind]: addresses of the groups in
     use, in list order. rings[block]: corners and contacts of the clockwise list of each block whose list
-    closes. reverse[block]: corners along the reverse list.
+    closes. is_contact[item]: True for a contact, False for a corner in such a list. reverse[block]: corners
+    along the reverse list.
     """
 
     def __init__(self, array: MainArray) -> None:
@@ -73,7 +74,9 @@ class State:
         self.free = min(max(int(self.h.ci[MFREE]), 1), len(self.h.ia) + 1)
         self.address: dict[str, Numbers] = {}
         self.rings: dict[int, list[int]] = {}
+        self.is_contact: dict[int, bool] = {}
         self.reverse: dict[int, list[int]] = {}
+        self._hosts: dict[int, tuple[int, int]] = {}
         self._columns: dict[str, Numbers] = {}
         self._kind_at = np.zeros(self.free, np.int8)
         self._row_at = np.zeros(self.free, np.int32)
@@ -129,7 +132,7 @@ class State:
             left -= len(ring)
             reverse = self._reverse(block, left)
             left -= len(reverse)
-            corners.update((iad, None) for iad in ring if self.kind_at(iad) == "corner")
+            corners.update((iad, None) for iad in ring if not self.is_contact[iad])
             corners.update(dict.fromkeys(reverse))
         self._enter("corner", corners)
         for group in TABLE.groups:
@@ -188,6 +191,7 @@ class State:
                 return ring
             ring.append(iad)
             seen.add(iad)
+            self.is_contact[iad] = kind == "contact"
             source, iad = f"{link} of {kind}@{iad}", self.get(iad, link)
             if iad == first:
                 self.rings[block] = ring
@@ -212,8 +216,10 @@ class State:
 
     def hosts(self, contact: int) -> tuple[int, int]:
         """The two blocks that the contact names."""
-        one, two = HOSTS
-        return self.get(contact, one), self.get(contact, two)
+        if contact not in self._hosts:
+            one, two = HOSTS
+            self._hosts[contact] = self.get(contact, one), self.get(contact, two)
+        return self._hosts[contact]
 
     def _extensions(self, kind: str) -> list[int]:
         """Addresses of the groups of `kind` that stand in no list but hang on a group in use."""

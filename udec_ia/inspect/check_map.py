@@ -39,7 +39,7 @@ def check_map(state: State) -> None:
 
 def _check_corners(state: State, block: int, ring: list[int]) -> None:
     """Corners name their block, and the reverse list is the clockwise list read backwards."""
-    corners = [iad for iad in ring if state.kind_at(iad) == "corner"]
+    corners = [iad for iad in ring if not state.is_contact[iad]]
     if len(corners) < 3:
         state.report(3, f"block@{block} has {len(corners)} corners")
     for corner, before in zip(corners, [corners[-1], *corners[:-1]], strict=True):
@@ -62,7 +62,7 @@ def _check_items(state: State, block: int, ring: list[int]) -> None:
     corner = ring[0]
     for i in range(len(ring) - 1, -1, -1):
         iad, before = ring[i], ring[i - 1]
-        if state.kind_at(iad) == "corner":
+        if not state.is_contact[iad]:
             corner, back, name = iad, KLB, f"corner@{iad}"
         else:
             side = state.hosts(iad).index(block)
@@ -83,7 +83,7 @@ def _check_items(state: State, block: int, ring: list[int]) -> None:
 
 def _link(state: State, block: int, iad: int) -> str:
     """The clockwise link of the item at `iad` on `block`, in words."""
-    if state.kind_at(iad) == "corner":
+    if not state.is_contact[iad]:
         return f"{KL} of corner@{iad}"
     return f"{FORWARD[state.hosts(iad).index(block)]} of contact@{iad}"
 
@@ -102,7 +102,7 @@ def _check_contacts(state: State) -> None:
                     4, f"contact@{contact} names block@{block} in {name}, but stands not in the block's list"
                 )
     for iad, block in standing:
-        if iad not in listed and state.kind_at(iad) == "contact":
+        if iad not in listed and state.is_contact[iad]:
             state.report(4, f"contact@{iad} stands in the list of block@{block}, but not in the contact list")
 
 
@@ -128,7 +128,7 @@ def _passages(state: State) -> dict[Passage, Passage]:
     """For each passage the next one around its domain."""
     following: dict[Passage, Passage] = {}
     for block, ring in state.rings.items():
-        contacts = [iad for iad in ring if state.kind_at(iad) == "contact"]
+        contacts = [iad for iad in ring if state.is_contact[iad]]
         for contact, after in zip(contacts, [*contacts[1:], *contacts[:1]], strict=True):
             one, two = state.hosts(after)
             following[contact, block] = (after, two if one == block else one)
@@ -241,7 +241,7 @@ def neighbours(state: State, skipped: set[int]) -> list[tuple[int, int, int]]:
     for block, ring in state.rings.items():
         before = 0
         for iad in ring:
-            if state.kind_at(iad) == "corner":
+            if not state.is_contact[iad]:
                 before = 0
             elif iad not in skipped:
                 if before:

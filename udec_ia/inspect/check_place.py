@@ -97,7 +97,7 @@ def _waits(state: State, block: int, contact: int, step: int) -> bool:
     if contact not in ring:
         return False
     i = ring.index(contact)
-    return any(state.kind_at(ring[(i + k * step) % len(ring)]) == "contact" for k in (1, 2))
+    return any(state.is_contact[ring[(i + k * step) % len(ring)]] for k in (1, 2))
 
 
 def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
