@@ -50,8 +50,8 @@ def _check_meetings(
         if not any(hypot(x - u, y - v) <= near + overlap for u, v in points):
             state.report(
                 8,
-                f"block@{one} and block@{two} overlap by {overlap} at ({x}, {y}), where without a contact the arc "
-                f"of corner@{o.corner[arc[k]]} meets the {what} of corner@{o.corner[other[k]]}",
+                f"block@{one} and block@{two} overlap by {overlap} at ({x}, {y}), without a contact where "
+                f"the arc of corner@{o.corner[arc[k]]} meets the {what} of corner@{o.corner[other[k]]}",
             )
 
 
