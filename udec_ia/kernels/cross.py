@@ -142,14 +142,19 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
 
 
 @kernel
+def is_cut(line: Any, where: Any, k: int, eps: float) -> bool:
+    """True if crossings `k` and `k` + 1 both lie within the line."""
+    return where[k, T] >= -eps and where[k + 1, T] <= line[4] + eps
+
+
+@kernel
 def first_cut(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
     """Row of the first of two crossings between which block `ib` is split; -1 for none, -2 if refused."""
     n = crossings(h, ib, line, where, which)
     if n < 0:
         return -2
     for k in range(0, n - 1, 2):
-        eps = slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])
-        if where[k, T] >= -eps and where[k + 1, T] <= line[4] + eps:
+        if is_cut(line, where, k, slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])):
             return k
     return -1
 
@@ -178,7 +183,7 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
 
 
 @kernel
-def fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
+def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
     """Can block `ib` be split between its crossings `k` and `k` + 1? The place is put in row 0 if not."""
     for row in range(k, k + 2):
         x, y = where[row, X], where[row, Y]
@@ -187,10 +192,27 @@ def fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
             where[0, X], where[0, Y] = x, y
             return what
     z = where[k + 1, T] - where[k, T]
-    shortest = z * real(h, 0.0)
-    if h.ci[LROUND] == 1 or h.ci[MCTOT] > 0:
-        shortest = (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999)
-    if z < shortest:
+    fixed = h.ci[LROUND] == 1 or h.ci[MCTOT] > 0
+    if fixed and z < (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999):
         where[0, X], where[0, Y] = where[k, X], where[k, Y]
         return TOO_SHORT
     return OK
+
+
+@kernel
+def try_cuts(h: Memory, ib: int, line: Any, where: Any, which: Any) -> tuple[int, int]:
+    """Can block `ib` be split wherever the line crosses it? Status and number of cuts.
+
+    The place of what is refused is put in row 0 of `where`.
+    """
+    n = crossings(h, ib, line, where, which)
+    if n < 0:
+        return TOO_CLOSE, 0
+    cuts = 0
+    for k in range(0, n - 1, 2):
+        if is_cut(line, where, k, slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])):
+            what = _fits(h, ib, line, where, which, k)
+            if what != OK:
+                return what, 0
+            cuts += 1
+    return OK, cuts

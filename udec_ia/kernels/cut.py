@@ -45,7 +45,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
-from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, fits
+from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
 from udec_ia.kernels.ford import settle, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.shape import crad, zcs
@@ -109,13 +109,10 @@ def path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where
     for k in range(n):
         if not in_path(boxes[k], line, far):
             continue
-        first = first_cut(h, blocks[k], line, where, which)
-        if first == -2:
-            return REFUSED_CLOSE, blocks[k]
-        if first >= 0:
-            what = fits(h, blocks[k], line, where, which, first)
-            if what != OK:
-                return REFUSED_CLOSE + what - 1, blocks[k]
+        what, cuts = try_cuts(h, blocks[k], line, where, which)
+        if what != OK:
+            return REFUSED_CLOSE + what - 1, blocks[k]
+        if cuts > 0:
             rows[found] = k
             found += 1
     return DONE, found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from offsets.generated import DTOL, IODPNT, KL, KLB, KP, KR, LROUND, NBLK, NVBL, NVCR, NVDO
@@ -34,6 +35,10 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     for x, y in corners:
         finite(x, y)
     _check_outline(corners)
+    if h.ci[LROUND]:
+        ends = zip(corners, (*corners[1:], corners[0]), strict=True)
+        least, x, y = min((math.dist(a, b), *b) for a, b in ends)
+        check_rounding(float(h.cr[DTOL]), least, x, y)
     require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
     h = array.h
     ib = new_block(h, material, constitutive)
@@ -46,7 +51,6 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     h.ci[IODPNT] = maked(h)
     makeb(h, ib)
     set_rounding(h, h.cr[DTOL] if h.ci[LROUND] else default_rounding(h))
-    check_rounding(array)
     return int(ib)
 
 

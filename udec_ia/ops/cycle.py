@@ -19,6 +19,7 @@ from offsets.generated import (
     C2B,
     CON1,
     CON2,
+    DTOL,
     DTOL2,
     FRAC,
     IBPNT,
@@ -43,7 +44,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
 from udec_ia.kernels.cycle import run_cycles
 from udec_ia.ops.memory import find_room
-from udec_ia.ops.rounding import check_rounding, settle_default
+from udec_ia.ops.rounding import check_all_edges, settle_default
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -62,7 +63,7 @@ def prepare(array: MainArray) -> None:
         make_masses(h)
     settle_default(array)
     h = array.h
-    check_rounding(array)
+    check_all_edges(array, float(h.cr[DTOL]))
     h.cr[TDEL] = h.cr[FRAC] * critical_step(array)
     for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
         half = h.cr[alpha] * h.cr[TDEL] / 2

@@ -13,21 +13,22 @@ from udec_ia.ops.limits import finite
 from udec_ia.ops.memory import find_room
 
 
-def check_rounding(array: MainArray) -> None:
-    """Error 14 if an edge cannot hold the roundings of its two corners."""
-    h = array.h
-    if h.ci[IBPNT] == 0:
-        return
-    _, least, ip = edges(h)
-    d = float(h.cr[DTOL])
+def check_rounding(d: float, least: float, x: float, y: float) -> None:
+    """Error 14 if the shortest edge, which ends at (x, y), cannot hold the roundings of its two corners."""
     if 2 * d > least * (1 + 1e-6):
-        x, y = getr(h, ip, KXP), getr(h, ip, KYP)
         raise UdecError(
             14,
             f"{d:g}, but the edge that ends at ({x:g}, {y:g}) is only {least:g} long",
             f"the rounding length must not exceed half the shortest edge, {least / 2:g}",
-            group=int(ip),
         )
+
+
+def check_all_edges(array: MainArray, d: float) -> None:
+    """Error 14 if an edge of a block is too short for the rounding length `d`."""
+    h = array.h
+    if h.ci[IBPNT] != 0:
+        _, least, ip = edges(h)
+        check_rounding(d, float(least), float(getr(h, ip, KXP)), float(getr(h, ip, KYP)))
 
 
 def refresh(array: MainArray) -> None:
@@ -53,16 +54,10 @@ def round_corners(array: MainArray, d: float) -> None:
     finite(d)
     if d <= 0:
         raise UdecError(28, f"the rounding length must be positive, it is {d:g}")
+    check_all_edges(array, d)
     h = array.h
-    before, given = h.cr[DTOL], h.ci[LROUND]
-    h.cr[DTOL] = d
-    try:
-        check_rounding(array)
-    except UdecError:
-        h.cr[DTOL], h.ci[LROUND] = before, given
-        raise
     h.ci[LROUND] = 1
-    set_rounding(h, h.cr[DTOL])
+    set_rounding(h, h.cr.dtype.type(d))
     refresh(array)
 
 
