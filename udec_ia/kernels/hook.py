@@ -51,6 +51,8 @@ from udec_ia.kernels.bridge import (
 from udec_ia.kernels.lists import insert_after, is_corner, prevcp, take_out
 from udec_ia.kernels.touch import VIRTUAL, coord
 
+MINE = 2  # column of the pieces
+
 
 @kernel
 def take_contact_out(h: Memory, ic: int) -> None:
@@ -151,9 +153,10 @@ def cut_among_pieces(
 ) -> int:
     """Make a contact that cuts domain `idm` while other pieces hang in the domain on virtual contacts.
 
-    ties: the virtual contacts of the domain. pieces: one row (block, item, own) a piece; the exposure
-    after the item lies on the piece; own is 1 for the piece that the new contact belongs to. There is
-    one piece more than there are ties. Returns the new domain.
+    ties: the virtual contacts of the domain. pieces: one row (block, item, mine) a piece; the exposure
+    after the item lies on the piece; mine is 1 for the piece that the new contact belongs to, else 0, and
+    becomes 2 if the piece lies in the new domain. There is one piece more than there are ties. Returns
+    the new domain.
     """
     iad = not_virtual(h, ib, iad)
     jad = not_virtual(h, jb, jad)
@@ -167,19 +170,17 @@ def cut_among_pieces(
     coord(h, ic)
     new_is_left = left_is_shorter(h, ic)
     idnew = cut_domain(h, ic, idm)
-    block = jb if new_is_left else ib
+    inner, outer = (jb, ib) if new_is_left else (ib, jb)
+    for k in range(len(pieces)):
+        pieces[k, MINE] = pieces[k, MINE] or (2 if lies_in(h, ic, inner, pieces[k, 0]) else 0)
     tie = 0
     for k in range(len(pieces)):
-        if pieces[k, 2] == 1:
-            continue
         pb, item = pieces[k, 0], pieces[k, 1]
-        side = block
-        where = idnew
-        if lies_in(h, ic, block, pb):
+        if pieces[k, MINE] == 2:
             relabel(h, item, pb, idnew)
-        else:
-            side = ib if new_is_left else jb
-            where = idm
-        hook(h, ties[tie], side, ic, pb, item, where)
-        tie += 1
+            hook(h, ties[tie], inner, ic, pb, item, idnew)
+        elif pieces[k, MINE] == 0:
+            hook(h, ties[tie], outer, ic, pb, item, idm)
+        if pieces[k, MINE] != 1:
+            tie += 1
     return idnew

@@ -33,28 +33,36 @@ from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import (
     corner_of,
-    insert_after,
     is_corner,
+    link,
     next_corner,
     nextcp,
     prevcp,
+    set_corner_of,
     take_out,
 )
 from udec_ia.kernels.shape import zcs
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, ce, lean
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, ce, lean
 
 
 @kernel
 def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
     """Move contact `ic` forwards past its corner on block `ib`, with the new code (MVFOR).
 
-    False, and nothing changes, while another contact stands between them.
+    It is the corner that moves, to the place before the contact. False, and nothing changes, while
+    another contact stands between them; virtual ones do not count, they go along.
     """
     ip = corner_of(h, ib, ic)
-    if nextcp(h, ib, ic) != ip:
-        return False
-    take_out(h, ib, ic)
-    insert_after(h, ib, ip, ic)
+    item = nextcp(h, ib, ic)
+    while item != ip:
+        if iget(h, item, KCCOD) != VIRTUAL:
+            return False
+        item = nextcp(h, ib, item)
+    iq = next_corner(h, ib, ip)
+    take_out(h, ib, ip)
+    link(h, ib, prevcp(h, ib, ic), ip)
+    link(h, ib, ip, ic)
+    _standing_before(h, ib, ic, iq)
     puti(h, ic, KCCOD, code)
     return True
 
@@ -63,15 +71,29 @@ def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
 def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
     """Move contact `ic` backwards past the corner before it on block `ib`, with the new code (MVBAK).
 
-    False, and nothing changes, while another contact stands between them.
+    As in mvfor it is the corner that moves, to the place after the contact.
     """
     ip = prevcp(h, ib, ic)
-    if not is_corner(h, ip):
-        return False
-    take_out(h, ib, ic)
-    insert_after(h, ib, prevcp(h, ib, ip), ic)
+    while not is_corner(h, ip):
+        if iget(h, ip, KCCOD) != VIRTUAL:
+            return False
+        ip = prevcp(h, ib, ip)
+    first, after = nextcp(h, ib, ip), nextcp(h, ib, ic)
+    take_out(h, ib, ip)
+    link(h, ib, ic, ip)
+    link(h, ib, ip, after)
+    _standing_before(h, ib, first, ip)
     puti(h, ic, KCCOD, code)
     return True
+
+
+@kernel
+def _standing_before(h: Memory, ib: int, iad: int, ip: int) -> None:
+    """Note corner `ip` in the contacts of block `ib` from `iad` up to the corner or a contact that has it."""
+    item = iad
+    while item != ip and corner_of(h, ib, item) != ip:
+        set_corner_of(h, ib, item, ip)
+        item = nextcp(h, ib, item)
 
 
 @kernel

@@ -21,6 +21,7 @@ from offsets.generated import (
     KB2,
     KBB,
     KBFIX,
+    KCCOD,
     KCONS,
     KDLOOP,
     KL,
@@ -62,7 +63,7 @@ from udec_ia.kernels.lists import (
 )
 from udec_ia.kernels.segments import on_arc
 from udec_ia.kernels.shape import makeb
-from udec_ia.kernels.touch import CORNER_CORNER
+from udec_ia.kernels.touch import CORNER_CORNER, VIRTUAL
 
 
 @kernel
@@ -121,10 +122,11 @@ def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
     (nx, ny) is normal to the line and points to the other side.
     """
     item = prevcp(h, ib, ip)
-    while is_contact(h, item) and on_arc(h, ib, item):
-        dx, dy = getr(h, item, KXC) - getr(h, ip, KXP), getr(h, item, KYC) - getr(h, ip, KYP)
-        if dx * nx + dy * ny < 0:
-            break
+    while is_contact(h, item):
+        if iget(h, item, KCCOD) != VIRTUAL:
+            dx, dy = getr(h, item, KXC) - getr(h, ip, KXP), getr(h, item, KYC) - getr(h, ip, KYP)
+            if not on_arc(h, ib, item) or dx * nx + dy * ny < 0:
+                break
         item = prevcp(h, ib, item)
     return item
 
