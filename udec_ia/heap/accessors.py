@@ -15,10 +15,12 @@ bits on load and narrowed on store; indices are unsigned, which spares numba's n
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 from numba.extending import overload
+
+from udec_ia.heap.views import Memory as Memory
 
 Offset = tuple[int, int, int]
 Address = int
@@ -28,26 +30,13 @@ HEAD: Offset = (0, 0, 0)  # head code of a group
 int64 = cast(Callable[[Any], int], np.int64)
 
 
-class Memory(NamedTuple):
-    """All that a kernel sees.
-
-    ia: IA() as integers; ra: the same bytes as reals; ci, cr: integers and reals of the common block,
-    indexed by the names of `offsets.generated`.
-    """
-
-    ia: Any
-    ra: Any
-    ci: Any
-    cr: Any
-
-
 def _which(h: Any) -> int:
     """Index into an offset tuple: 0, 1, 2 for 1, 2, 4 integers to a real."""
     return int(h.ra.itemsize // h.ia.itemsize) >> 1
 
 
 def _which_type(h: Any) -> tuple[int, int]:
-    ratio = h.types[1].dtype.bitwidth // h.types[0].dtype.bitwidth
+    ratio = h.dtypes[1].bitwidth // h.dtypes[0].bitwidth
     return ratio >> 1, ratio.bit_length() - 1
 
 
@@ -140,7 +129,7 @@ def _size_of(h, nv):
 
 @overload(real)
 def _real(h, value):
-    kind = h.types[3].dtype
+    kind = h.dtypes[3]
 
     def impl(h, value):
         return kind(value)
@@ -150,7 +139,7 @@ def _real(h, value):
 
 @overload(rounding)
 def _rounding(h):
-    kind = h.types[3].dtype
+    kind = h.dtypes[3]
     eps = float(np.finfo(str(kind)).eps)
 
     def impl(h):

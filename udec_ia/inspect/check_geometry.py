@@ -104,7 +104,8 @@ def turned(a: Numbers) -> Numbers:
 def outlines(state: State) -> Outlines | None:
     """The outlines of the blocks whose lists close and whose coordinates are finite; None if there are none.
 
-    The tolerance of a coordinate grows with the square root of the number of cycles: each rounds anew.
+    The tolerance of a coordinate grows with the square root of the number of cycles, for each rounds anew,
+    and with their number, for a block that spins steadily rounds the same way in each.
     """
     ring_of = {
         block: [iad for iad in ring if not state.is_contact[iad]] for block, ring in state.rings.items()
@@ -129,7 +130,8 @@ def outlines(state: State) -> Outlines | None:
     owner = np.repeat(np.arange(len(block)), count)
     here = np.arange(len(owner))
     last = first + count - 1
-    step = ROUNDINGS * float(np.finfo(state.h.cr.dtype).eps) * np.sqrt(1.0 + max(state.common("MCTOT"), 0))
+    cycles = 1.0 + max(state.common("MCTOT"), 0)
+    step = float(np.finfo(state.h.cr.dtype).eps) * (ROUNDINGS * np.sqrt(cycles) + cycles)
     return Outlines(
         block=block,
         first=first,

@@ -41,7 +41,6 @@ from offsets.generated import (
     NVCN,
     NVDO,
     NVIRT,
-    UPEND,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
@@ -74,9 +73,17 @@ def nextd(h: Memory, iad: int, ib: int) -> tuple[int, int]:
 
 @kernel
 def flag(h: Memory, idm: int) -> None:
-    """Ask for an update of domain `idm` in the next domain pass."""
+    """Ask for an update of domain `idm`."""
     putr(h, idm, KUMAX, h.cr[ETOL] + h.cr[ETOL])
-    h.cr[UPEND] = h.cr[ETOL]
+
+
+@kernel
+def flag_all(h: Memory) -> None:
+    """Ask for an update of every domain."""
+    idm = h.ci[IDPNT]
+    while idm != 0:
+        flag(h, idm)
+        idm = iget(h, idm, KD)
 
 
 @kernel

@@ -45,6 +45,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
+from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
 from udec_ia.kernels.ford import settle, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
@@ -52,7 +53,7 @@ from udec_ia.kernels.shape import crad, zcs
 from udec_ia.kernels.split import corner_on_edge, spli
 from udec_ia.kernels.tolerances import set_rounding
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL
-from udec_ia.kernels.update import update
+from udec_ia.kernels.update import update, update_all
 
 DONE, NO_MEMORY, NO_BOXES, REFUSED_CLOSE, REFUSED_SHORT = 0, 1, 2, 3, 4
 
@@ -205,7 +206,7 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
 
     Returns the status and the new number of boxes.
     """
-    where, which = np.empty((MOST, 3), h.cr.dtype), np.empty((MOST, 2), np.int64)
+    where, which = np.empty((MOST, 3), line.dtype), np.empty((MOST, 2), np.int64)
     first = n
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 2 * size_of(h, NVCN) + size_of(h, NVDO)
@@ -229,4 +230,6 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
             n += 1
     if h.cr[DTOL] != rounding_length:
         settle_all(h)
+        flag_all(h)
+        return (DONE if update_all(h) else NO_MEMORY), n
     return (DONE if update_cracks(h, blocks, first, n) else NO_MEMORY), n

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from offsets.generated import DTOL, IBPNT, IDPNT, KD, KUMAX, KXP, KYP, LROUND, MCTOT
+from offsets.generated import DTOL, IBPNT, KXP, KYP, LROUND, MCTOT
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget, putr
+from udec_ia.heap.accessors import getr
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.ford import settle_all
 from udec_ia.kernels.tolerances import default_rounding, edges, set_rounding
 from udec_ia.kernels.update import update_all
@@ -33,13 +34,8 @@ def check_all_edges(array: MainArray, d: float) -> None:
 
 def refresh(array: MainArray) -> None:
     """Bring all contacts and domains up to date with a changed rounding length."""
-    h = array.h
-    settle_all(h)
-    idm = int(h.ci[IDPNT])
-    limit = h.cr[DTOL]
-    while idm != 0:
-        putr(h, idm, KUMAX, limit)
-        idm = iget(h, idm, KD)
+    settle_all(array.h)
+    flag_all(array.h)
     update_flagged(array)
 
 

@@ -1,0 +1,69 @@
+"""What a kernel sees of the program's memory, and how compiled code sees it.
+
+An array of numba is seven words and a reference count, and the memory is handed to every kernel. So
+Memory has a type of its own when compiled: four bare addresses, which stay in registers, and nothing
+to count. The arrays live while a kernel runs because its caller holds the Memory; a kernel never keeps
+or returns one.
+"""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import Any, NamedTuple
+
+from numba import types
+from numba.extending import NativeValue, make_attribute_wrapper, models, register_model, typeof_impl, unbox
+from numba.np.numpy_support import from_dtype
+
+
+class Memory(NamedTuple):
+    """All that a kernel sees.
+
+    ia: IA() as integers; ra: the same bytes as reals; ci, cr: integers and reals of the common block,
+    indexed by the names of `offsets.generated`.
+    """
+
+    ia: Any
+    ra: Any
+    ci: Any
+    cr: Any
+
+
+class MemoryType(types.Type):
+    """Compiled type of Memory for one word scheme; `dtypes` are those of its four arrays."""
+
+    def __init__(self, *dtypes: Any) -> None:
+        self.dtypes = dtypes
+        super().__init__(name=f"Memory{dtypes}")
+
+
+@register_model(MemoryType)
+class _FourPointers(models.StructModel):
+    def __init__(self, manager: Any, kind: MemoryType) -> None:
+        pointers = [types.CPointer(dtype) for dtype in kind.dtypes]
+        super().__init__(manager, kind, list(zip(Memory._fields, pointers, strict=True)))
+
+
+for _name in Memory._fields:
+    make_attribute_wrapper(MemoryType, _name, _name)
+
+
+@typeof_impl.register(Memory)
+def _type_of(memory: Memory, _: Any) -> MemoryType:
+    return MemoryType(*(from_dtype(array.dtype) for array in memory))
+
+
+@unbox(MemoryType)
+def _addresses(kind: MemoryType, memory: Any, c: Any) -> Any:
+    """Code that takes the four addresses out of the Python object `memory`."""
+    pointers = c.context.make_helper(c.builder, kind)
+    failed = []
+    for name, dtype in zip(Memory._fields, kind.dtypes, strict=True):
+        array_type = types.Array(dtype, 1, "C")
+        member = c.pyapi.object_getattr_string(memory, name)
+        array = c.unbox(array_type, member)
+        c.pyapi.decref(member)
+        setattr(pointers, name, c.context.make_array(array_type)(c.context, c.builder, array.value).data)
+        c.context.nrt.decref(c.builder, array_type, array.value)
+        failed.append(array.is_error)
+    return NativeValue(pointers._getvalue(), is_error=reduce(c.builder.or_, failed))
