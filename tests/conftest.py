@@ -1,4 +1,4 @@
-"""What all tests share: where compiled kernels are kept, and how long a generated example may take.
+"""What all tests share: where compiled kernels are kept, how long an example may take, and Ctrl-C.
 
 The kernels are compiled once and kept in the checkout, so that a second test run does not compile again.
 The directory is named before anything imports the package, which looks at it once.
@@ -7,6 +7,7 @@ The directory is named before anything imports the package, which looks at it on
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 from hypothesis import HealthCheck, settings
@@ -17,3 +18,7 @@ os.environ.setdefault("UDEC_CACHE", str(ROOT / ".udec_cache"))
 # The first example of a test may compile kernels for a minute: neither it nor the data before it is slow.
 settings.register_profile("udec_ia", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("udec_ia")
+
+# A shell that starts the tests in the background has them ignore Ctrl-C, and every process that they start.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
