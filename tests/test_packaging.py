@@ -2,12 +2,15 @@
 
 A wheel is built from the sdist and unpacked into a folder of its own; from a third folder a deck is run
 with nothing but that folder on the path. So whatever the program needs must be in the wheel, and it must
-not write beside its own sources. The dependencies are those of the running Python.
+not write beside its own sources. The dependencies are those of the running Python. Last, tools/start.py
+must get so far on an old Python that it can say what is wrong.
 """
 
 from __future__ import annotations
 
+import ast
 import os
+import runpy
 import subprocess
 import sys
 import tarfile
@@ -21,6 +24,7 @@ import udec_ia
 from udec_ia.heap.words import ALL_SCHEMES
 
 ROOT = Path(__file__).parent.parent
+START = ROOT / "tools" / "start.py"
 DECK = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
 BLOCK 0,0 0,2 2,2 2,0
@@ -133,3 +137,11 @@ def test_compiled_kernels_are_kept_outside_the_package(installed: Path, tmp_path
     assert output[1:] == ["1"]
     assert any(cache.rglob("*.nbc"))
     assert files(installed) == before
+
+
+def test_an_old_python_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    ast.parse(START.read_text(), feature_version=(3, 5))
+    monkeypatch.setattr(sys, "version_info", (3, 9, 2))
+    monkeypatch.setattr(sys, "version", "3.9.2 (main)")
+    with pytest.raises(SystemExit, match=r"^Python 3\.11 or later is needed, this is 3\.9\.2"):
+        runpy.run_path(str(START))
