@@ -56,7 +56,7 @@ from udec_ia.kernels.lists import (
     to_front,
 )
 from udec_ia.kernels.shape import geo
-from udec_ia.kernels.touch import VIRTUAL, coord
+from udec_ia.kernels.touch import VIRTUAL, begin
 
 
 @kernel
@@ -225,14 +225,14 @@ def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int)
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, iad, ic)
     insert_after(h, jb, jad, ic)
-    coord(h, ic)
+    begin(h, ic)
     cut_domain(h, ic, idm)
     return ic
 
 
 @kernel
-def delc(h: Memory, ic: int) -> None:
-    """Delete contact `ic`, which separates two domains, and merge these (DELC)."""
+def delc(h: Memory, ic: int) -> int:
+    """Delete contact `ic`, which separates two domains, and merge these (DELC); returns the merged one."""
     ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
     if left_is_shorter(h, ic):
         gone, kept = iget(h, ic, KD1), iget(h, ic, KD2)
@@ -254,3 +254,4 @@ def delc(h: Memory, ic: int) -> None:
     puti(h, gone, HEAD, 0)
     lose(h, gone, NVDO)
     h.ci[NDOM] -= 1
+    return kept

@@ -36,6 +36,7 @@ from offsets.generated import (
     KYP,
     LROUND,
     MCTOT,
+    NBROKE,
     NSHORT,
     NVBL,
     NVCN,
@@ -47,7 +48,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
-from udec_ia.kernels.ford import settle, settle_all
+from udec_ia.kernels.ford import restart, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.shape import crad, zcs
 from udec_ia.kernels.split import corner_on_edge, spli
@@ -126,7 +127,7 @@ def _settle_crack(h: Memory, ic: int) -> None:
         puti(h, ic, KCCOD, EDGE_CORNER)
     elif getr(h, iget(h, ic, KCP2), KRAD) <= 0:
         puti(h, ic, KCCOD, CORNER_EDGE)
-    settle(h, ic)
+    restart(h, ic)
 
 
 @kernel
@@ -144,7 +145,7 @@ def _settle_around(h: Memory, ib: int, ip: int) -> None:
             if iget(h, item, KCCOD) != VIRTUAL:
                 if abs(getr(h, item, KXC) - x) + abs(getr(h, item, KYC) - y) > reach + reach:
                     break
-                settle(h, item)
+                restart(h, item)
             item = following
 
 
@@ -188,6 +189,7 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
 @kernel
 def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
     """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out."""
+    broken = h.ci[NBROKE]
     for k in range(first, n):
         ib = blocks[k]
         ip = iget(h, ib, KP)
@@ -196,6 +198,8 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
             idm = idomp(h, ib, item)
             if getr(h, idm, KUMAX) > h.cr[ETOL] and not update(h, idm):
                 return False
+            if h.ci[NBROKE] != broken:
+                return update_all(h)  # the contact at hand may be gone
             item = nextcp(h, ib, item)
     return True
 

@@ -7,6 +7,9 @@ may have come near enough to touch, and the domain is updated.
 A contact point counts with the velocities of both its blocks: any point of a domain's boundary then moves
 no faster than two points that were looked at, and no contact can be missed.
 
+A relative displacement of more than 2 ETOL in one step is an error: two blocks could then go from a gap
+of ATOL to an overlap of more than CTOL in it, and no contact between them would ever be formed.
+
 While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
 block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
 hundredth of ETOL. A scene at rest pays nothing for its domains.
@@ -17,8 +20,10 @@ from __future__ import annotations
 import numpy as np
 
 from offsets.generated import (
+    ETOL,
     HTOL,
     IDPNT,
+    IERAD,
     KB1,
     KB2,
     KCCOD,
@@ -34,6 +39,7 @@ from offsets.generated import (
     KYC,
     KYD,
     KYDP,
+    NERR,
     TDEL,
     UPEND,
 )
@@ -43,6 +49,8 @@ from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.segments import loop_start
 from udec_ia.kernels.touch import VIRTUAL
+
+TOO_FAST = 31
 
 
 @kernel
@@ -90,7 +98,11 @@ def accumulate(h: Memory, fastest: float) -> bool:
         return False
     idm = h.ci[IDPNT]
     while idm != 0:
-        putr(h, idm, KUMAX, getr(h, idm, KUMAX) + waiting + relative_velocity(h, idm) * dt)
+        moved = relative_velocity(h, idm) * dt
+        putr(h, idm, KUMAX, getr(h, idm, KUMAX) + waiting + moved)
+        if moved > h.cr[ETOL] + h.cr[ETOL] and h.ci[NERR] == 0:
+            h.ci[NERR] = TOO_FAST
+            h.ci[IERAD] = idm
         idm = iget(h, idm, KD)
     h.cr[UPEND] = real(h, 0.0)
     return True

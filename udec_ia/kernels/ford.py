@@ -41,6 +41,7 @@ from offsets.generated import (
     KD1,
     KD2,
     KL1,
+    KLB1,
     KTD,
     KX,
     KXC,
@@ -58,39 +59,58 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
-from udec_ia.kernels.lists import is_contact, other
-from udec_ia.kernels.reclass import reclass
+from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.reclass import settle
+from udec_ia.kernels.segments import ahead_by, on_arc, same_segment
 from udec_ia.kernels.touch import VIRTUAL, coord
 
 OVERLAP_TOO_GREAT = 15
-RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
 
 
 @kernel
-def settle(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Code, place, coordinates and overlap of contact `ic` as its geometry asks; normal and overlap."""
-    for _ in range(RECLASSIFICATIONS):
-        if not reclass(h, ic):
-            break
-    return coord(h, ic)
+def restart(h: Memory, ic: int) -> float:
+    """Settle contact `ic` in a changed geometry, its forces as they are; returns the overlap."""
+    _, _, overlap = settle(h, ic)
+    putr(h, ic, KCN, overlap)
+    return overlap
 
 
 @kernel
 def has_twin(h: Memory, ic: int) -> bool:
-    """True if the next contact on block KB1 is one of the same two blocks, nearer than FTOL."""
-    ib = iget(h, ic, KB1)
-    jc = iget(h, ic, KL1)
-    if not is_contact(h, jc) or other(h, ib, jc) != iget(h, ic, KB2) or iget(h, jc, KCCOD) == VIRTUAL:
-        return False
-    dx, dy = getr(h, jc, KXC) - getr(h, ic, KXC), getr(h, jc, KYC) - getr(h, ic, KYC)
-    return dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL]
+    """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
+    ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
+    for jc in (iget(h, ic, KL1), iget(h, ic, KLB1)):
+        if is_contact(h, jc) and other(h, ib, jc) == jb and iget(h, jc, KCCOD) != VIRTUAL:
+            dx, dy = getr(h, jc, KXC) - getr(h, ic, KXC), getr(h, jc, KYC) - getr(h, ic, KYC)
+            if dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL]:
+                return True
+    return False
+
+
+@kernel
+def overtaken(h: Memory, ic: int, gap: float) -> bool:
+    """True if open contact `ic` and a neighbour on the same segment have passed each other.
+
+    Something has slipped through the gap: the contact is no wall any more.
+    """
+    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+    most = h.cr[FTOL] + gap
+    for ib in (iget(h, ic, KB1), iget(h, ic, KB2)):
+        ip, arc = corner_of(h, ib, ic), on_arc(h, ib, ic)
+        after, before = nextcp(h, ib, ic), prevcp(h, ib, ic)
+        if same_segment(h, ib, after, ip, arc) and ahead_by(h, ib, ip, after, x, y) < -most:
+            return True
+        if same_segment(h, ib, before, ip, arc) and ahead_by(h, ib, ip, before, x, y) > most:
+            return True
+    return False
 
 
 @kernel
 def drop(h: Memory, ic: int, overlap: float) -> bool:
-    """Delete contact `ic`, or make it virtual, if it is open beyond BTOL or idle beside a twin."""
-    idle = overlap <= 0 or getr(h, ic, KCFN) == 0
-    if overlap >= -h.cr[BTOL] and not (idle and has_twin(h, ic)):
+    """Delete contact `ic`, or make it virtual, if it is open too far, overtaken, or idle beside a twin."""
+    if overlap > 0 and getr(h, ic, KCFN) != 0:
+        return False
+    if overlap >= -h.cr[BTOL] and not has_twin(h, ic) and (overlap > 0 or not overtaken(h, ic, -overlap)):
         return False
     if iget(h, ic, KD1) != iget(h, ic, KD2):
         delc(h, ic)
@@ -133,6 +153,7 @@ def ford(h: Memory, ic: int) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it."""
     before = getr(h, ic, KCN)
     nx, ny, overlap = settle(h, ic)
+    putr(h, ic, KCN, overlap)
     if drop(h, ic, overlap):
         return
     xd, yd = cvel(h, ic)
@@ -146,14 +167,16 @@ def ford(h: Memory, ic: int) -> None:
     sliding = yd * nx - xd * ny
     dus = sliding * dt
     fn = getr(h, ic, KCFN) + kn * (overlap - max(before, zero))
-    fs = getr(h, ic, KCFS) + ks * dus
+    held = getr(h, ic, KCFS)
+    fs = held + ks * dus
     putr(h, ic, KCS, getr(h, ic, KCS) + dus)
     if fn <= zero:
         fn, fs = zero, zero
     most = h.cr[COH + m] + h.cr[AMU + m] * fn
     dashpot = h.cr[BETA] * ks * sliding
     if abs(fs) > most:
-        h.cr[WFRIC] += (abs(fs) - most) / ks * most
+        slip = (abs(fs) - most) / ks
+        h.cr[WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
         fs = most if fs > zero else -most
         dashpot = zero
     putr(h, ic, KCFN, fn)
@@ -187,8 +210,7 @@ def settle_all(h: Memory) -> None:
     while ic != 0:
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
-            _, _, overlap = settle(h, ic)
-            drop(h, ic, overlap)
+            drop(h, ic, restart(h, ic))
         ic = following
 
 

@@ -49,7 +49,7 @@ from udec_ia.kernels.bridge import (
     relabel,
 )
 from udec_ia.kernels.lists import insert_after, is_corner, prevcp, take_out
-from udec_ia.kernels.touch import VIRTUAL, coord
+from udec_ia.kernels.touch import VIRTUAL, begin
 
 MINE = 2  # column of the pieces
 
@@ -95,7 +95,7 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
     puti(h, iv, KCC, iget(h, ib, KCONS))
     puti(h, iv, KCCOD, icod)
     no_force(h, iv)
-    coord(h, iv)
+    begin(h, iv)
     h.ci[NVIRT] -= 1
     h.ci[NMADE] += 1
 
@@ -167,7 +167,7 @@ def cut_among_pieces(
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, iad, ic)
     insert_after(h, jb, jad, ic)
-    coord(h, ic)
+    begin(h, ic)
     new_is_left = left_is_shorter(h, ic)
     idnew = cut_domain(h, ic, idm)
     inner, outer = (jb, ib) if new_is_left else (ib, jb)

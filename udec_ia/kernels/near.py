@@ -31,8 +31,9 @@ from offsets.generated import (
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.lists import corner_of, is_contact, is_corner, nextcp, other, prevcp
-from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, on_arc
+from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, ahead_by, on_arc, same_segment
+from udec_ia.kernels.tips import blocked
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, lean, meet
 
 FACING = 0.5  # sine of the angle by which a facing arc may have turned away between two updates
@@ -100,30 +101,19 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
 
 
 @kernel
-def _place(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
-    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
-    ia = iget(h, ip, KR)
-    tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
-    if on_arc(h, ib, ic):  # along the chord of the arc, which is normal to the line to the centre
-        tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
-    z = np.sqrt(tx * tx + ty * ty)
-    return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
-
-
-@kernel
-def _misplaced(h: Memory, ib: int, ip: int, arc: int, iad: int, x: float, y: float) -> float:
+def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: float) -> float:
     """By how much the point (x, y) lies outside the exposure of a segment that follows item `iad`."""
     worst = real(h, 0.0)
-    if not is_corner(h, iad) and corner_of(h, ib, iad) == ip and on_arc(h, ib, iad) == (arc == 1):
-        worst = max(worst, _place(h, ib, ip, iad, x, y))
     after = nextcp(h, ib, iad)
-    if not is_corner(h, after) and corner_of(h, ib, after) == ip and on_arc(h, ib, after) == (arc == 1):
-        worst = max(worst, -_place(h, ib, ip, after, x, y))
+    if same_segment(h, ib, iad, ip, arc):
+        worst = max(worst, ahead_by(h, ib, ip, iad, x, y))
+    if same_segment(h, ib, after, ip, arc):
+        worst = max(worst, -ahead_by(h, ib, ip, after, x, y))
     return worst
 
 
 @kernel
-def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
+def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
     """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
 
     Urgent is the greatest overlap at the place in the list where the contact belongs.
@@ -154,9 +144,10 @@ def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     if _one_beside(h, ib, seg[i, ITEM], jb, x, y) or _one_beside(h, jb, seg[j, ITEM], ib, x, y):
         return 0, zero
     wrong = max(
-        _misplaced(h, ib, ip, iarc, seg[i, ITEM], x, y), _misplaced(h, jb, jp, jarc, seg[j, ITEM], x, y)
+        _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], x, y),
+        _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], x, y),
     )
-    if wrong > h.cr[DTOL]:
+    if wrong > h.cr[DTOL] or (len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp)):
         return 0, zero
     return code, overlap - wrong
 
@@ -176,7 +167,7 @@ def _box(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float]:
 
 
 @kernel
-def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+def _search_all(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
     best, bi, bj = 0, 0, 0
     most = real(h, 0.0)
@@ -188,7 +179,7 @@ def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
             cx, cy, dx, dy = _box(h, seg, j)
             if cx > bx or dx < ax or cy > by or dy < ay:
                 continue
-            code, urgent = judge(h, seg, i, j)
+            code, urgent = judge(h, seg, tips, i, j)
             if code != 0 and (best == 0 or urgent > most):
                 best, bi, bj, most = code, i, j, urgent
     return best, bi, bj
@@ -231,7 +222,7 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 
 
 @kernel
-def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """As _search_all, but only pairs that share a cell of a grid as wide as the mean edge is long."""
     total = real(h, 0.0)
     for i in range(n):
@@ -255,7 +246,7 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
                 i, j = row[order[u]], row[order[v]]
                 if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                     continue
-                code, urgent = judge(h, seg, i, j)
+                code, urgent = judge(h, seg, tips, i, j)
                 if code != 0 and (best == 0 or urgent > most):
                     best, bi, bj, most = code, i, j, urgent
         first = last
@@ -263,8 +254,8 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
 
 
 @kernel
-def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+def search(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none."""
     if n <= SMALL:
-        return _search_all(h, seg, n)
-    return _search_cells(h, seg, n)
+        return _search_all(h, seg, tips, n)
+    return _search_cells(h, seg, tips, n)

@@ -42,7 +42,9 @@ from udec_ia.kernels.lists import (
     take_out,
 )
 from udec_ia.kernels.shape import zcs
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, ce, lean
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, ce, coord, lean
+
+RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
 
 
 @kernel
@@ -169,3 +171,12 @@ def reclass(h: Memory, ic: int) -> bool:
     border = h.cr[DTOL] - h.cr[GTOL]
     changed = (along < border or z - along < border) and _off_the_edge(h, ic, jb, ip, iq, along, z)
     return changed or (h.ci[NSHORT] != 0 and _roll(h, ic, ib, ip, -ex, -ey))
+
+
+@kernel
+def settle(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Code, place and coordinates of contact `ic` as its geometry asks; normal (x, y) and overlap."""
+    for _ in range(RECLASSIFICATIONS):
+        if not reclass(h, ic):
+            break
+    return coord(h, ic)

@@ -18,11 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KRAD
+from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import corner_of, is_corner, next_corner
+from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 BLOCK, CORNER, ARC, ITEM, PIECE = 0, 1, 2, 3, 4
@@ -36,6 +37,25 @@ def on_arc(h: Memory, ib: int, ic: int) -> bool:
     if code == CORNER_CORNER:
         return True
     return code == (CORNER_EDGE if iget(h, ic, KB1) == ib else EDGE_CORNER)
+
+
+@kernel
+def same_segment(h: Memory, ib: int, iad: int, ip: int, arc: bool) -> bool:
+    """True if item `iad` is a contact (not virtual) on the arc of corner `ip`, or on the edge that ends there."""
+    if is_corner(h, iad) or iget(h, iad, KCCOD) == VIRTUAL:
+        return False
+    return corner_of(h, ib, iad) == ip and on_arc(h, ib, iad) == arc
+
+
+@kernel
+def ahead_by(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
+    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
+    ia = iget(h, ip, KR)
+    tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
+    if on_arc(h, ib, ic):  # along the chord of the arc, which is normal to the line to the centre
+        tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
+    z = np.sqrt(tx * tx + ty * ty)
+    return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
 
 
 @kernel
@@ -124,3 +144,25 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
             n = _note_arc(h, seg, n, block, corner, item, piece)
         else:
             n = _note(seg, n, block, corner, 0, item, piece)
+
+
+@kernel
+def settle_loop(h: Memory, idm: int) -> None:
+    """Bring codes, places and coordinates of the contacts around domain `idm` up to date, not their forces.
+
+    Blocks have moved since the last contact pass; what the domain needs can be told only from where its
+    contacts are now.
+    """
+    contacts = np.empty(count_items(h, idm), np.int64)
+    start, first = loop_start(h, idm)
+    item, block = start, first
+    n = 0
+    while True:
+        item, block = nextd(h, item, block)
+        if not is_corner(h, item) and iget(h, item, KCCOD) != VIRTUAL:
+            contacts[n] = item
+            n += 1
+        if item == start and block == first:
+            break
+    for ic in contacts[:n]:
+        settle(h, ic)

@@ -87,9 +87,15 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
 
 @kernel
 def coord(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Update the coordinates and the overlap of contact `ic` (COORD); returns normal and overlap."""
+    """Update the coordinates of contact `ic` (COORD); returns normal (x, y) and overlap."""
     nx, ny, overlap, x, y = meet(h, iget(h, ic, KCCOD), iget(h, ic, KCP1), iget(h, ic, KCP2))
     putr(h, ic, KXC, x)
     putr(h, ic, KYC, y)
-    putr(h, ic, KCN, overlap)
     return nx, ny, overlap
+
+
+@kernel
+def begin(h: Memory, ic: int) -> None:
+    """Coordinates of contact `ic`, and its overlap as the one that force increments count from."""
+    _, _, overlap = coord(h, ic)
+    putr(h, ic, KCN, overlap)

@@ -11,16 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import ETOL, IDPNT, KD, KD1, KD2, KDLOOP, KUMAX, NVCN, NVDO, NVIRT
+from offsets.generated import ETOL, IDPNT, KD, KD1, KD2, KDLOOP, KUMAX, NBROKE, NVCN, NVDO, NVIRT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.bridge import bridge
 from udec_ia.kernels.hook import cut_among_pieces, not_virtual, rehook
 from udec_ia.kernels.near import search
-from udec_ia.kernels.segments import BLOCK, COLUMNS, ITEM, PIECE, collect, count_items
+from udec_ia.kernels.segments import BLOCK, COLUMNS, ITEM, PIECE, collect, count_items, settle_loop
+from udec_ia.kernels.tips import find_tips, give_up_blocked
 
-NOTHING, MADE, CUT, NO_ROOM = 0, 1, 2, 3
+NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
 WAITING = 64  # domains that may wait for their turn in one update
 
 
@@ -50,7 +51,10 @@ def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
 
 @kernel
 def updt(h: Memory, idm: int) -> tuple[int, int]:
-    """Make the most urgent contact in domain `idm` (UPDT): what was done, and the new domain or 0."""
+    """Make the most urgent contact in domain `idm` (UPDT), or give up one that a tip has blocked.
+
+    Returns what was done, and the new domain (CUT) or the domain that `idm` is part of now (MERGED).
+    """
     zero = int64(0)
     if iget(h, idm, KDLOOP) == 0:
         return NOTHING, zero
@@ -58,7 +62,12 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     ties = np.empty((min(h.ci[NVIRT], items), 3), np.int64)
     n, nties = collect(h, idm, seg, ties)
-    code, i, j = search(h, seg, n)
+    tips = find_tips(h, seg, n)
+    if len(tips) > 0:
+        found, merged = give_up_blocked(h, idm, seg, tips)
+        if found:
+            return MERGED, merged
+    code, i, j = search(h, seg, tips, n)
     if code == 0:
         return NOTHING, zero
     ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
@@ -81,6 +90,8 @@ def update(h: Memory, idm: int) -> bool:
     waiting = np.empty(WAITING, np.int64)
     waiting[0] = idm
     n = 1
+    if iget(h, idm, KDLOOP) != 0:
+        settle_loop(h, idm)
     while n > 0:
         here = waiting[n - 1]
         done, idnew = updt(h, here)
@@ -95,6 +106,10 @@ def update(h: Memory, idm: int) -> bool:
                 waiting[n] = waiting[n - 1]
                 waiting[n - 1] = idnew
                 n += 1
+        elif done == MERGED:  # one that was waiting may be gone; they are flagged and found by update_all
+            settle_loop(h, idnew)
+            waiting[0] = idnew
+            n = 1
     return True
 
 
@@ -104,6 +119,7 @@ def update_all(h: Memory) -> bool:
     again = True
     while again:
         again = False
+        broken = h.ci[NBROKE]
         idm = h.ci[IDPNT]
         while idm != 0:
             following = iget(h, idm, KD)
@@ -111,5 +127,7 @@ def update_all(h: Memory) -> bool:
                 if not update(h, idm):
                     return False
                 again = True
+            if h.ci[NBROKE] != broken:
+                break  # domains have merged, the following one may be gone
             idm = following
     return True

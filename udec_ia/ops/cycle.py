@@ -21,6 +21,7 @@ from offsets.generated import (
     CON2,
     DTOL,
     DTOL2,
+    ETOL,
     FRAC,
     IBPNT,
     IERAD,
@@ -43,6 +44,7 @@ from udec_ia.heap.accessors import getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
 from udec_ia.kernels.cycle import run_cycles
+from udec_ia.kernels.domains import TOO_FAST
 from udec_ia.ops.memory import find_room
 from udec_ia.ops.rounding import check_all_edges, settle_default
 
@@ -138,16 +140,22 @@ def _raise_error(array: MainArray) -> None:
     if number == 1:
         find_room(array)
         return
-    ic = int(h.ci[IERAD])
+    group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
-    m = iget(h, ic, KCM)
+    if number == TOO_FAST:
+        detail = (
+            f"around domain@{group} they approach by more than {2 * h.cr[ETOL]:g} in cycle "
+            f"{int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s"
+        )
+        raise UdecError(number, detail, "take a smaller FRACTION or a greater ROUND", group=group)
+    m = iget(h, group, KCM)
     detail = (
-        f"contact@{ic} of block@{iget(h, ic, KB1)} and block@{iget(h, ic, KB2)} at "
-        f"({getr(h, ic, KXC):g}, {getr(h, ic, KYC):g}) overlaps by {getr(h, ic, KCN):g}, more than "
+        f"contact@{group} of block@{iget(h, group, KB1)} and block@{iget(h, group, KB2)} at "
+        f"({getr(h, group, KXC):g}, {getr(h, group, KYC):g}) overlaps by {getr(h, group, KCN):g}, more than "
         f"{h.cr[DTOL2]:g}, in cycle {int(h.ci[MCTOT])}"
     )
     advice = (
         f"KN of material {m} is {h.cr[AKN + m - 1]:g}, the time-step {h.cr[TDEL]:g} is {h.cr[FRAC]:g} of "
         "the critical one: take a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
-    raise UdecError(number, detail, advice, group=ic)
+    raise UdecError(number, detail, advice, group=group)
