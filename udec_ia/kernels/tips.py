@@ -32,7 +32,7 @@ from offsets.generated import (
     KYP,
     NBROKE,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import delc, nextd, to_virtual
 from udec_ia.kernels.lists import is_corner, next_corner
@@ -115,7 +115,7 @@ def give_up_blocked(h: Memory, idm: int, seg: Any, tips: Any) -> tuple[bool, int
                 h.ci[NBROKE] += 1
                 if iget(h, item, KD1) == iget(h, item, KD2):
                     to_virtual(h, item)
-                    return True, np.int64(idm)
+                    return True, int64(idm)
                 return True, delc(h, item)
         if item == start and block == first:
-            return False, np.int64(idm)
+            return False, int64(idm)
