@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "9a45171e2a32b487d831eb3c8622046c2640341d1e8be38fb1e8b3ef5a776851"
+DIGEST = "14b321f47a3e279ae00d1cada6e4c804a780da0e434ec2c82a5a1888dbdd361f"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -148,8 +148,9 @@ NSHORT = 16  # edges that hold little more than their two roundings
 LROUND = 17  # 1 if the rounding length was given by ROUND, 0 if it is our default
 IERAD = 18  # address of the group that raised error NERR; 0 when there is none
 NWANT = 19  # words that the interrupted routine asks for; 0 when there are enough
-JPHASE = 20  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 21
+NTIPS = 20  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 21  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 22
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -17,6 +17,7 @@ from offsets.generated import (
     ATOL,
     CTOL,
     DTOL,
+    ETOL,
     FTOL,
     GTOL,
     KCCOD,
@@ -28,6 +29,7 @@ from offsets.generated import (
     KYC,
     KYCP,
     KYP,
+    NTIPS,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
@@ -36,7 +38,7 @@ from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, ahead_by, on_arc,
 from udec_ia.kernels.tips import blocked
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, lean, meet
 
-FACING = 0.5  # sine of the angle by which a facing arc may have turned away between two updates
+FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 AROUND = 6  # items looked at on either side for a contact of the same two blocks
 SMALL = 48  # segments of a domain in which all pairs are tried
 
@@ -147,7 +149,10 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
         _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], x, y),
         _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], x, y),
     )
-    if wrong > h.cr[DTOL] or (len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp)):
+    if wrong > h.cr[ETOL]:
+        return 0, zero
+    if len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp):
+        h.ci[NTIPS] += 1
         return 0, zero
     return code, overlap - wrong
 
@@ -256,6 +261,7 @@ def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int
 @kernel
 def search(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none."""
+    h.ci[NTIPS] = 0
     if n <= SMALL:
         return _search_all(h, seg, tips, n)
     return _search_cells(h, seg, tips, n)

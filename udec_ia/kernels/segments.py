@@ -22,7 +22,7 @@ from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KR, KRAD, KXC, KXCP,
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
-from udec_ia.kernels.lists import corner_of, is_corner, next_corner
+from udec_ia.kernels.lists import corner_of, is_corner, next_corner, prevcp
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
@@ -41,7 +41,7 @@ def on_arc(h: Memory, ib: int, ic: int) -> bool:
 
 @kernel
 def same_segment(h: Memory, ib: int, iad: int, ip: int, arc: bool) -> bool:
-    """True if item `iad` is a contact (not virtual) on the arc of corner `ip`, or on the edge that ends there."""
+    """True if item `iad` is a contact on the arc of corner `ip`, or on the edge that ends there."""
     if is_corner(h, iad) or iget(h, iad, KCCOD) == VIRTUAL:
         return False
     return corner_of(h, ib, iad) == ip and on_arc(h, ib, iad) == arc
@@ -56,6 +56,18 @@ def ahead_by(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
         tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
     z = np.sqrt(tx * tx + ty * ty)
     return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
+
+
+@kernel
+def opens_on_arc(h: Memory, ib: int, ic: int) -> bool:
+    """True if the exposure of block `ib` after contact `ic` begins on an arc, False if on an edge.
+
+    A virtual contact stands nowhere: what counts is the item before it.
+    """
+    item = np.int64(ic)
+    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
+        item = prevcp(h, ib, item)
+    return not is_corner(h, item) and on_arc(h, ib, item)
 
 
 @kernel
@@ -110,7 +122,7 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
     n, nties, depth, piece = 0, 0, 0, 0
     way_back = np.empty(len(ties), np.int64)
     corner = corner_of(h, block, item)
-    arc = on_arc(h, block, item)
+    arc = opens_on_arc(h, block, item)
     n = _note_arc(h, seg, n, block, corner, item, 0) if arc else _note(seg, n, block, corner, 0, item, 0)
     while True:
         last, before = item, block
@@ -139,7 +151,7 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
                 nties += 1
                 piece = nties
         corner = corner_of(h, block, item)
-        arc = on_arc(h, block, item)
+        arc = opens_on_arc(h, block, item)
         if arc:
             n = _note_arc(h, seg, n, block, corner, item, piece)
         else:

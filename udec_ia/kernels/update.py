@@ -11,7 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import ETOL, IDPNT, KD, KD1, KD2, KDLOOP, KUMAX, NBROKE, NVCN, NVDO, NVIRT
+from offsets.generated import (
+    ETOL,
+    HTOL,
+    IDPNT,
+    KD,
+    KD1,
+    KD2,
+    KDLOOP,
+    KUMAX,
+    NBROKE,
+    NTIPS,
+    NVCN,
+    NVDO,
+    NVIRT,
+    UPEND,
+)
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
@@ -99,6 +114,9 @@ def update(h: Memory, idm: int) -> bool:
             return False
         if done == NOTHING:
             putr(h, here, KUMAX, real(h, 0.0))
+            if h.ci[NTIPS] > 0:  # to be looked at in the next cycle again: the gap may close then
+                putr(h, here, KUMAX, h.cr[ETOL])
+                h.cr[UPEND] = h.cr[HTOL]
             n -= 1
         elif done == CUT:
             putr(h, idnew, KUMAX, getr(h, here, KUMAX))
