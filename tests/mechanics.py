@@ -1,0 +1,95 @@
+"""Scenes that the tests of the mechanics share, and how to look at them.
+
+Everything is cut from one block, as in a deck: a base that is fixed and what stands on it, or blocks that
+float freely far above a fixed one (a block system needs a contact, so one block more is always left).
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import Any
+
+from offsets.generated import KTD, KXD, KYD, TDEL
+from udec_ia import Model
+
+G = 10.0
+Row = Any  # one row of Model.table
+
+
+def model(
+    *outline: tuple[float, float],
+    d: float,
+    fraction: float = 0.1,
+    density: float = 1000.0,
+    stiffness: tuple[float, float] = (1e8, 1e8),
+    friction: float = 0.0,
+    cohesion: float = 0.0,
+    gravity: tuple[float, float] = (0.0, -G),
+    build: str = "i32r64",
+) -> Model:
+    """A model of one block with the given corners (clockwise) and rounding length `d`, no damping."""
+    m = Model(build=build)
+    m.start()
+    m.fraction(fraction)
+    m.gravity(*gravity)
+    kn, ks = stiffness
+    m.property(1, density=density, kn=kn, ks=ks, friction=friction, cohesion=cohesion)
+    m.round(d)
+    m.block(*chain.from_iterable(outline))
+    return m
+
+
+def box(x1: float, x2: float, y1: float, y2: float) -> list[tuple[float, float]]:
+    """Corners of a rectangle, clockwise from the lower left one."""
+    return [(x1, y1), (x1, y2), (x2, y2), (x2, y1)]
+
+
+def on_base(b: float, h: float, d: float, width: float, **numbers: Any) -> Model:
+    """A block of breadth `b` and height `h` on a fixed base, 1 high and `width` wide, from x = -width/2.
+
+    The base's top is y = 0, the block's centroid is at (0, h/2).
+    """
+    m = model(*box(-width / 2, width / 2, -1, h), d=d, **numbers)
+    m.split(-width, 0, width, 0)
+    for x in (-b / 2, b / 2):
+        m.split(x, -0.5, x, h + 1)
+    m.delete(-width, -b / 2, 0, h)
+    m.delete(b / 2, width, 0, h)
+    m.fix(-width, width, -1, 0)
+    return m
+
+
+def block(m: Model, x: float, y: float) -> Row:
+    """The block whose centroid is nearest to (x, y)."""
+    blocks = m.table("block")
+    return blocks[((blocks["KX"] - x) ** 2 + (blocks["KY"] - y) ** 2).argmin()]
+
+
+def at(m: Model, kind: str, address: int) -> Row:
+    """The group of `kind` at `address`."""
+    rows = m.table(kind)
+    (row,) = rows[rows["address"] == address]
+    return row
+
+
+def push(m: Model, address: int, xd: float = 0.0, yd: float = 0.0, td: float = 0.0) -> None:
+    """Give the block at `address` a velocity."""
+    which = m.array.scheme.ratio >> 1
+    for offset, value in ((KXD, xd), (KYD, yd), (KTD, td)):
+        m.rset(value, address, offset[which])
+
+
+def step(m: Model) -> float:
+    """The time-step of the last CYCLE."""
+    return float(m.h.cr[TDEL])
+
+
+def no_damping(m: Model) -> None:
+    """Take all damping away."""
+    m.damping(0.0, 1.0)
+
+
+def sound(m: Model) -> None:
+    """The map and its numbers are as they must be."""
+    found = m.check()
+    assert not found, found

@@ -1,0 +1,156 @@
+"""Blocks in free motion and on one spring: what the law of motion must do exactly."""
+
+from __future__ import annotations
+
+from math import log, pi, sqrt
+
+import numpy as np
+import pytest
+from mechanics import G, at, block, box, model, on_base, push, sound, step
+from naive.dynamics import angle_between, bounce, peaks
+
+from offsets.generated import ALPHA, BETA
+from udec_ia import Model
+
+EPS = np.finfo(float).eps
+
+
+def floating(gravity: tuple[float, float]) -> Model:
+    """A unit square with its lower left corner at (0, 2), above a fixed base whose top is y = 0."""
+    m = model(*box(0, 1, -1, 3), d=0.1, gravity=gravity)
+    m.split(-1, 0, 2, 0)
+    m.split(-1, 2, 2, 2)
+    m.delete(0, 1, 0, 2)
+    m.fix(0, 1, -1, 0)
+    return m
+
+
+def test_free_fall_is_exact() -> None:
+    """v = v0 + n g dt and y = y0 + n v0 dt + n (n + 1)/2 g dt^2: only the rounding of n additions is lost."""
+    m = floating((1.0, -G))
+    address = block(m, 0.5, 2.5)["address"]
+    push(m, address, xd=2.0, yd=20.0)
+    n = 500
+    m.cycle(n)
+    dt, row = step(m), at(m, "block", address)
+    for x, v, x0, v0, a in ((row["KX"], row["KXD"], 0.5, 2.0, 1.0), (row["KY"], row["KYD"], 2.5, 20.0, -G)):
+        assert v == pytest.approx(v0 + n * a * dt, abs=n * EPS * abs(v0))
+        path = n * v0 * dt + n * (n + 1) / 2 * a * dt**2
+        assert x == pytest.approx(x0 + path, abs=n * EPS * (abs(x0) + n * abs(v0) * dt))
+    assert row["KTD"] == 0
+    sound(m)
+
+
+def test_a_spinning_block_keeps_its_speed_and_its_shape() -> None:
+    """A rotation by the half-angle tangent keeps lengths to rounding: 4 roundings of a coordinate a cycle."""
+    m = floating((0.0, 0.0))
+    address = block(m, 0.5, 2.5)["address"]
+    omega, n = 7.0, 10_000
+    push(m, address, td=omega)
+    edges, direction = _edges(m, address)
+    m.cycle(1)
+    _, after = _edges(m, address)
+    turned = angle_between(*direction[0], *after[0])
+    assert turned == pytest.approx(2 * np.arctan(omega * step(m) / 2), abs=8 * EPS)
+    m.cycle(n - 1)
+    row = at(m, "block", address)
+    assert row["KTD"] == omega
+    assert (row["KX"], row["KY"]) == (0.5, 2.5)
+    lengths, _ = _edges(m, address)
+    assert lengths == pytest.approx(edges, abs=n * 4 * EPS * 3)
+    sound(m)
+
+
+def _edges(m: Model, address: int) -> tuple[list[float], list[tuple[float, float]]]:
+    """Lengths and directions of the edges and of the spokes to the circle centres of a block."""
+    corners = m.table("corner")
+    corners = corners[corners["KNB"] == address]
+    found = []
+    for a, b in zip(corners, np.roll(corners, -1), strict=True):
+        found += [(b["KXP"] - a["KXP"], b["KYP"] - a["KYP"]), (a["KXCP"] - a["KXP"], a["KYCP"] - a["KYP"])]
+    return [float(np.hypot(*edge)) for edge in found], found
+
+
+def on_its_apex(fraction: float) -> Model:
+    """A triangle that stands on its lower corner, at rest under gravity."""
+    m = on_base(2.0, 2.0, d=0.1, width=3.0, fraction=fraction)
+    for side in (-1, 1):
+        m.split(-side * 0.1, -0.2, side * 1.1, 2.2)
+    m.delete(-2, -0.5, 0, 1.3)
+    m.delete(0.5, 2, 0, 1.3)
+    m.damping(2.0, sqrt(1e8 / 2e3) / (2 * pi), "stiffness")
+    m.cycle(int(40 / fraction))
+    return m
+
+
+@pytest.mark.parametrize(("fcrit", "only"), [(0.0, None), (0.1, None), (0.1, "mass"), (0.1, "stiffness")])
+def test_bounce_on_one_contact(fcrit: float, only: str | None) -> None:
+    """w = sqrt(KN/m), damped; the logarithmic decrement is 2 pi xi/sqrt(1 - xi^2), xi = (ALPHA/w + BETA w)/2.
+
+    Half as much weight again is put on a triangle at rest on its corner. Central differences shorten the
+    period by (w dt)^2/24; the dashpot lags by half a step, as if the mass were smaller by xi w dt of itself.
+    """
+    m = on_its_apex(0.02)
+    (resting,) = (row for row in m.table("contact") if row["KCFN"] > 0)
+    body = block(m, 0, 1.3)
+    mass, kn = float(body["KBM"]), 1e8
+    assert mass == pytest.approx(2000.0)
+    assert resting["KCN"] == pytest.approx(mass * G / kn, rel=1e-6)
+    w = sqrt(kn / mass)
+    m.damping(fcrit, w / (2 * pi), only)
+    m.gravity(0, -1.5 * G)
+    overlaps = []
+    n = int(4.5 * pi / 0.04)
+    for _ in range(n):
+        m.cycle(1)
+        (row,) = (row for row in m.table("contact") if row["KCFN"] > 0)
+        overlaps.append(float(row["KCN"]))
+    dt, alpha, beta = step(m), float(m.h.cr[ALPHA]), float(m.h.cr[BETA])
+    assert w * dt == pytest.approx(0.04)
+    swing = 0.5 * mass * G / kn
+    independent = bounce(mass, kn, 1.5 * G, dt, alpha, beta, float(resting["KCN"]), n)
+    assert overlaps == pytest.approx(independent, abs=1e-6 * swing)
+    xi = (alpha / w + beta * w) / 2
+    assert xi == pytest.approx(fcrit if only is None else fcrit / 2)
+    (t1, first), (t2, second) = peaks([u - 3 * swing for u in overlaps])[:2]
+    lag = xi * w * dt
+    assert 2 * pi / ((t2 - t1) * dt) == pytest.approx(w * sqrt(1 - xi**2), rel=lag + (w * dt) ** 2 / 12)
+    decrement = 2 * pi * xi / sqrt(1 - xi**2)
+    assert log(first / second) == pytest.approx(decrement, rel=lag, abs=1e-4)
+    sound(m)
+
+
+def quarters(friction: float) -> Model:
+    """Four free blocks that fill a square of side 2 about the origin, cut by two inclined lines."""
+    m = model(*box(-1, 1, -1, 1), d=0.08, gravity=(0.0, 0.0), friction=friction, fraction=0.02)
+    m.split(-2, -0.4, 2, 0.4)
+    m.split(-0.2, -2, 0.2, 2)
+    return m
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_colliding_blocks_keep_their_momentum(friction: float) -> None:
+    """Each contact acts equal and opposite on its blocks at one point: the sums change by rounding only.
+
+    Every cycle rounds the momenta of the two blocks of 8 contacts; velocities and arms are of order one.
+    """
+    m = quarters(friction)
+    for i, row in enumerate(m.table("block")):
+        push(m, row["address"], -row["KX"] + 0.3, -row["KY"], 0.5 * (i - 1))
+    m.cycle(0)
+    before = _momentum(m)
+    scale = float((m.table("block")["KBM"]).sum())
+    busy = 0
+    for k in range(1, 41):
+        m.cycle(10)
+        busy += int((m.table("contact")["KCFN"] > 0).any())
+        assert _momentum(m) == pytest.approx(before, abs=10 * k * 16 * EPS * scale)
+        sound(m)
+    assert 3 < busy < 40
+
+
+def _momentum(m: Model) -> list[float]:
+    b = m.table("block")
+    px, py = b["KBM"] * b["KXD"], b["KBM"] * b["KYD"]
+    spin = b["KX"] * py - b["KY"] * px + b["KBI"] * b["KTD"]
+    return [float(px.sum()), float(py.sum()), float(spin.sum())]
