@@ -34,7 +34,7 @@ ADVICE = {
     20: "the main array is damaged: look at the last RSET, and go back to what was saved before it",
     21: "delete blocks before they are made fully-deformable",
     22: "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ...",
-    23: "this part of the 1980 program was never written",
+    23: "deformable blocks are not there yet: blocks are rigid",
     24: "a block counts by its centroid: PRINT BLOCKS shows the centroids",
     25: "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
     26: "a zone needs its three grid-points on one line",
@@ -42,6 +42,8 @@ ADVICE = {
     28: "HELP and the name of the command show what it takes",
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
+    31: "take a smaller FRACTION or a greater ROUND",
+    32: "check that the folder exists and can be written to",
 }
 
 

@@ -20,13 +20,31 @@ import numpy as np
 
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check_complete import check_complete
-from udec_ia.inspect.check_geometry import check_contacts, check_numbers, check_outlines, outlines, touches
+from udec_ia.inspect.check_geometry import (
+    check_codes,
+    check_contacts,
+    check_numbers,
+    check_outlines,
+    outlines,
+    touches,
+)
 from udec_ia.inspect.check_groups import State, Violation, check_pointers
 from udec_ia.inspect.check_map import check_map
 from udec_ia.inspect.check_memory import check_memory
 from udec_ia.inspect.check_place import check_places
 
-__all__ = ["Violation", "check"]
+__all__ = ["Violation", "check", "check_links"]
+
+
+def check_links(array: MainArray) -> list[Violation]:
+    """The violations that would mislead a routine that follows pointers: invariants 1 to 6, and codes."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        check_memory(state)
+        check_pointers(state)
+        check_codes(state)
+        check_map(state)
+    return state.violations()
 
 
 def check(array: MainArray) -> list[Violation]:
@@ -35,6 +53,7 @@ def check(array: MainArray) -> list[Violation]:
         state = State(array)
         check_memory(state)
         check_pointers(state)
+        check_codes(state)
         check_map(state)
         check_numbers(state)
         shapes = outlines(state)
@@ -44,4 +63,4 @@ def check(array: MainArray) -> list[Violation]:
             check_contacts(state, shapes, touching)
             check_places(state, shapes, touching)
             check_complete(state, shapes, touching)
-    return sorted(dict.fromkeys(state.found), key=lambda violation: violation.invariant)
+    return state.violations()

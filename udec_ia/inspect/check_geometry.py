@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from offsets import generated
-from udec_ia.inspect.check_groups import TABLE, Numbers, State, names
+from udec_ia.inspect.check_groups import TABLE, Numbers, State
 from udec_ia.inspect.check_map import AHEAD
 from udec_ia.kernels.shape import FLAT
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
@@ -159,17 +159,23 @@ def check_numbers(state: State) -> None:
             for row in np.flatnonzero(bad):
                 number = 9 if field.name in FORCE_SUMS else 7
                 state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
-        for name in set(MATERIALS) & set(names(kind, "data")):
-            material = state.column(kind, name)
-            count = next(field.count for field in TABLE.common if field.name == "AKN")
-            for row in np.flatnonzero((material < 1) | (material > count)):
-                state.report(7, f"{name} of {kind}@{addresses[row]} is {material[row]}, not 1 to {count}")
     for field in TABLE.common:
         if field.real:
             at = getattr(generated, field.name)
             for i in np.flatnonzero(~np.isfinite(state.h.cr[at : at + field.count])):
                 element = f"({i + 1})" if field.count > 1 else ""
                 state.report(7, f"{field.name}{element} is {state.h.cr[at + i]}")
+
+
+def check_codes(state: State) -> None:
+    """Invariant 2: material numbers and contact codes are those that the compiled routines know."""
+    materials = next(field.count for field in TABLE.common if field.name == "AKN")
+    for kind, addresses in state.address.items():
+        for name in (field.name for field in TABLE.group(kind).fields if field.name in (*MATERIALS, "KCCOD")):
+            most = materials if name in MATERIALS else VIRTUAL
+            values = state.column(kind, name)
+            for row in np.flatnonzero((values < 1) | (values > most)):
+                state.report(2, f"{name} of {kind}@{addresses[row]} is {values[row]}, not 1 to {most}")
 
 
 def check_outlines(state: State, o: Outlines) -> None:
@@ -238,13 +244,10 @@ class Touches:
 
 def touches(state: State, o: Outlines) -> Touches:
     """The real contacts whose code and corners are sound, with the overlap that the outlines give."""
-    contacts = state.address["contact"]
     index = np.full(len(state.address["corner"]) + 1, -1)  # one more, for row -1
     index[state.rows("corner", o.corner)] = np.arange(len(o.corner))
     code = state.column("contact", "KCCOD")
     ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
-    for row in np.flatnonzero((code < CORNER_CORNER) | (code > VIRTUAL)):
-        state.report(7, f"KCCOD of contact@{contacts[row]} is {code[row]}, not 1 to {VIRTUAL}")
     comparable = (code >= CORNER_CORNER) & (code < VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
     at = np.flatnonzero(comparable)
     code, i, j = code[at], ends[0][at], ends[1][at]

@@ -86,6 +86,10 @@ class State:
         """Add a violation."""
         self.found.append(Violation(invariant, message))
 
+    def violations(self) -> list[Violation]:
+        """What was found, each violation once, in the order of the invariants."""
+        return sorted(dict.fromkeys(self.found), key=lambda violation: violation.invariant)
+
     def common(self, name: str) -> int:
         """An integer of the common block."""
         return int(self.h.ci[getattr(generated, name)])

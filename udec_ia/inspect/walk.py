@@ -33,8 +33,12 @@ from offsets.generated import (
     MFREE,
     MRIG,
     MSDEF,
+    NVBL,
+    NVCN,
+    NVCR,
+    NVDO,
 )
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
 
 LISTS: dict[str, tuple[int, Offset]] = {
     "block": (IBPNT, KB),
@@ -49,16 +53,21 @@ HEADS: dict[str, tuple[int, ...]] = {
 }
 
 
+SIZES: dict[str, Offset] = {"block": NVBL, "corner": NVCR, "contact": NVCN, "domain": NVDO}
+
+
 class Unsound(Exception):
     """The heap contradicts itself; the message names both ends of the broken relation."""
 
 
 def kind_of(h: Memory, iad: int) -> str | None:
     """Kind of the group at `iad` by its head code; None if the code is none of the known ones."""
-    if not 1 <= iad < h.ci[MFREE]:
+    end = min(int(h.ci[MFREE]) - 1, len(h.ia))
+    if not 1 <= iad <= end:
         return None
     code = iget(h, iad, HEAD)
-    return next((kind for kind, codes in HEADS.items() if code in codes), None)
+    kind = next((kind for kind, codes in HEADS.items() if code in codes), None)
+    return kind if kind is not None and iad + size_of(h, SIZES[kind]) - 1 <= end else None
 
 
 def expect(h: Memory, iad: int, kinds: tuple[str, ...], source: str) -> int:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
-from udec_ia.heap.accessors import Memory, getr, iget
+from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import corner_of, is_corner, next_corner, prevcp
@@ -64,7 +64,7 @@ def opens_on_arc(h: Memory, ib: int, ic: int) -> bool:
 
     A virtual contact stands nowhere: what counts is the item before it.
     """
-    item = np.int64(ic)
+    item = int64(ic)
     while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
         item = prevcp(h, ib, item)
     return not is_corner(h, item) and on_arc(h, ib, item)

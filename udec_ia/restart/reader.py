@@ -20,13 +20,11 @@ from offsets.generated import MFREE, MTOP
 from offsets.table import Table, TableError, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
-from udec_ia.inspect.check import check
-from udec_ia.inspect.table import table
+from udec_ia.inspect.check import check_links
 from udec_ia.restart.layout import common_places, differences
 from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
-LINKS = 6  # invariants up to this number are about lists and pointers, those above it about the physics
 SHOWN = 3  # differences or violations that a refusal lists
 
 
@@ -176,18 +174,6 @@ def _check_heap(array: MainArray) -> None:
     Compiled routines follow both without a further test. Forces and overlaps that have run away are
     taken: such a state is there to be looked at.
     """
-    faults = [violation.message for violation in check(array) if violation.invariant <= LINKS]
-    if not faults:
-        faults = _wrong_materials(array)
+    faults = [violation.message for violation in check_links(array)]
     if faults:
         raise RefusedError(f"holds an unsound heap: {shorten(faults)}")
-
-
-def _wrong_materials(array: MainArray) -> list[str]:
-    count = next(field.count for field in read_table().common if field.name == "AKN")
-    faults = []
-    for kind, name in (("block", "KMAT"), ("contact", "KCM")):
-        rows = table(array, kind)
-        wrong = rows[(rows[name] < 1) | (rows[name] > count)]
-        faults += [f"{name} of {kind}@{row['address']} is {row[name]}, not 1 to {count}" for row in wrong]
-    return faults
