@@ -43,7 +43,7 @@ def source_digest() -> str:
 CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}"
 
 
-def kernel(function: F) -> F:
+def kernel(function: F, inline: bool = False) -> F:
     """Compile `function` on first use, for the word scheme of the arrays it is called with.
 
     No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
@@ -52,9 +52,14 @@ def kernel(function: F) -> F:
     kept = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE)
     try:
-        return cast(F, numba.njit(cache=True, error_model="numpy")(function))
+        return cast(F, numba.njit(cache=True, error_model="numpy", forceinline=inline)(function))
     finally:
         config.CACHE_DIR = kept
+
+
+def inlined(function: F) -> F:
+    """A kernel that becomes a part of its callers: for what the cycle does once for every contact."""
+    return kernel(function, inline=True)
 
 
 def is_cached() -> bool:

@@ -43,7 +43,7 @@ from offsets.generated import (
     NVIRT,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.lists import (
     dellst,
@@ -129,7 +129,7 @@ def losec(h: Memory, ic: int) -> None:
     h.ci[NCON] -= 1
 
 
-@kernel
+@inlined
 def no_force(h: Memory, ic: int) -> None:
     """Contact `ic` carries no force and remembers no sliding."""
     zero = real(h, 0.0)

@@ -86,7 +86,7 @@ def relative_velocity(h: Memory, idm: int) -> float:
 
 @kernel
 def accumulate(h: Memory, fastest: float) -> bool:
-    """Sum the fictitious displacements of one step; False while the pass can wait.
+    """Sum the fictitious displacements of one step; True if a domain is to be updated.
 
     fastest: a bound on the velocity of any point of any block in this step.
     """
@@ -96,13 +96,16 @@ def accumulate(h: Memory, fastest: float) -> bool:
     if waiting + bound < h.cr[HTOL]:
         h.cr[UPEND] = waiting + bound
         return False
+    most = real(h, 0.0)
     idm = h.ci[IDPNT]
     while idm != 0:
         moved = relative_velocity(h, idm) * dt
-        putr(h, idm, KUMAX, getr(h, idm, KUMAX) + waiting + moved)
+        umax = getr(h, idm, KUMAX) + waiting + moved
+        putr(h, idm, KUMAX, umax)
+        most = max(most, umax)
         if moved > h.cr[ETOL] + h.cr[ETOL] and h.ci[NERR] == 0:
             h.ci[NERR] = TOO_FAST
             h.ci[IERAD] = idm
         idm = iget(h, idm, KD)
     h.cr[UPEND] = real(h, 0.0)
-    return True
+    return bool(most > h.cr[ETOL])

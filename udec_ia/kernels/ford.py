@@ -57,7 +57,7 @@ from offsets.generated import (
     WFRIC,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.reclass import settle
@@ -123,7 +123,7 @@ def drop(h: Memory, ic: int, overlap: float) -> bool:
     return False
 
 
-@kernel
+@inlined
 def putfce(h: Memory, ib: int, fx: float, fy: float, x: float, y: float) -> None:
     """Add the force (fx, fy) that acts at (x, y) to the force sums of block `ib` (PUTFCE)."""
     putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
@@ -132,7 +132,7 @@ def putfce(h: Memory, ib: int, fx: float, fy: float, x: float, y: float) -> None
     putr(h, ib, KBFT, getr(h, ib, KBFT) + moment)
 
 
-@kernel
+@inlined
 def cvel(h: Memory, ic: int) -> tuple[float, float]:
     """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL)."""
     ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
@@ -148,16 +148,16 @@ def cvel(h: Memory, ic: int) -> tuple[float, float]:
     return xd, yd
 
 
-@kernel
+@inlined
 def ford(h: Memory, ic: int) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it."""
     before = getr(h, ic, KCN)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, KCN, overlap)
-    if drop(h, ic, overlap):
+    zero = real(h, 0.0)
+    if (overlap <= zero or getr(h, ic, KCFN) == zero) and drop(h, ic, overlap):
         return
     xd, yd = cvel(h, ic)
-    zero = real(h, 0.0)
     if overlap <= zero:
         no_force(h, ic)
         return
@@ -227,7 +227,7 @@ def sum_all_forces(h: Memory) -> None:
     ic = h.ci[ICPNT]
     while ic != 0:
         if getr(h, ic, KCFN) != zero:
-            nx, ny, _ = coord(h, ic)
+            nx, ny, _, _ = coord(h, ic)
             fn, fs = getr(h, ic, KCFN), getr(h, ic, KCFS)
             fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
             x, y = getr(h, ic, KXC), getr(h, ic, KYC)

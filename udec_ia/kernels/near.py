@@ -142,7 +142,7 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
         had = _has_contact(h, jb, jp, ip, iarc)
     if had:
         return 0, zero
-    _, _, _, x, y = meet(h, code, ip, jp)
+    _, _, _, x, y, _ = meet(h, code, ip, jp)
     if _one_beside(h, ib, seg[i, ITEM], jb, x, y) or _one_beside(h, jb, seg[j, ITEM], ib, x, y):
         return 0, zero
     wrong = max(

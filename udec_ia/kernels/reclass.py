@@ -30,7 +30,7 @@ from offsets.generated import (
     NSHORT,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, puti
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.lists import (
     corner_of,
     is_corner,
@@ -173,10 +173,12 @@ def reclass(h: Memory, ic: int) -> bool:
     return changed or (h.ci[NSHORT] != 0 and _roll(h, ic, ib, ip, -ex, -ey))
 
 
-@kernel
+@inlined
 def settle(h: Memory, ic: int) -> tuple[float, float, float]:
     """Code, place and coordinates of contact `ic` as its geometry asks; normal (x, y) and overlap."""
+    nx, ny, overlap, margin = coord(h, ic)
     for _ in range(RECLASSIFICATIONS):
-        if not reclass(h, ic):
+        if (margin >= 0 and h.ci[NSHORT] == 0) or not reclass(h, ic):
             break
-    return coord(h, ic)
+        nx, ny, overlap, margin = coord(h, ic)
+    return nx, ny, overlap

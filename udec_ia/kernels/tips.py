@@ -86,7 +86,7 @@ def _stands_in(h: Memory, ib: int, ip: int, ax: float, ay: float, bx: float, by:
 @kernel
 def blocked(h: Memory, seg: Any, tips: Any, ib: int, jb: int, code: int, ip: int, jp: int) -> bool:
     """True if a tip of a third block stands in the gap between segment `ip` of `ib` and `jp` of `jb`."""
-    nx, ny, overlap, x, y = meet(h, code, ip, jp)
+    nx, ny, overlap, x, y, _ = meet(h, code, ip, jp)
     if not overlap < 0:
         return False
     half = overlap * real(h, 0.5)

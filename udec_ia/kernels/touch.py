@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from offsets.generated import DTOL, KCCOD, KCN, KCP1, KCP2, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
+from offsets.generated import DTOL, GTOL, KCCOD, KCN, KCP1, KCP2, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.shape import zcs
 
 CORNER_CORNER = 1
@@ -25,7 +25,7 @@ EDGE_CORNER = 3
 VIRTUAL = 4
 
 
-@kernel
+@inlined
 def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     """Corner `ip` against the edge that ends at corner `iq` (CE).
 
@@ -38,7 +38,7 @@ def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     return -s, c, getr(h, ip, KRAD) - (y * c - x * s), x * c + y * s, z
 
 
-@kernel
+@inlined
 def cc(h: Memory, ip: int, iq: int) -> tuple[float, float, float]:
     """Corner `ip` of block KB1 against corner `iq` of block KB2 (CC): normal (x, y) and overlap."""
     dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
@@ -46,7 +46,7 @@ def cc(h: Memory, ip: int, iq: int) -> tuple[float, float, float]:
     return dx / z, dy / z, getr(h, ip, KRAD) + getr(h, iq, KRAD) - z
 
 
-@kernel
+@inlined
 def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
 
@@ -62,40 +62,48 @@ def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     return (along - across) / mm, (along + across) / mm
 
 
-@kernel
+@inlined
 def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[float, float]:
     """Contact point of corner `ip`, whose circle touches something in direction (nx, ny)."""
     reach = getr(h, ip, KRAD) - overlap * real(h, 0.5)
     return getr(h, ip, KXCP) + nx * reach, getr(h, ip, KYCP) + ny * reach
 
 
-@kernel
-def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float]:
-    """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2."""
+@inlined
+def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
+    """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2.
+
+    The last number is the margin of the code: below zero, the normal has left an arc or the contact
+    point has left the straight part of an edge, and the contact may have to be re-classified.
+    """
     if code == CORNER_CORNER:
         nx, ny, overlap = cc(h, ip, iq)
         x, y = point_on(h, ip, nx, ny, overlap)
+        dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
+        margin = h.cr[GTOL] - max(max(lean(h, ip, dx, dy)), max(lean(h, iq, -dx, -dy)))
     elif code == CORNER_EDGE:
-        ex, ey, overlap, _, _ = ce(h, ip, iq)
+        ex, ey, overlap, along, z = ce(h, ip, iq)
         nx, ny = -ex, -ey
         x, y = point_on(h, ip, nx, ny, overlap)
+        margin = min(along, z - along) - (h.cr[DTOL] - h.cr[GTOL])
     else:
-        nx, ny, overlap, _, _ = ce(h, iq, ip)
+        nx, ny, overlap, along, z = ce(h, iq, ip)
         x, y = point_on(h, iq, -nx, -ny, overlap)
-    return nx, ny, overlap, x, y
+        margin = min(along, z - along) - (h.cr[DTOL] - h.cr[GTOL])
+    return nx, ny, overlap, x, y, margin
 
 
-@kernel
-def coord(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Update the coordinates of contact `ic` (COORD); returns normal (x, y) and overlap."""
-    nx, ny, overlap, x, y = meet(h, iget(h, ic, KCCOD), iget(h, ic, KCP1), iget(h, ic, KCP2))
+@inlined
+def coord(h: Memory, ic: int) -> tuple[float, float, float, float]:
+    """Update the coordinates of contact `ic` (COORD); returns normal (x, y), overlap and margin."""
+    nx, ny, overlap, x, y, margin = meet(h, iget(h, ic, KCCOD), iget(h, ic, KCP1), iget(h, ic, KCP2))
     putr(h, ic, KXC, x)
     putr(h, ic, KYC, y)
-    return nx, ny, overlap
+    return nx, ny, overlap, margin
 
 
 @kernel
 def begin(h: Memory, ic: int) -> None:
     """Coordinates of contact `ic`, and its overlap as the one that force increments count from."""
-    _, _, overlap = coord(h, ic)
+    _, _, overlap, _ = coord(h, ic)
     putr(h, ic, KCN, overlap)
