@@ -126,11 +126,11 @@ def test_errors_of_the_model_point_at_the_parameter_to_blame(line: str, number: 
     assert error.advice
 
 
-def test_a_file_that_cannot_be_written_is_error_29() -> None:
+def test_a_file_that_cannot_be_written_is_error_31() -> None:
     model = Recorder()
     model.failures["save"] = PermissionError(13, "Permission denied", "run.h5")
     _, error = refused("START\nSAVE run.h5", model)
-    assert (error.number, error.column) == (29, 6)
+    assert (error.number, error.column) == (31, 6)
     assert "Permission denied: run.h5" in error.message
 
 

@@ -37,8 +37,7 @@ MESSAGES = {
     28: "value out of range",
     29: "restart file cannot be used",
     30: "address outside the main array",
-    31: "blocks move too fast for the rounding length",
-    32: "file cannot be written",
+    31: "file cannot be written",
 }
 
 

@@ -42,8 +42,7 @@ ADVICE = {
     28: "HELP and the name of the command show what it takes",
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
-    31: "take a smaller FRACTION or a greater ROUND",
-    32: "check that the folder exists and can be written to",
+    31: "check that the folder exists and can be written to",
 }
 
 
@@ -61,7 +60,7 @@ BLAME = {
     25: ("zones",),
     28: ("d", "f", "s", "n"),
     29: ("path",),
-    32: ("path",),
+    31: ("path",),
     30: ("ia", "n"),
 }
 

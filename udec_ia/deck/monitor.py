@@ -73,7 +73,7 @@ class Monitor:
         except BrokenPipeError:
             raise
         except OSError as error:
-            refused = UdecError(32, f"{error.strerror or error}: {error.filename or call.command.name}")
+            refused = UdecError(31, f"{error.strerror or error}: {error.filename or call.command.name}")
             raise at(refused, place_of(refused, call.places, call.head)) from error
         self._show(result)
         self.model.deck_log += [

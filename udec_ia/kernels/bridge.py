@@ -201,6 +201,17 @@ def loop_area(h: Memory, iad: int, ib: int) -> float:
 
 
 @kernel
+def is_outline(h: Memory, iad: int, ib: int) -> bool:
+    """True if the loop through (iad, ib) runs around block `ib` and what hangs together with it.
+
+    False if it bounds a space between blocks. A space may be a mere crack whose area has either sign; an
+    outline has at least the area of the block, and it is negative.
+    """
+    area, _, _, _ = geo(h, ib)
+    return loop_area(h, iad, ib) < -area * real(h, 0.5)
+
+
+@kernel
 def cut_domain(h: Memory, ic: int, idm: int) -> int:
     """Contact `ic` has just been put across domain `idm`: split it (BRIDGE). Returns the new domain."""
     idnew = maked(h)
@@ -208,10 +219,8 @@ def cut_domain(h: Memory, ic: int, idm: int) -> int:
     relabel(h, ic, block, idnew)
     puti(h, idnew, KDLOOP, ic)
     puti(h, idm, KDLOOP, ic)
-    if idm == h.ci[IODPNT]:
-        area, _, _, _ = geo(h, block)
-        if loop_area(h, ic, block) < -area * real(h, 0.5):
-            h.ci[IODPNT] = idnew
+    if idm == h.ci[IODPNT] and is_outline(h, ic, block):
+        h.ci[IODPNT] = idnew
     return idnew
 
 

@@ -36,6 +36,7 @@ from offsets.generated import (
     KYP,
     LROUND,
     MCTOT,
+    NBLK,
     NBROKE,
     NSHORT,
     NVBL,
@@ -75,15 +76,19 @@ def enter_box(h: Memory, ib: int, box: Any) -> None:
 
 @kernel
 def enter_boxes(h: Memory, boxes: Any, blocks: Any) -> int:
-    """Fill `boxes` and `blocks` from the block list; returns the number of blocks."""
-    n = 0
+    """Fill `boxes` and `blocks` from the block list, the last block first; returns the number of blocks.
+
+    New blocks come to the head of the list: the rows are in the order in which the blocks were made, and
+    that is the order in which they are cut, whether the boxes were kept or are entered anew.
+    """
+    row = h.ci[NBLK]
     ib = h.ci[IBPNT]
     while ib != 0:
-        enter_box(h, ib, boxes[n])
-        blocks[n] = ib
-        n += 1
+        row -= 1
+        enter_box(h, ib, boxes[row])
+        blocks[row] = ib
         ib = iget(h, ib, KB)
-    return n
+    return h.ci[NBLK]
 
 
 @kernel
@@ -214,6 +219,10 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
     first = n
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 2 * size_of(h, NVCN) + size_of(h, NVDO)
+    if n + found > len(blocks):
+        return NO_BOXES, n
+    if not room(h, need * found):  # for the whole line, so that it is rarely begun again half-way
+        return NO_MEMORY, n
     for r in range(found):
         row, following = rows[r], n
         while True:

@@ -7,8 +7,10 @@ may have come near enough to touch, and the domain is updated.
 A contact point counts with the velocities of both its blocks: any point of a domain's boundary then moves
 no faster than two points that were looked at, and no contact can be missed.
 
-A relative displacement of more than 2 ETOL in one step is an error: two blocks could then go from a gap
-of ATOL to an overlap of more than CTOL in it, and no contact between them would ever be formed.
+A domain is updated already when the sum would exceed ETOL in the next step, so that what is nearly near
+enough is not passed in one long step. A relative displacement of more than 2 ETOL in one step is an error:
+two blocks could then go from a gap of ATOL to an overlap of more than CTOL in it, and no contact between
+them would ever be formed.
 
 While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
 block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
@@ -50,7 +52,7 @@ from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.segments import loop_start
 from udec_ia.kernels.touch import VIRTUAL
 
-TOO_FAST = 31
+OVERLAP_TOO_GREAT = 15
 
 
 @kernel
@@ -101,10 +103,12 @@ def accumulate(h: Memory, fastest: float) -> bool:
     while idm != 0:
         moved = relative_velocity(h, idm) * dt
         umax = getr(h, idm, KUMAX) + waiting + moved
+        if umax + moved > h.cr[ETOL]:
+            umax += moved
         putr(h, idm, KUMAX, umax)
         most = max(most, umax)
         if moved > h.cr[ETOL] + h.cr[ETOL] and h.ci[NERR] == 0:
-            h.ci[NERR] = TOO_FAST
+            h.ci[NERR] = OVERLAP_TOO_GREAT
             h.ci[IERAD] = idm
         idm = iget(h, idm, KD)
     h.cr[UPEND] = real(h, 0.0)

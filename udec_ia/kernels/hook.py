@@ -41,8 +41,8 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import (
     cut_domain,
+    is_outline,
     left_is_shorter,
-    loop_area,
     makec,
     nextd,
     no_force,
@@ -131,9 +131,7 @@ def lies_in(h: Memory, iad: int, ib: int, jb: int) -> bool:
     """True if block `jb` lies in the region bounded by the loop through (iad, ib)."""
     ip = iget(h, jb, KP)
     turns = winding(h, iad, ib, getr(h, ip, KXP), getr(h, ip, KYP))
-    if loop_area(h, iad, ib) > 0:
-        return turns > 0
-    return turns == 0
+    return turns == 0 if is_outline(h, iad, ib) else turns > 0
 
 
 @kernel

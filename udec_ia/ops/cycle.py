@@ -33,6 +33,7 @@ from offsets.generated import (
     KXC,
     KYC,
     MCTOT,
+    MDOM,
     NBLK,
     NCON,
     NCYC,
@@ -40,11 +41,10 @@ from offsets.generated import (
     TDEL,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget
+from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
 from udec_ia.kernels.cycle import run_cycles
-from udec_ia.kernels.domains import TOO_FAST
 from udec_ia.ops.memory import find_room
 from udec_ia.ops.rounding import check_all_edges, settle_default
 
@@ -142,10 +142,10 @@ def _raise_error(array: MainArray) -> None:
         return
     group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
-    if number == TOO_FAST:
+    if iget(h, group, HEAD) == MDOM:
         detail = (
-            f"around domain@{group} they approach by more than {2 * h.cr[ETOL]:g} in cycle "
-            f"{int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s"
+            f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} in cycle "
+            f"{int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact to be formed in time"
         )
         raise UdecError(number, detail, "take a smaller FRACTION or a greater ROUND", group=group)
     m = iget(h, group, KCM)
