@@ -38,6 +38,7 @@ from offsets.generated import (
     NVCR,
     NVDO,
 )
+from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
 
 LISTS: dict[str, tuple[int, Offset]] = {
@@ -56,8 +57,11 @@ HEADS: dict[str, tuple[int, ...]] = {
 SIZES: dict[str, Offset] = {"block": NVBL, "corner": NVCR, "contact": NVCN, "domain": NVDO}
 
 
-class Unsound(Exception):
-    """The heap contradicts itself; the message names both ends of the broken relation."""
+class Unsound(UdecError):
+    """Error 20: the heap contradicts itself; the message names both ends of the broken relation."""
+
+    def __init__(self, relation: str) -> None:
+        super().__init__(20, relation, "the main array is damaged: look at the last RSET")
 
 
 def kind_of(h: Memory, iad: int) -> str | None:

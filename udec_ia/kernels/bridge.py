@@ -31,7 +31,9 @@ from offsets.generated import (
     KDLOOP,
     KMAT,
     KUMAX,
+    KXC,
     KXP,
+    KYC,
     KYP,
     MCON,
     MDOM,
@@ -181,7 +183,7 @@ def left_is_shorter(h: Memory, ic: int) -> bool:
 def loop_area(h: Memory, iad: int, ib: int) -> float:
     """Area inside the loop through (iad, ib); negative if the loop is the outline of the whole map.
 
-    Only corners count: contacts lie next to them, and a loop of contacts alone has no area to speak of.
+    The loop is taken through its corners and contact points, virtual contacts stand nowhere.
     """
     twice = real(h, 0.0)
     fx, fy = twice, twice  # first corner of the loop
@@ -189,8 +191,11 @@ def loop_area(h: Memory, iad: int, ib: int) -> float:
     first = True
     item, block = int64(iad), int64(ib)
     while True:
-        if is_corner(h, item):
-            bx, by = getr(h, item, KXP), getr(h, item, KYP)
+        if is_corner(h, item) or iget(h, item, KCCOD) != VIRTUAL:
+            if is_corner(h, item):
+                bx, by = getr(h, item, KXP), getr(h, item, KYP)
+            else:
+                bx, by = getr(h, item, KXC), getr(h, item, KYC)
             if first:
                 fx, fy, ax, ay, first = bx, by, bx, by, False
             twice += (ax - fx) * (by - fy) - (bx - fx) * (ay - fy)

@@ -37,6 +37,8 @@ from offsets.generated import (
     KCFS,
     KCM,
     KCN,
+    KCP1,
+    KCP2,
     KCS,
     KD1,
     KD2,
@@ -62,9 +64,11 @@ from udec_ia.kernels.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.segments import ahead_by, on_arc, same_segment
-from udec_ia.kernels.touch import VIRTUAL, coord
+from udec_ia.kernels.touch import CORNER_CORNER, EDGE_CORNER, VIRTUAL, ce, coord, faces
 
 OVERLAP_TOO_GREAT = 15
+
+TURNED = 0.3  # sine of the angle; a little more than near.FACING, so that contacts do not come and go
 
 
 @kernel
@@ -106,21 +110,40 @@ def overtaken(h: Memory, ic: int, gap: float) -> bool:
 
 
 @kernel
+def turned_away(h: Memory, ic: int) -> bool:
+    """True if the arc of a corner on an edge has turned away from it by more than TURNED.
+
+    The circle of a blunt corner reaches far beyond its arc, even beyond its block.
+    """
+    code = iget(h, ic, KCCOD)
+    if code == CORNER_CORNER:
+        return False
+    ip, iq = iget(h, ic, KCP1), iget(h, ic, KCP2)
+    if code == EDGE_CORNER:
+        ip, iq = iq, ip
+    ex, ey, _, _, _ = ce(h, ip, iq)
+    return not faces(h, ip, -ex, -ey, real(h, TURNED))
+
+
+@kernel
 def drop(h: Memory, ic: int, overlap: float) -> bool:
-    """Delete contact `ic`, or make it virtual, if it is open too far, overtaken, or idle beside a twin."""
+    """Delete contact `ic` if it is open too far, turned away or overtaken, or idle beside a twin.
+
+    A bridge of the map becomes virtual instead; beside a twin it stays.
+    """
     if overlap > 0 and getr(h, ic, KCFN) != 0:
         return False
-    if overlap >= -h.cr[BTOL] and not has_twin(h, ic) and (overlap > 0 or not overtaken(h, ic, -overlap)):
-        return False
-    if iget(h, ic, KD1) != iget(h, ic, KD2):
-        delc(h, ic)
-        h.ci[NBROKE] += 1
-        return True
-    if overlap < -h.cr[BTOL]:
+    is_bridge = iget(h, ic, KD1) == iget(h, ic, KD2)
+    if overlap >= -h.cr[BTOL]:
+        gone = overlap <= 0 and (turned_away(h, ic) or overtaken(h, ic, -overlap))
+        if not gone and (is_bridge or not has_twin(h, ic)):
+            return False
+    h.ci[NBROKE] += 1
+    if is_bridge:
         to_virtual(h, ic)
-        h.ci[NBROKE] += 1
-        return True
-    return False
+    else:
+        delc(h, ic)
+    return True
 
 
 @inlined

@@ -30,6 +30,7 @@ from offsets.generated import (
     KD2,
     KMAT,
     KP,
+    KR,
     KXC,
     KXP,
     KYC,
@@ -49,7 +50,8 @@ from udec_ia.kernels.bridge import (
     relabel,
 )
 from udec_ia.kernels.lists import insert_after, is_corner, prevcp, take_out
-from udec_ia.kernels.touch import VIRTUAL, begin
+from udec_ia.kernels.segments import not_virtual
+from udec_ia.kernels.touch import begin
 
 MINE = 2  # column of the pieces
 
@@ -68,15 +70,6 @@ def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> Non
     puti(h, ic, KB2, jb)
     insert_after(h, ib, iad, ic)
     insert_after(h, jb, jad, ic)
-
-
-@kernel
-def not_virtual(h: Memory, ib: int, iad: int) -> int:
-    """Item `iad` of block `ib`, or the nearest one before it that is not a virtual contact."""
-    item = int64(iad)
-    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
-        item = prevcp(h, ib, item)
-    return item
 
 
 @kernel
@@ -130,7 +123,9 @@ def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
 def lies_in(h: Memory, iad: int, ib: int, jb: int) -> bool:
     """True if block `jb` lies in the region bounded by the loop through (iad, ib)."""
     ip = iget(h, jb, KP)
-    turns = winding(h, iad, ib, getr(h, ip, KXP), getr(h, ip, KYP))
+    iq = iget(h, ip, KR)  # the middle of an edge: a tip may stick into another block
+    x, y = getr(h, ip, KXP) + getr(h, iq, KXP), getr(h, ip, KYP) + getr(h, iq, KYP)
+    turns = winding(h, iad, ib, x * real(h, 0.5), y * real(h, 0.5))
     return turns == 0 if is_outline(h, iad, ib) else turns > 0
 
 

@@ -34,9 +34,19 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
-from udec_ia.kernels.segments import ARC, BLOCK, CORNER, ITEM, ahead_by, on_arc, same_segment
+from udec_ia.kernels.segments import (
+    ARC,
+    BLOCK,
+    CORNER,
+    ITEM,
+    ahead_by,
+    next_not_virtual,
+    not_virtual,
+    on_arc,
+    same_segment,
+)
 from udec_ia.kernels.tips import blocked
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, lean, meet
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, faces, lean, meet
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 AROUND = 6  # items looked at on either side for a contact of the same two blocks
@@ -54,8 +64,7 @@ def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
     high = h.cr[DTOL] if getr(h, iq, KRAD) > 0 else zero
     if along < low or along > z - high:
         return False, overlap
-    ahead, behind = lean(h, ip, -ex, -ey)
-    return max(ahead, behind) <= real(h, FACING), overlap
+    return faces(h, ip, -ex, -ey, real(h, FACING)), overlap
 
 
 @kernel
@@ -106,9 +115,9 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
 def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: float) -> float:
     """By how much the point (x, y) lies outside the exposure of a segment that follows item `iad`."""
     worst = real(h, 0.0)
-    after = nextcp(h, ib, iad)
-    if same_segment(h, ib, iad, ip, arc):
-        worst = max(worst, ahead_by(h, ib, ip, iad, x, y))
+    before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
+    if same_segment(h, ib, before, ip, arc):
+        worst = max(worst, ahead_by(h, ib, ip, before, x, y))
     if same_segment(h, ib, after, ip, arc):
         worst = max(worst, -ahead_by(h, ib, ip, after, x, y))
     return worst

@@ -22,7 +22,7 @@ from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KR, KRAD, KXC, KXCP,
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
-from udec_ia.kernels.lists import corner_of, is_corner, next_corner, prevcp
+from udec_ia.kernels.lists import corner_of, is_corner, next_corner, nextcp, prevcp
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
@@ -59,14 +59,30 @@ def ahead_by(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
 
 
 @kernel
+def not_virtual(h: Memory, ib: int, iad: int) -> int:
+    """Item `iad` of block `ib`, or the nearest one before it that is not a virtual contact."""
+    item = int64(iad)
+    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
+        item = prevcp(h, ib, item)
+    return item
+
+
+@kernel
+def next_not_virtual(h: Memory, ib: int, iad: int) -> int:
+    """The nearest item after item `iad` of block `ib` that is not a virtual contact."""
+    item = nextcp(h, ib, iad)
+    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
+        item = nextcp(h, ib, item)
+    return item
+
+
+@kernel
 def opens_on_arc(h: Memory, ib: int, ic: int) -> bool:
     """True if the exposure of block `ib` after contact `ic` begins on an arc, False if on an edge.
 
     A virtual contact stands nowhere: what counts is the item before it.
     """
-    item = int64(ic)
-    while not is_corner(h, item) and iget(h, item, KCCOD) == VIRTUAL:
-        item = prevcp(h, ib, item)
+    item = not_virtual(h, ib, ic)
     return not is_corner(h, item) and on_arc(h, ib, item)
 
 

@@ -62,6 +62,16 @@ def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     return (along - across) / mm, (along + across) / mm
 
 
+@kernel
+def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
+    """True if the unit vector (x, y) leans over neither end of the arc of corner `ip` by more than `slack`.
+
+    Opposite to a blunt arc a vector leans a little over both ends: it does not face the arc at all.
+    """
+    ahead, behind = lean(h, ip, x, y)
+    return max(ahead, behind) <= slack and min(ahead, behind) <= 0
+
+
 @inlined
 def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[float, float]:
     """Contact point of corner `ip`, whose circle touches something in direction (nx, ny)."""

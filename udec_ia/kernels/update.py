@@ -31,9 +31,18 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.bridge import bridge
-from udec_ia.kernels.hook import cut_among_pieces, not_virtual, rehook
+from udec_ia.kernels.hook import cut_among_pieces, rehook
 from udec_ia.kernels.near import search
-from udec_ia.kernels.segments import BLOCK, COLUMNS, ITEM, PIECE, collect, count_items, settle_loop
+from udec_ia.kernels.segments import (
+    BLOCK,
+    COLUMNS,
+    ITEM,
+    PIECE,
+    collect,
+    count_items,
+    not_virtual,
+    settle_loop,
+)
 from udec_ia.kernels.tips import find_tips, give_up_blocked
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
