@@ -45,6 +45,7 @@ from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
 from udec_ia.kernels.cycle import run_cycles
+from udec_ia.ops.arrange import arrange
 from udec_ia.ops.memory import find_room
 from udec_ia.ops.rounding import check_all_edges, settle_default
 
@@ -64,6 +65,7 @@ def prepare(array: MainArray) -> None:
     if h.ci[MCTOT] == 0:
         make_masses(h)
     settle_default(array)
+    arrange(array)
     h = array.h
     check_all_edges(array, float(h.cr[DTOL]))
     h.cr[TDEL] = h.cr[FRAC] * critical_step(array)
