@@ -1,0 +1,393 @@
+"""Fuzzing: random and mutated decks, and mutated restart files, must end in a result or in a numbered error.
+
+    python tools/fuzz.py --decks 20000 --files 20000 --seconds 600 --seed 1
+
+Any other exception, a crash, a hang, or a heap whose links contradict each other is a failure; an RSET may
+of course damage a heap. Case k of seed s is always the same. Cases run in processes of their own, a few
+hundred to each, so that a crash costs one case; failures are printed with the case's number, and
+`--show decks 17 --seed 1` prints case 17. The exit status is 1 if anything failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from offsets.generated import MFREE
+from udec_ia.deck.language import COMMANDS, required
+from udec_ia.deck.monitor import Monitor
+from udec_ia.deck.reader import Statement, statements
+from udec_ia.errors import UdecError
+from udec_ia.model import RESTART_FILE, Model
+from udec_ia.restart import save
+
+BATCH = 250  # cases to a process
+FIRST_CASE, NEXT_CASE = 600.0, 60.0  # seconds of silence after which a process hangs; the first case compiles
+MOST_CYCLES = 20
+MOST_COMMANDS = 40
+LINKS = 6  # invariants up to this number are about links
+ORDER = 3  # the one of them that overlaps too great may break
+UNTIDY = 15  # the error that leaves blocks deeper in each other than any contact can be
+Rng = np.random.Generator
+
+NUMBERS = [
+    *(
+        "0",
+        "-0",
+        "1",
+        "-1",
+        "2",
+        "3",
+        "5",
+        "10",
+        "0.5",
+        ".5",
+        "5.",
+        "+3",
+        "--3",
+        "1E-3",
+        "1.E08",
+        "1d5",
+        "1e",
+    ),
+    *("1e308", "-1e308", "1e-320", "1e400", "nan", "inf", "-inf", "999999999999999999999", "1.2.3", "0x10"),
+    *("2147483647", "-2147483648", "32768", "12abc", "\u00bd", "\u0663"),
+]
+START = """START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
+PROP MAT=2 DENS=1000 KN=2E8 KS=1E8 F=0
+BLOCK 0,0 0,4 6,4 6,0
+SPLIT -1 1 7 1
+SPLIT -1 2 7 2
+SPLIT 2 1 2 4
+SPLIT 4 1 4 4
+FIX 0 6 0 1
+GRAVITY 0 -10""".splitlines()
+
+
+class Tame(Model):
+    """A model that cycles a little only, and keeps its files in its folder and its pictures to itself."""
+
+    damaged = False  # an RSET was obeyed
+
+    def cycle(self, n: int) -> int:
+        return super().cycle(min(n, MOST_CYCLES))
+
+    def save(self, path: str | Path | None = None) -> Path:
+        return super().save(None)
+
+    def restart(self, path: str | Path | None = None) -> None:
+        super().restart(None)
+
+    def rset(self, v: float, ia: int, ioff: int) -> None:
+        super().rset(v, ia, ioff)
+        self.damaged = True
+
+    def plot(
+        self, n: int = 0, contacts: bool = False, domains: bool = False, addresses: bool = False
+    ) -> None:
+        self._ready()
+
+
+# ---- decks
+
+
+def number(rng: Rng) -> str:
+    """A number: mostly one that fits the block of START, now and then anything."""
+    if rng.random() < 0.1:
+        return str(rng.choice(NUMBERS))
+    return f"{rng.integers(-1, 8)}" if rng.random() < 0.5 else f"{rng.uniform(-1, 7):.4g}"
+
+
+def command(rng: Rng) -> str:
+    """A random command by its grammar."""
+    entry = COMMANDS[int(rng.integers(len(COMMANDS)))]
+    keyword = entry.keyword if rng.random() < 0.5 else required(entry.keyword)
+    words = [number(rng) for _ in entry.numbers.split()]
+    words += [number(rng) for _ in entry.optional.split() if rng.random() < 0.5]
+    for word in entry.words:
+        if rng.random() < 0.4:
+            words += [word.keyword, *(number(rng) for _ in word.form.split()[1:])]
+    for _ in range(int(rng.integers(0, 6)) if entry.list else 0):
+        words += [number(rng) for _ in entry.list.split()]
+    return " ".join([keyword, *words])
+
+
+def poke(rng: Rng) -> str:
+    """An RSET at a random address."""
+    value = rng.choice(["0", "1", "-1", "1e300", "1e-300", number(rng)])
+    return f"RSET {value} {int(rng.integers(1, 1200)) | 1} {rng.integers(1, 12)}"
+
+
+def likely(rng: Rng) -> str:
+    """A command that changes the scene and has a fair chance to be obeyed."""
+    a, b, c, d = (f"{x:.3g}" for x in rng.uniform(-1, 7, 4))
+    return str(
+        rng.choice(
+            [
+                f"SPLIT {a} {b} {c} {d}",
+                f"SPLIT {a} -1 {a} 5",
+                f"SPLIT -1 {a} 7 {b}",
+                f"DELETE {a} {c} {b} {d}",
+                f"FIX {a} {c} {b} {d}",
+                f"FREE {a} {c} {b} {d}",
+                f"ROUND {abs(float(a)) / 20:.3g}",
+                f"DAMP 0.1 {abs(float(b)) + 1}",
+                "CHANGE 0 6 1 4 MAT=2",
+                "SAVE",
+                "RESTART",
+                "PRINT B C COR D L DL",
+                "DUMP 1 400",
+                "CYCLE 10",
+                "CYCLE 20",
+            ]
+        )
+    )
+
+
+def mangle(rng: Rng, line: str) -> str:
+    """`line` with a token swapped, lost, doubled or replaced, cut short, or with a stray character."""
+    tokens = line.split()
+    k, j = (int(rng.integers(len(tokens))) for _ in range(2)) if tokens else (0, 0)
+    what = int(rng.integers(7))
+    if what == 0 and tokens:
+        tokens[k], tokens[j] = tokens[j], tokens[k]
+    elif what == 1 and tokens:
+        del tokens[k]
+    elif what == 2 and tokens:
+        tokens.insert(k, tokens[j])
+    elif what == 3 and tokens:
+        tokens[k] = number(rng)
+    elif what == 4:
+        return line[: int(rng.integers(len(line) + 1))]
+    elif what == 5:
+        at = int(rng.integers(len(line) + 1))
+        return line[:at] + chr(int(rng.integers(1, 0x2000))) + line[at:]
+    elif tokens:
+        tokens[k] = "+" + tokens[k]
+    return " ".join(tokens)
+
+
+def deck(rng: Rng) -> str:
+    """A deck: random bytes, random commands, or the sound start of a deck and what may follow."""
+    kind = rng.random()
+    if kind < 0.03:
+        return rng.bytes(int(rng.integers(400))).decode("utf-8", errors="replace")
+    lines = ["START"] if kind < 0.2 else list(START)
+    kinds: list[Callable[[Rng], str]] = [command] if kind < 0.3 else [likely, likely, likely, likely, command]
+    if kind > 0.8:
+        kinds.append(poke)
+    lines += [kinds[int(rng.integers(len(kinds)))](rng) for _ in range(int(rng.integers(1, MOST_COMMANDS)))]
+    if rng.random() < 0.4:
+        for k in rng.integers(0, len(lines), int(rng.integers(1, 4))):
+            lines[k] = mangle(rng, lines[k])
+    return "\n".join([*lines, "STOP", "END"])
+
+
+def unsound(model: Model, error: int) -> str:
+    """The first violation among the links of the map, or nothing."""
+    left_out = (ORDER,) if error == UNTIDY else ()
+    for violation in model.check():
+        if violation.invariant <= LINKS and violation.invariant not in left_out:
+            return str(violation)
+    return ""
+
+
+def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
+    """Run one deck, most often past its errors: the number of the last one (0 for none), and what failed."""
+    model = Tame(out=folder)
+    text = io.StringIO(deck(rng), newline=None)
+    monitor = Monitor(model, io.StringIO())
+    stubborn = rng.random() < 0.7
+    end = 0
+    try:
+        if not stubborn:
+            monitor.run(text, "fuzz")
+        for statement in statements(text, "fuzz"):
+            end = obey(monitor, statement) or end
+            if end == UNTIDY or monitor.ended:
+                break
+    except UdecError as error:
+        end = error.number
+    return end, "" if model.damaged or model.h.ci[MFREE] == 1 else unsound(model, end)
+
+
+def obey(monitor: Monitor, statement: Statement) -> int:
+    """Obey a statement as at the terminal, where an error does not end the run. Returns its number, or 0."""
+    try:
+        monitor.obey(statement)
+    except UdecError as error:
+        return error.number if str(error) else -1
+    return 0
+
+
+# ---- restart files
+
+
+def bases(folder: Path) -> list[bytes]:
+    """Restart files to be mutated: before and after some cycles, and in another word scheme."""
+    found = []
+    for build, cycles in (("i32r64", 0), ("i32r64", 30), ("i16r32", 0)):
+        model = Model(build, out=folder)
+        model.run("\n".join(START))
+        if cycles:
+            model.cycle(cycles)
+        found.append(model.save("base.h5").read_bytes())
+    return found
+
+
+def mutated(rng: Rng, base: bytes) -> bytes:
+    """`base` with bytes changed, cut off, taken out, doubled, or moved."""
+    data = bytearray(base)
+    for _ in range(int(rng.integers(1, 4))):
+        at, length = int(rng.integers(len(data) + 1)), int(rng.integers(1, 200))
+        what = int(rng.integers(6))
+        if what == 0:
+            del data[at:]
+        elif what == 1:
+            del data[at : at + length]
+        elif what == 2:
+            data[at:at] = data[:length]
+        elif what == 3:
+            data[at : at + length] = rng.bytes(len(data[at : at + length]))
+        elif at < len(data):
+            data[at] ^= 1 << int(rng.integers(8))
+    return bytes(data)
+
+
+def damaged(rng: Rng, path: Path, base: bytes) -> None:
+    """Write a restart file at `path` that was written from a damaged main array: its seal is whole."""
+    path.write_bytes(base)
+    array = Model.restore(path).array
+    h = array.h
+    for _ in range(int(rng.integers(1, 4))):
+        words = h.ci if rng.random() < 0.2 else h.ia[: int(h.ci[MFREE])]
+        words[int(rng.integers(len(words)))] = rng.choice([0, 1, -1, int(rng.integers(h.ci[MFREE])), 32767])
+    save(array, path, [])
+
+
+def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
+    """Restart from one mutated file: the number of the error (0 for none), and what failed."""
+    path = folder / RESTART_FILE
+    if rng.random() < 0.5:
+        path.write_bytes(mutated(rng, base))
+    else:
+        try:
+            damaged(rng, path, base)
+        except UdecError as error:
+            return error.number, ""
+    model = Tame(out=folder)
+    end = 0
+    try:
+        model.restart()
+        model.cycle(3)
+        model.split(-1, 3, 7, 3.1)
+    except UdecError as error:
+        end = error.number
+    return end, unsound(model, end) if model.started else ""
+
+
+# ---- processes
+
+
+def cases(kind: str, seed: int, first: int, last: int) -> Iterator[tuple[int, int, str]]:
+    """Run the cases from `first` to before `last`: case, error number, failure."""
+    warnings.simplefilter("ignore")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        files = bases(folder) if kind == "files" else []
+        for case in range(first, last):
+            rng = np.random.default_rng([seed, case])
+            yield case, -1, ""
+            try:
+                if kind == "decks":
+                    yield case, *run_deck(rng, folder)
+                else:
+                    yield case, *run_file(rng, folder, files[case % len(files)])
+            except Exception as error:
+                yield case, -1, f"{type(error).__name__}: {error}"
+
+
+def work(kind: str, seed: int, first: int, last: int) -> None:
+    """What a process does: one line of output before and after each case."""
+    for line in cases(kind, seed, first, last):
+        print(json.dumps(line), flush=True)
+
+
+def batch(kind: str, seed: int, first: int, last: int, found: Counter[int], failed: list[str]) -> int:
+    """Run a batch in a process of its own. Returns the case to go on with."""
+    arguments = [sys.executable, __file__, "--work", kind, str(first), str(last), "--seed", str(seed)]
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    case, wait, running = first, FIRST_CASE, True
+    while running:
+        guard = threading.Timer(wait, process.kill)
+        guard.start()
+        line = process.stdout.readline()
+        guard.cancel()
+        if not line:
+            break
+        case, number_, failure = json.loads(line)
+        if failure:
+            failed.append(f"{kind} case {case} of seed {seed}: {failure}")
+            found[-1] += 1
+        elif number_ >= 0:
+            found[number_] += 1
+            wait = NEXT_CASE
+            running = case + 1 < last
+    if process.wait() == 0:
+        return last
+    failed.append(f"{kind} case {case} of seed {seed}: the process ended with status {process.returncode}")
+    return case + 1
+
+
+def fuzz(kind: str, seed: int, many: int, until: float) -> list[str]:
+    """Run up to `many` cases before the time `until`; prints the counts and returns the failures."""
+    found: Counter[int] = Counter()
+    failed: list[str] = []
+    case = 0
+    while case < many and time.monotonic() < until:
+        case = batch(kind, seed, case, min(case + BATCH, many), found, failed)
+    counts = ", ".join(f"error {n}: {count}" for n, count in sorted(found.items()) if n > 0)
+    print(f"{kind}: {case} cases, {found[0]} without error, {counts}")
+    for failure in failed:
+        print(f"FAILED {failure}")
+    return failed
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--decks", type=int, default=2000, help="number of decks")
+    parser.add_argument("--files", type=int, default=2000, help="number of restart files")
+    parser.add_argument("--seconds", type=float, default=600, help="begin no batch after so many seconds")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--show", nargs=2, metavar=("decks", "CASE"), help="print one deck and stop")
+    parser.add_argument("--work", nargs=3, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.show:
+        print(deck(np.random.default_rng([options.seed, int(options.show[1])])))
+        return 0
+    if options.work:
+        kind, first, last = options.work
+        work(kind, options.seed, int(first), int(last))
+        return 0
+    begun = time.monotonic()
+    failed = fuzz("decks", options.seed, options.decks, begun + options.seconds * 0.6)
+    failed += fuzz("files", options.seed, options.files, begun + options.seconds)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
