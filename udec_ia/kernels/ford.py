@@ -56,6 +56,7 @@ from offsets.generated import (
     NBROKE,
     NERR,
     TDEL,
+    UPEND,
     WFRIC,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
@@ -178,8 +179,9 @@ def ford(h: Memory, ic: int) -> None:
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, KCN, overlap)
     zero = real(h, 0.0)
-    if (overlap <= zero or getr(h, ic, KCFN) == zero) and drop(h, ic, overlap):
-        return
+    idle = overlap <= zero or getr(h, ic, KCFN) == zero
+    if idle and (h.cr[UPEND] == zero or overlap < -h.cr[BTOL]) and drop(h, ic, overlap):
+        return  # its neighbours are looked at only when the domain pass has run: else nothing moved far
     xd, yd = cvel(h, ic)
     if overlap <= zero:
         no_force(h, ic)
