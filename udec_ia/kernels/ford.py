@@ -180,8 +180,9 @@ def ford(h: Memory, ic: int) -> None:
     putr(h, ic, KCN, overlap)
     zero = real(h, 0.0)
     idle = overlap <= zero or getr(h, ic, KCFN) == zero
-    if idle and (h.cr[UPEND] == zero or overlap < -h.cr[BTOL]) and drop(h, ic, overlap):
-        return  # its neighbours are looked at only when the domain pass has run: else nothing moved far
+    still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
+    if idle and not still and drop(h, ic, overlap):
+        return  # an open contact looks at its neighbours only when the domain pass has run
     xd, yd = cvel(h, ic)
     if overlap <= zero:
         no_force(h, ic)
