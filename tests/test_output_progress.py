@@ -1,4 +1,4 @@
-"""A terminal gets a bar, a pipe gets a few lines, a short run gets nothing."""
+"""A terminal gets a bar, a pipe gets a few lines, and every command leaves one."""
 
 from __future__ import annotations
 
@@ -50,9 +50,10 @@ def test_few_cycles_give_no_more_lines_than_updates(monkeypatch: pytest.MonkeyPa
     assert len(run(io.StringIO(), 30).splitlines()) == 3
 
 
-def test_a_short_run_in_a_pipe_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_short_run_in_a_pipe_leaves_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, 0.001)
-    assert run(io.StringIO()) == ""
+    (line,) = run(io.StringIO()).splitlines()
+    assert line.startswith("cycle 1000 of 1000: ")
 
 
 def test_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,6 +62,7 @@ def test_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("NO_COLOR", raising=False)
     coloured = run(Terminal())
     assert "1000/1000" in coloured
+    assert "cycle 1000 of 1000: " in coloured.splitlines()[-1]
     assert "contacts +3 -1" in coloured
     assert "\x1b[3" in coloured
     monkeypatch.setenv("NO_COLOR", "1")

@@ -118,7 +118,7 @@ def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
         return np.where(first_host[k] == block, places[0].along[k], places[1].along[k])
 
     gap = np.abs(touch.overlap)
-    slack = state.tolerance("GTOL") + 2 * (gap[one] + gap[two]) + touch.slack[one] + touch.slack[two]
+    slack = state.tolerance("FTOL") + 2 * (gap[one] + gap[two]) + touch.slack[one] + touch.slack[two]
     contacts = state.address["contact"][touch.row]
     for k in np.flatnonzero(along(one) - along(two) > slack):
         state.report(

@@ -3,7 +3,7 @@
 The whole path is looked at before anything is changed, so a line that one block refuses changes
 nothing. Then the blocks are cut one by one, and last the domains at the ends of the cracks are updated:
 corners of halves that lie opposite each other get their contacts. A line that was interrupted for want
-of memory is simply begun again: what is cut already lies along it and is not cut twice.
+of memory has cut nothing yet, or only its updates are left: it is simply begun again.
 
 The blocks in the path are found in a list of boxes (four reals and an address a block), which is kept
 beside the heap while one split follows another: looking through boxes that lie together in memory is
@@ -219,9 +219,12 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
     first = n
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 2 * size_of(h, NVCN) + size_of(h, NVDO)
-    if n + found > len(blocks):
+    cuts = 0
+    for r in range(found):
+        cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]
+    if n + cuts > len(blocks):
         return NO_BOXES, n
-    if not room(h, need * found):  # for the whole line, so that it is rarely begun again half-way
+    if not room(h, need * cuts):  # for the whole line, so that no cut is ever interrupted
         return NO_MEMORY, n
     for r in range(found):
         row, following = rows[r], n
@@ -233,10 +236,6 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            if n == len(blocks):
-                return NO_BOXES, n
-            if not room(h, need):
-                return NO_MEMORY, n
             blocks[n] = _cut_block(h, blocks[row], where, which, k)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])

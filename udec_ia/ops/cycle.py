@@ -32,6 +32,7 @@ from offsets.generated import (
     KMAT,
     KXC,
     KYC,
+    MCON,
     MCTOT,
     MDOM,
     NBLK,
@@ -150,6 +151,8 @@ def _raise_error(array: MainArray) -> None:
             f"{int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact to be formed in time"
         )
         raise UdecError(number, detail, "take a smaller FRACTION or a greater ROUND", group=group)
+    if iget(h, group, HEAD) != MCON:  # it vanished in a later pass of the same cycle
+        raise UdecError(number, f"in cycle {int(h.ci[MCTOT])}", "take a smaller FRACTION or a greater ROUND")
     m = iget(h, group, KCM)
     detail = (
         f"contact@{group} of block@{iget(h, group, KB1)} and block@{iget(h, group, KB2)} at "

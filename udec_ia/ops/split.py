@@ -32,8 +32,8 @@ class Boxes:
     def enter(self, array: MainArray) -> None:
         """Make sure that all blocks of the list are entered."""
         count = int(array.h.ci[NBLK])
-        if len(self.blocks) < 2 * count:
-            self._resize(array, max(4 * count, 64))
+        if len(self.blocks) < 2 * count + MOST:
+            self._resize(array, 4 * count + MOST)
         if self.n != count:
             self.n = enter_boxes(array.h, self.boxes, self.blocks)
 

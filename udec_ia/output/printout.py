@@ -88,7 +88,7 @@ def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:
         for step in walk:
             reached.append(step)
     except Unsound as broken:
-        return reached, [f"the heap is damaged here: {broken}"]
+        return reached, [f"the heap is damaged here: {broken.detail}"]
     return reached, []
 
 

@@ -1,4 +1,4 @@
-"""How a run is going: a bar on a terminal, a few plain lines elsewhere, and one line when it is over."""
+"""How a run is going: a bar on a terminal, a few plain lines elsewhere, and a line when a command ends."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 LINES = 10  # plain lines for one CYCLE command, at most
-QUIET = 2.0  # seconds that a run must have lasted before it says anything
+QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
 NAMED_FILES = 4  # files that the summary names; of more, their number
 
 
@@ -22,14 +22,19 @@ class Progress:
 
     stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
     total: cycles of the command. tdel: time-step in s. frac: its share of the critical one.
+    started: reading of the monotonic clock when the command began; None for now.
     """
 
-    def __init__(self, stream: TextIO, total: int, tdel: float, frac: float) -> None:
+    def __init__(
+        self, stream: TextIO, total: int, tdel: float, frac: float, started: float | None = None
+    ) -> None:
         self.stream = stream
         self.total = total
         self.step = f"dt {tdel:.3g} s ({frac:.3g} of critical)"
-        self.started = monotonic()
+        self.started = monotonic() if started is None else started
         self.lines = 0
+        self.last = ""  # line on how far the command is
+        self.shown = ""  # line that was printed last
         self.bar = Bar(BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn(), expand=True)
         self.task = self.bar.add_task("cycles", total=total)
         self.live: Live | None = None
@@ -55,18 +60,25 @@ class Progress:
             f"{rate:,.0f} cycles/s, t = {time:.4g} s, {self.step}, unbalanced force {unbalanced:.3g} N/m, "
             f"contacts +{made} -{broken}"
         )
+        self.last = f"cycle {done} of {self.total}: {state}"
         if self.live is not None:
             self.bar.update(self.task, completed=done)
             self.live.update(self._view(state))
         elif elapsed >= QUIET and done * LINES >= (self.lines + 1) * self.total:
             self.lines = done * LINES // self.total
-            print(f"cycle {done} of {self.total}: {state}", file=self.stream, flush=True)
+            self._print()
 
     def close(self) -> None:
-        """Take the bar away; safe to call again."""
+        """Take the bar away and leave the last line; safe to call again."""
         if self.live is not None:
             self.live.stop()
             self.live = None
+        self._print()
+
+    def _print(self) -> None:
+        if self.last != self.shown:
+            self.shown = self.last
+            print(self.last, file=self.stream, flush=True)
 
 
 def summary(

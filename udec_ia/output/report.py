@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 from offsets.generated import FRAC, NBROKE, NMADE, TDEL, TIME
@@ -29,6 +30,7 @@ class Report:
         self.stream = stream
         self.animation = animation
         self.progress: Progress | None = None
+        self.started = monotonic()
 
     def __call__(self, done: int) -> None:
         h = self.memory()
@@ -39,7 +41,8 @@ class Report:
         if self.progress is None:
             from udec_ia.output.progress import Progress
 
-            self.progress = Progress(self.stream, self.total, float(h.cr[TDEL]), float(h.cr[FRAC]))
+            tdel, frac = float(h.cr[TDEL]), float(h.cr[FRAC])
+            self.progress = Progress(self.stream, self.total, tdel, frac, self.started)
         made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
         self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h)), made, broken)
 
