@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "14b321f47a3e279ae00d1cada6e4c804a780da0e434ec2c82a5a1888dbdd361f"
+DIGEST = "47a0237b1139219b748e025bd3ba6207b0a4cb3f393e512029206147d32379fa"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -148,9 +148,10 @@ NSHORT = 16  # edges that hold little more than their two roundings
 LROUND = 17  # 1 if the rounding length was given by ROUND, 0 if it is our default
 IERAD = 18  # address of the group that raised error NERR; 0 when there is none
 NWANT = 19  # words that the interrupted routine asks for; 0 when there are enough
-NTIPS = 20  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 21  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 22
+NSPARE = 20  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 21  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 22  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 23
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -251,7 +251,7 @@ class Model:
     def damping(self, fcrit: float, freq: float, only: str | None = None) -> None:
         """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping)."""
         self._ready(sound=False)
-        settings.set_damping(self.array, fcrit, freq, only)
+        settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
     def fraction(self, f: float) -> None:
         """FRACTION: fraction of the critical time-step to be used."""
@@ -307,7 +307,7 @@ class Model:
         """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist"."""
         from udec_ia.output.printout import printout
 
-        return printout(self.h, *what)
+        return printout(self.h, *(word.lower() for word in what))
 
     def dump(self, n: int, m: int) -> str:
         """DUMP: the words from address n to address m."""

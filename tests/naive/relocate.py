@@ -16,7 +16,14 @@ from udec_ia.inspect.table import table
 
 KINDS = ("block", "corner", "contact", "domain")
 TABLE = read_table()
-NO_STATE = {"JUNK", "MFREE", "MTOP", "NWANT", "NCYC"}  # memory management, and what was asked for last
+NO_STATE = {
+    "JUNK",
+    "MFREE",
+    "MTOP",
+    "NSPARE",
+    "NWANT",
+    "NCYC",
+}  # of the memory, not the model
 
 
 def relocate(array: MainArray, rng: np.random.Generator) -> MainArray:

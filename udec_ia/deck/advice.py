@@ -38,7 +38,7 @@ ADVICE = {
     24: "a block counts by its centroid: PRINT BLOCKS shows the centroids",
     25: "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
     26: "a zone needs its three grid-points on one line",
-    27: "move the line, or let it pass exactly through the corner",
+    27: "move the line: it may pass exactly through a corner, but not graze one",
     28: "HELP and the name of the command show what it takes",
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",

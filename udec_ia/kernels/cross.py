@@ -22,6 +22,7 @@ from udec_ia.kernels.lists import next_corner
 
 MOST = 64  # crossings of one block that can be handled
 OK, TOO_CLOSE, TOO_SHORT = 0, 1, 2
+ROUNDINGS = 32.0  # that the distance of a corner from a line may have gone through
 GRAZING = 0.01  # sine of the smallest angle between a cut and an edge
 SHORTEST = 1.0e-3  # shortest new edge, as a part of the cut edge, while the rounding length is still open
 T, X, Y = 0, 1, 2
@@ -30,8 +31,8 @@ CORNER, AT = 0, 1
 
 @kernel
 def slack(h: Memory, x: float, y: float) -> float:
-    """Distance that counts as zero at (x, y): a thousand roundings of the coordinates."""
-    return (abs(x) + abs(y)) * real(h, 1024.0) * rounding(h)
+    """Distance that counts as zero at (x, y): some roundings of the coordinates."""
+    return (abs(x) + abs(y)) * real(h, ROUNDINGS) * rounding(h)
 
 
 @kernel

@@ -39,6 +39,7 @@ from offsets.generated import (
     NBLK,
     NBROKE,
     NSHORT,
+    NSPARE,
     NVBL,
     NVCN,
     NVCR,
@@ -218,13 +219,13 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
     where, which = np.empty((MOST, 3), line.dtype), np.empty((MOST, 2), np.int64)
     first = n
     rounding_length = h.cr[DTOL]
-    need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 2 * size_of(h, NVCN) + size_of(h, NVDO)
+    need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 6 * size_of(h, NVCN) + 5 * size_of(h, NVDO)
     cuts = 0
     for r in range(found):
         cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]
     if n + cuts > len(blocks):
         return NO_BOXES, n
-    if not room(h, need * cuts):  # for the whole line, so that no cut is ever interrupted
+    if not room(h, need * cuts + h.ci[NSPARE]):  # for the whole line, so that no cut is ever interrupted
         return NO_MEMORY, n
     for r in range(found):
         row, following = rows[r], n

@@ -6,9 +6,10 @@ can be taken up again at that very point and goes on as if it had not stopped.
 
 from __future__ import annotations
 
-from offsets.generated import JPHASE, MCTOT, NBROKE, NERR, TDEL, TIME
+from offsets.generated import JPHASE, MCTOT, NBROKE, NERR, NSPARE, TDEL, TIME
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import room
 from udec_ia.kernels.domains import accumulate
 from udec_ia.kernels.ford import ford_all
 from udec_ia.kernels.motion import motion_all
@@ -23,6 +24,8 @@ def run_cycles(h: Memory, n: int) -> int:
     done = 0
     while done < n:
         if h.ci[JPHASE] == BLOCKS:
+            if h.ci[NSPARE] > 0 and not room(h, h.ci[NSPARE]):
+                return done  # IA() grows between two cycles, where growing changes nothing
             fastest = motion_all(h)
             h.ci[JPHASE] = DOMAINS if accumulate(h, fastest) else CONTACTS
         if h.ci[JPHASE] == DOMAINS:

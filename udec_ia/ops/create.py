@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from offsets.generated import DTOL, IODPNT, KL, KLB, KP, KR, LROUND, NBLK, NVBL, NVCR, NVDO
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
@@ -18,6 +20,7 @@ from udec_ia.ops.memory import require
 from udec_ia.ops.rounding import check_rounding
 
 Point = tuple[float, float]
+FINEST = 1e-4  # rounding of a coordinate, as a part of the shortest edge, that leaves room to cut
 
 
 def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
@@ -35,9 +38,13 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     for x, y in corners:
         finite(x, y)
     _check_outline(corners)
+    ends = zip(corners, (*corners[1:], corners[0]), strict=True)
+    least, x, y = min((math.dist(a, b), *b) for a, b in ends)
+    digit = float(np.finfo(h.cr.dtype).eps) * max(abs(x) + abs(y) for x, y in corners)
+    if least < digit / FINEST:
+        detail = f"an edge {least:g} long, where {array.scheme.real_bits}-bit reals resolve {digit:g}"
+        raise UdecError(28, detail, "take the origin nearer to the block, or a --build with 64-bit reals")
     if h.ci[LROUND]:
-        ends = zip(corners, (*corners[1:], corners[0]), strict=True)
-        least, x, y = min((math.dist(a, b), *b) for a, b in ends)
         check_rounding(float(h.cr[DTOL]), least, x, y)
     require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
     h = array.h

@@ -25,6 +25,7 @@ from offsets.generated import (
     FRAC,
     IBPNT,
     IERAD,
+    JPHASE,
     KB1,
     KB2,
     KCM,
@@ -45,9 +46,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
-from udec_ia.kernels.cycle import run_cycles
+from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.ops.arrange import arrange
-from udec_ia.ops.memory import find_room
+from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
 
 REPORT_SECONDS = 0.2
@@ -119,6 +120,7 @@ def cycle(array: MainArray, n: int, report: Report | None = None, every: int | N
     if n < 0:
         raise UdecError(28, f"the number of cycles must not be negative, it is {n}")
     prepare(array)
+    keep_spare(array)
     array.h.ci[NCYC] = n
     done, piece = 0, every or FIRST_PIECE
     while done < n:
@@ -139,6 +141,10 @@ def _raise_error(array: MainArray) -> None:
     h = array.h
     number = int(h.ci[NERR])
     if number == 0:
+        return
+    if number == 1 and h.ci[JPHASE] == BLOCKS:
+        h.ci[NERR] = 0
+        keep_spare(array)
         return
     if number == 1:
         find_room(array)

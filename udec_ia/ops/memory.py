@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from offsets.generated import MFREE, MTOP, NERR, NWANT
+from offsets.generated import MFREE, MTOP, NCON, NERR, NSPARE, NVCN, NVDO, NWANT
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES
+
+SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
 
 
 def find_room(array: MainArray) -> None:
@@ -25,6 +28,25 @@ def find_room(array: MainArray) -> None:
     else:
         advice = f"run with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
     raise UdecError(1, f"{need} words are needed, the main array has {int(ci[MTOP])}", advice)
+
+
+def keep_spare(array: MainArray) -> None:
+    """Have memory to spare for the contacts and domains of the updates to come.
+
+    An array that grew in the midst of an update would make its contacts in another order, and the order of
+    sums is the last bit of a force. So the array grows before: when and how often it does changes nothing.
+    An array of fixed size, or one that has reached its limit, uses its last word instead.
+    """
+    if array.fixed:
+        return
+    ci = array.h.ci
+    pair = size_of(array.h, NVCN) + size_of(array.h, NVDO)
+    words = pair * (SPARE_CONTACTS + int(ci[NCON]) // 4)
+    ci[NSPARE] = words
+    if ci[MFREE] + words - 1 > ci[MTOP]:
+        ci[NWANT] = words
+        if not array.grow():
+            ci[NSPARE] = ci[NWANT] = ci[NERR] = 0
 
 
 def require(array: MainArray, words: int) -> None:

@@ -11,7 +11,7 @@ from udec_ia.kernels.ford import settle_all
 from udec_ia.kernels.tolerances import default_rounding, edges, set_rounding
 from udec_ia.kernels.update import update_all
 from udec_ia.ops.limits import finite
-from udec_ia.ops.memory import find_room
+from udec_ia.ops.memory import find_room, keep_spare
 
 
 def check_rounding(d: float, least: float, x: float, y: float) -> None:
@@ -41,6 +41,7 @@ def refresh(array: MainArray) -> None:
 
 def update_flagged(array: MainArray) -> None:
     """Update every flagged domain, finding memory as needed."""
+    keep_spare(array)
     while not update_all(array.h):
         find_room(array)
 

@@ -83,6 +83,8 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     finite(freq)
     if freq <= 0:
         raise UdecError(28, f"the centre frequency must be positive, it is {freq:g}")
+    if only not in (None, "mass", "stiffness", "internal"):
+        raise UdecError(10, f"{only}", "mass, stiffness or internal")
     omega = 2 * math.pi * freq
     cr = array.h.cr
     if only == "internal":
@@ -148,6 +150,8 @@ def change(
     A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
     follow a new material only before the first cycle.
     """
+    if kind not in (None, "sdef", "fdef"):
+        raise UdecError(10, f"{kind}", "sdef or fdef")
     if kind is not None:
         raise UdecError(23, f"blocks of type {kind}")
     if material is not None:

@@ -13,7 +13,7 @@ from udec_ia.kernels.cross import MOST, X, Y
 from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import finite
-from udec_ia.ops.memory import find_room
+from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import update_flagged
 
 
@@ -68,6 +68,7 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
 
 def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     """Cut along the line; False if it has to be begun again with more memory."""
+    keep_spare(array)
     boxes.enter(array)
     h = array.h
     rows, where = np.empty(boxes.n, np.int64), np.empty((MOST, 3), h.cr.dtype)
@@ -90,4 +91,9 @@ def _refuse(array: MainArray, status: int, ib: int, x: float, y: float) -> None:
         d = float(array.h.cr[DTOL])
         detail = f"the cut {place} leaves an edge shorter than {2 * d:g}"
         raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
-    raise UdecError(27, place, "move the line, or let it pass exactly through the corner", group=ib)
+    raise UdecError(
+        27,
+        place,
+        "move the line: it may pass exactly through a corner, but not graze one or run along a concave edge",
+        group=ib,
+    )
