@@ -1,0 +1,175 @@
+"""How fast the program is, measured: cycles against a structure of arrays, SPLIT, and the ball.
+
+    python tools/bench.py                                     everything
+    python tools/bench.py cycle --blocks 1000 10000 100000    one of: cycle, split, ball
+
+Times are processor time, so that other work on the machine disturbs them little; only the ball is timed
+by the clock on the wall. Program and yardstick take turns, and the ratio is the median over the turns.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter, process_time
+
+import numpy as np
+from soa import EVENTS, Slab, extract, run_soa
+
+from offsets.generated import CON1, CON2, HTOL, KXD, NBLK, NCON, TDEL, UPEND
+from udec_ia import Model
+from udec_ia.heap.accessors import putr
+from udec_ia.inspect.table import table
+from udec_ia.kernels.cycle import run_cycles
+
+ROOT = Path(__file__).parent.parent
+TURNS = 15
+TRIES = 5  # slabs cut; the first may pay for memory that the machine hands out for the first time
+WORK = 2_000_000  # contacts that one turn passes through
+SETTLE = 40  # cycles before a measurement
+FAR = 1e9
+
+
+def slab(blocks: int, skew: float = 0.0) -> Model:
+    """A slab of about `blocks` unit blocks, cut by two joint sets; the second leans by `skew` a unit."""
+    ny = round(math.sqrt(blocks / 1.2))
+    nx = round(blocks / ny)
+    model = Model()
+    model.start()
+    model.property(1, density=2000, kn=1e11, ks=1e11, friction=0.5)
+    model.gravity(0, -10)
+    model.damping(0.5, 10, "mass")
+    model.block(0, 0, 0, ny, nx, ny, nx, 0)
+    for j in range(1, ny):
+        model.split(-1, j, nx + 1, j)
+    for i in range(1, nx):
+        model.split(i - skew, -1, i + skew * (ny + 1), ny + 1)
+    return model
+
+
+def throw(model: Model) -> None:
+    """Free all blocks and give them one velocity so great that no domain pass can be skipped."""
+    h = model.h
+    model.free(-FAR, FAR, -FAR, FAR)
+    speed = 2 * float(h.cr[HTOL] / h.cr[TDEL])
+    h.cr[CON1] = h.cr[CON2] = 1
+    for ib in table(model.array, "block")["address"]:
+        putr(h, int(ib), KXD, speed)
+
+
+def agree(model: Model, s: Slab) -> None:
+    """Raise ValueError unless program and yardstick have come to the same state, to rounding."""
+    if s.sums[EVENTS]:
+        raise ValueError(f"void: {s.sums[EVENTS]:g} contacts had to change, which the yardstick cannot do")
+    pairs = (
+        ("block", s.blocks, "KX:x KY:y KXD:xd KYD:yd KTD:td KBFX:fx KBFY:fy KBFT:ft"),
+        ("corner", s.corners, "KXP:x KYP:y KXCP:xc KYCP:yc KXDP:xd KYDP:yd"),
+        ("contact", s.contacts, "KXC:x KYC:y KXDC:xd KYDC:yd KCS:us KCN:un KCFS:fs KCFN:fn"),
+        ("domain", s.domains, "KUMAX:umax"),
+    )
+    for kind, arrays, names in pairs:
+        rows = table(model.array, kind)
+        for name in names.split():
+            ours, theirs = name.split(":")
+            a, b = rows[ours], getattr(arrays, theirs)
+            difference = float(np.abs(a - b).max() / max(np.abs(a).max(), 1e-300))
+            if difference > 1e-9:
+                raise ValueError(f"void: {ours} of {kind} differs by {difference:.1e} of the greatest")
+
+
+def turns(model: Model, s: Slab) -> tuple[float, float, float]:
+    """ns per contact and cycle of the program and of the yardstick, and the median of their ratios."""
+    contacts = int(model.h.ci[NCON])
+    n = max(1, WORK // (contacts * TURNS))
+    times = []
+    for _ in range(TURNS):
+        start = process_time()
+        done = run_cycles(model.h, n)
+        between = process_time()
+        run_soa(s, n)
+        times.append((between - start, process_time() - between))
+        if done != n:
+            raise ValueError("void: the program stopped before the last cycle")
+    agree(model, s)
+    heap, soa = np.array(times).T
+    per = 1e9 / (n * contacts)
+    return float(np.median(heap)) * per, float(np.median(soa)) * per, float(np.median(heap / soa))
+
+
+def bench_cycles(sizes: list[int], skew: float) -> None:
+    """Whole cycles of slabs at rest and of slabs that are thrown."""
+    print("| blocks | contacts | slab | domain pass | program, ns | structure of arrays, ns | ratio |")
+    print("|---|---|---|---|---|---|---|")
+    for blocks in sizes:
+        model = slab(blocks, skew)
+        model.fix(-FAR, FAR, 0, 1)
+        model.cycle(SETTLE)
+        for name in ("at rest", "thrown"):
+            if name == "thrown":
+                throw(model)
+            run_cycles(model.h, 2)
+            skipped = model.h.cr[UPEND] > 0
+            s = extract(model.array)
+            run_soa(s, 0)
+            try:
+                heap, soa, ratio = turns(model, s)
+            except ValueError as void:
+                print(f"| {model.h.ci[NBLK]} | {model.h.ci[NCON]} | {name} | {void} | | | |", flush=True)
+                continue
+            pace = "waits" if skipped else "every cycle"
+            n, contacts = model.h.ci[NBLK], model.h.ci[NCON]
+            print(
+                f"| {n} | {contacts} | {name} | {pace} | {heap:.1f} | {soa:.1f} | {ratio:.2f} |", flush=True
+            )
+
+
+def bench_split(sizes: list[int]) -> None:
+    """Cutting slabs by SPLIT. Targets: 30,000 blocks in 10 s; at 300,000 half as much again per block."""
+    slab(100)
+    print("| blocks cut by SPLIT | s | us per block |\n|---|---|---|")
+    for blocks in sizes:
+        times = []
+        for _ in range(TRIES):
+            start = process_time()
+            n = int(slab(blocks).h.ci[NBLK])
+            times.append(process_time() - start)
+        seconds = float(np.median(times))
+        print(f"| {n} | {seconds:.2f} | {seconds / n * 1e6:.1f} |", flush=True)
+
+
+def bench_ball() -> None:
+    """The ball from the command line: first run with nothing compiled, and the second run."""
+    print("| ball-rolling.dat | s of wall time |\n|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "udec_ia", "run", "examples/ball-rolling.dat", "--out", folder]
+        env = {**os.environ, "UDEC_CACHE": str(Path(folder) / "cache")}
+        for name in ("first run", "second run", "third run"):
+            start = perf_counter()
+            subprocess.run(command, cwd=ROOT, env=env, check=True, capture_output=True)
+            print(f"| {name} | {perf_counter() - start:.1f} |", flush=True)
+
+
+def main() -> None:
+    """Run what the command line asks for."""
+    parser = argparse.ArgumentParser(description="Measure the speed of cycles, of SPLIT and of the ball.")
+    parser.add_argument("what", nargs="*", help="any of: cycle, split, ball; all of them if left off")
+    parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
+    parser.add_argument("--cut", type=int, nargs="+", default=[30_000, 300_000])
+    parser.add_argument("--skew", type=float, default=0.0, help="lean of the second joint set, dx to dy")
+    args = parser.parse_args()
+    what = args.what or ["cycle", "split", "ball"]
+    if "cycle" in what:
+        bench_cycles(args.blocks, args.skew)
+    if "split" in what:
+        bench_split(args.cut)
+    if "ball" in what:
+        bench_ball()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,359 @@
+"""The yardstick of the speed measurements: the cycle of the program over a structure of arrays.
+
+Blocks, corners, contacts and domain loops are taken out of the heap once, every field into an array of
+its own, every address turned into a row number. The loops below then do the arithmetic of MOTION, PVEL,
+ACCUM and FORD as one would write them for such arrays, compiled with the program's own flags. They know
+nothing of lists and cannot change the map: where the program would re-classify, make or break a contact,
+they count an event, and a comparison with events is void.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar, cast
+
+import numpy as np
+from numba import njit
+
+from offsets import generated as g
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.table import table
+from udec_ia.inspect.walk import loop
+
+# Flags of the program's kernels; no counting of references to arrays, which its kernels do not have either.
+F = TypeVar("F", bound=Callable[..., Any])
+compiled = cast(Callable[[F], F], njit(error_model="numpy", _nrt=False, forceinline=True))
+
+NONE = 0xFFFFFFFF  # row number that stands for nothing
+UPEND, WORK, EVENTS = 0, 1, 2  # numbers that outlive a cycle, in Slab.sums
+
+
+class Constants(NamedTuple):
+    """Scalars of the common block; `border` is DTOL - GTOL, `ftol2` the square of FTOL."""
+
+    border: float
+    ftol2: float
+    dt: float
+    con1: float
+    con2: float
+    gx: float
+    gy: float
+    beta: float
+    dtol: float
+    gtol: float
+    btol: float
+    dtol2: float
+    etol: float
+    htol: float
+
+
+class Blocks(NamedTuple):
+    """One row a block; `first` has a row more: the block's corners are first[i] to first[i + 1]."""
+
+    fixed: Any
+    first: Any
+    x: Any
+    y: Any
+    xd: Any
+    yd: Any
+    td: Any
+    m: Any
+    i: Any
+    fx: Any
+    fy: Any
+    ft: Any
+    reach: Any
+
+
+class Corners(NamedTuple):
+    """One row a corner; `before` is the row of the corner where its edge starts."""
+
+    before: Any
+    x: Any
+    y: Any
+    xc: Any
+    yc: Any
+    rad: Any
+    xd: Any
+    yd: Any
+
+
+class Contacts(NamedTuple):
+    """One row a contact; `twin` is the next contact on block `b1` if it is with `b2` as well."""
+
+    b1: Any
+    b2: Any
+    p1: Any
+    p2: Any
+    twin: Any
+    code: Any
+    mat: Any
+    x: Any
+    y: Any
+    xd: Any
+    yd: Any
+    us: Any
+    un: Any
+    fs: Any
+    fn: Any
+
+
+class Domains(NamedTuple):
+    """One row a domain: its corners are corner[c[i]] to corner[c[i + 1]], its contacts likewise."""
+
+    umax: Any
+    c: Any
+    corner: Any
+    k: Any
+    contact: Any
+
+
+class Slab(NamedTuple):
+    """A whole model. kn, ks, mu, coh: one value a material. sums: see UPEND, WORK, EVENTS."""
+
+    constants: Constants
+    blocks: Blocks
+    corners: Corners
+    contacts: Contacts
+    domains: Domains
+    kn: Any
+    ks: Any
+    mu: Any
+    coh: Any
+    sums: Any
+
+
+def _rows(addresses: Any, wanted: Any) -> Any:
+    """Row numbers of the groups at the addresses `wanted`; NONE where there is no such group."""
+    order = np.argsort(addresses)
+    place = np.minimum(np.searchsorted(addresses, wanted, sorter=order), len(order) - 1)
+    row = order[place]
+    return np.where(addresses[row] == wanted, row, NONE).astype(np.uint32)
+
+
+def _columns(rows: Any, names: str) -> list[Any]:
+    return [np.ascontiguousarray(rows[name]) for name in names.split()]
+
+
+def extract(array: MainArray) -> Slab:
+    """The structure of arrays for the model in `array`, rows in the order of the program's lists."""
+    cr = array.h.cr
+    b, p, k, d = (table(array, kind) for kind in ("block", "corner", "contact", "domain"))
+    first = np.searchsorted(_rows(b["address"], p["KNB"]), np.arange(len(b) + 1)).astype(np.uint32)
+    blocks = Blocks(
+        b["KBFIX"].astype(np.uint8),
+        first,
+        *_columns(b, "KX KY KXD KYD KTD KBM KBI KBFX KBFY KBFT KBRO"),
+    )
+    corners = Corners(_rows(p["address"], p["KR"]), *_columns(p, "KXP KYP KXCP KYCP KRAD KXDP KYDP"))
+    twin = _rows(k["address"], k["KL1"])
+    after = k[np.where(twin == NONE, 0, twin)]
+    straight = (after["KB1"] == k["KB1"]) & (after["KB2"] == k["KB2"])
+    same = straight | ((after["KB1"] == k["KB2"]) & (after["KB2"] == k["KB1"]))
+    contacts = Contacts(
+        _rows(b["address"], k["KB1"]),
+        _rows(b["address"], k["KB2"]),
+        _rows(p["address"], k["KCP1"]),
+        _rows(p["address"], k["KCP2"]),
+        np.where(same, twin, NONE).astype(np.uint32),
+        k["KCCOD"].astype(np.uint8),
+        (k["KCM"] - 1).astype(np.uint8),
+        *_columns(k, "KXC KYC KXDC KYDC KCS KCN KCFS KCFN"),
+    )
+    names = (
+        g.TDEL,
+        g.CON1,
+        g.CON2,
+        g.GRAVX,
+        g.GRAVY,
+        g.BETA,
+        g.DTOL,
+        g.GTOL,
+        g.BTOL,
+        g.DTOL2,
+        g.ETOL,
+        g.HTOL,
+    )
+    border, ftol2 = float(cr[g.DTOL] - cr[g.GTOL]), float(cr[g.FTOL] * cr[g.FTOL])
+    constants = Constants(border, ftol2, *(float(cr[i]) for i in names))
+    kn, ks, mu, coh = (cr[i : i + 50].copy() for i in (g.AKN, g.AKS, g.AMU, g.COH))
+    domains = _domains(array, d, p["address"], k["address"])
+    sums = np.array([cr[g.UPEND], cr[g.WFRIC], 0.0])
+    return Slab(constants, blocks, corners, contacts, domains, kn, ks, mu, coh, sums)
+
+
+def _domains(array: MainArray, rows: Any, corners: Any, contacts: Any) -> Domains:
+    """The loops of all domains, corners and contacts apart."""
+    lengths, items = [0], []
+    for idm in rows["address"]:
+        items += [item for item, _ in loop(array.h, int(idm))]
+        lengths.append(len(items))
+    found = np.array(items)
+    owner = np.repeat(np.arange(len(rows)), np.diff(lengths))
+    parts = []
+    for addresses in (corners, contacts):
+        row = _rows(addresses, found)
+        mine = row != NONE
+        parts += [np.searchsorted(owner[mine], np.arange(len(rows) + 1)).astype(np.uint32), row[mine]]
+    return Domains(rows["KUMAX"].copy(), *parts)
+
+
+@compiled
+def move(b: Blocks, p: Corners, c: Constants) -> float:
+    """Law of motion and new corners; returns the greatest velocity bound."""
+    fastest = 0.0
+    for i in range(len(b.x)):
+        fx, fy, ft = b.fx[i], b.fy[i], b.ft[i]
+        b.fx[i] = b.fy[i] = b.ft[i] = 0.0
+        if b.fixed[i]:
+            continue
+        x, y = b.x[i], b.y[i]
+        xd = (c.con1 * b.xd[i] + (fx / b.m[i] + c.gx) * c.dt) * c.con2
+        yd = (c.con1 * b.yd[i] + (fy / b.m[i] + c.gy) * c.dt) * c.con2
+        td = (c.con1 * b.td[i] + ft / b.i[i] * c.dt) * c.con2
+        xn, yn = x + xd * c.dt, y + yd * c.dt
+        b.xd[i], b.yd[i], b.td[i], b.x[i], b.y[i] = xd, yd, td, xn, yn
+        half = td * c.dt * 0.5
+        below = 1.0 + half * half
+        co, si = (1.0 - half * half) / below, (half + half) / below
+        for j in range(b.first[i], b.first[i + 1]):
+            rx, ry = p.x[j] - x, p.y[j] - y
+            nx, ny = co * rx - si * ry, si * rx + co * ry
+            p.x[j], p.y[j] = xn + nx, yn + ny
+            p.xd[j], p.yd[j] = xd - td * ny, yd + td * nx
+            rx, ry = p.xc[j] - x, p.yc[j] - y
+            p.xc[j], p.yc[j] = xn + (co * rx - si * ry), yn + (si * rx + co * ry)
+        fastest = max(fastest, max(abs(xd), abs(yd)) + abs(td) * b.reach[i])
+    return fastest
+
+
+@compiled
+def accumulate(s: Slab, fastest: float) -> None:
+    """Fictitious displacements of the domains, when they cannot wait; an event if one needs an update."""
+    b, p, k, d, c = s.blocks, s.corners, s.contacts, s.domains, s.constants
+    bound = (fastest + fastest) * c.dt
+    waiting = s.sums[UPEND]
+    if waiting + bound < c.htol:
+        s.sums[UPEND] = waiting + bound
+        return
+    for i in range(len(d.umax)):
+        lx, ly, hx, hy = np.inf, np.inf, -np.inf, -np.inf
+        for n in range(d.c[i], d.c[i + 1]):
+            j = d.corner[n]
+            vx, vy = p.xd[j], p.yd[j]
+            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+        for n in range(d.k[i], d.k[i + 1]):
+            j = d.contact[n]
+            for ib in (k.b1[j], k.b2[j]):
+                vx = b.xd[ib] - b.td[ib] * (k.y[j] - b.y[ib])
+                vy = b.yd[ib] + b.td[ib] * (k.x[j] - b.x[ib])
+                lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+        d.umax[i] += waiting + max(hx - lx, hy - ly) * c.dt
+        if d.umax[i] > c.etol:
+            s.sums[EVENTS] += 1
+    s.sums[UPEND] = 0.0
+
+
+@compiled
+def lean(mx: float, my: float, r: float, d: float, x: float, y: float) -> float:
+    """How far (x, y) leans over either end of an arc whose centre lies at (mx, my) from its corner."""
+    mm = mx * mx + my * my
+    along, across = d * (x * mx + y * my), r * (x * my - y * mx)
+    return max((along - across) / mm, (along + across) / mm)
+
+
+@compiled
+def corner_corner(p: Corners, i: int, j: int, c: Constants) -> tuple[float, float, float, float, bool]:
+    """Normal, overlap, distance of the contact point from the centre of `i`; False if it must change."""
+    dx, dy = p.xc[j] - p.xc[i], p.yc[j] - p.yc[i]
+    one = lean(p.xc[i] - p.x[i], p.yc[i] - p.y[i], p.rad[i], c.dtol, dx, dy)
+    two = lean(p.xc[j] - p.x[j], p.yc[j] - p.y[j], p.rad[j], c.dtol, -dx, -dy)
+    z = np.sqrt(dx * dx + dy * dy)
+    overlap = p.rad[i] + p.rad[j] - z
+    return dx / z, dy / z, overlap, p.rad[i] - overlap * 0.5, max(one, two) <= c.gtol
+
+
+@compiled
+def corner_edge(p: Corners, i: int, j: int, c: Constants) -> tuple[float, float, float, float, bool]:
+    """As corner_corner, for corner `i` on the edge that ends at `j`."""
+    a = p.before[j]
+    dx, dy = p.x[j] - p.x[a], p.y[j] - p.y[a]
+    z = np.sqrt(dx * dx + dy * dy)
+    ex, ey = dx / z, dy / z
+    x, y = p.xc[i] - p.x[a], p.yc[i] - p.y[a]
+    overlap = p.rad[i] - (y * ex - x * ey)
+    along = x * ex + y * ey
+    fits = along >= c.border and z - along >= c.border
+    return ey, -ex, overlap, p.rad[i] - overlap * 0.5, fits
+
+
+@compiled
+def touch(p: Corners, k: Contacts, j: int, c: Constants) -> tuple[float, float, float, bool]:
+    """New coordinates and overlap of contact `j`; its normal, the overlap before, False for an event."""
+    before = k.un[j]
+    ip, iq = k.p1[j], k.p2[j]
+    if k.code[j] == 1:
+        nx, ny, overlap, reach, fits = corner_corner(p, ip, iq, c)
+        k.x[j], k.y[j] = p.xc[ip] + nx * reach, p.yc[ip] + ny * reach
+    elif k.code[j] == 2:
+        nx, ny, overlap, reach, fits = corner_edge(p, ip, iq, c)
+        k.x[j], k.y[j] = p.xc[ip] + nx * reach, p.yc[ip] + ny * reach
+    else:
+        mx, my, overlap, reach, fits = corner_edge(p, iq, ip, c)
+        nx, ny = -mx, -my
+        k.x[j], k.y[j] = p.xc[iq] + mx * reach, p.yc[iq] + my * reach
+    k.un[j] = overlap
+    if overlap <= 0.0 or k.fn[j] == 0.0:
+        i = k.twin[j]
+        if i != NONE:
+            dx, dy = k.x[i] - k.x[j], k.y[i] - k.y[j]
+            fits = fits and dx * dx + dy * dy >= c.ftol2
+    return nx, ny, before, fits and -c.btol <= overlap <= c.dtol2
+
+
+@compiled
+def forces(s: Slab) -> None:
+    """All contacts: geometry, relative velocity, spring forces, friction, force sums of the blocks."""
+    b, p, k, c = s.blocks, s.corners, s.contacts, s.constants
+    for j in range(len(k.x)):
+        nx, ny, before, fits = touch(p, k, j, c)
+        if not fits:
+            s.sums[EVENTS] += 1
+        ib, jb, x, y, overlap = k.b1[j], k.b2[j], k.x[j], k.y[j], k.un[j]
+        xi, yi, xj, yj = x - b.x[ib], y - b.y[ib], x - b.x[jb], y - b.y[jb]
+        xd = (b.xd[jb] - b.td[jb] * yj) - (b.xd[ib] - b.td[ib] * yi)
+        yd = (b.yd[jb] + b.td[jb] * xj) - (b.yd[ib] + b.td[ib] * xi)
+        k.xd[j], k.yd[j] = xd, yd
+        if overlap <= 0.0:
+            k.fn[j] = k.fs[j] = k.us[j] = 0.0
+            continue
+        m = k.mat[j]
+        kn, ks = s.kn[m], s.ks[m]
+        closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
+        fn, fs = k.fn[j] + kn * (overlap - max(before, 0.0)), k.fs[j] + ks * (sliding * c.dt)
+        k.us[j] += sliding * c.dt
+        if fn <= 0.0:
+            fn, fs = 0.0, 0.0
+        most = s.coh[m] + s.mu[m] * fn
+        dashpot = c.beta * ks * sliding
+        if abs(fs) > most:
+            s.sums[WORK] += (abs(fs) - most) / ks * most
+            fs = most if fs > 0.0 else -most
+            dashpot = 0.0
+        k.fn[j], k.fs[j] = fn, fs
+        normal, shear = fn + c.beta * kn * closing, fs + dashpot
+        fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
+        b.fx[ib] -= fx
+        b.fy[ib] -= fy
+        b.ft[ib] -= xi * fy - yi * fx
+        b.fx[jb] += fx
+        b.fy[jb] += fy
+        b.ft[jb] += xj * fy - yj * fx
+
+
+@compiled
+def run_soa(s: Slab, n: int) -> None:
+    """`n` cycles: motion, corners, domains, contacts."""
+    for _ in range(n):
+        accumulate(s, move(s.blocks, s.corners, s.constants))
+        forces(s)
