@@ -62,6 +62,12 @@ def inlined(function: F) -> F:
     return kernel(function, inline=True)
 
 
-def is_cached() -> bool:
-    """True if compiled kernels of exactly these sources are on disk already."""
-    return CACHE.exists() and any(CACHE.rglob("*.nbc"))
+def is_cached(scheme: str) -> bool:
+    """True if a run in the word scheme `scheme` has left the kernels of exactly these sources on disk."""
+    return (CACHE / scheme).exists()
+
+
+def note_cached(scheme: str) -> None:
+    """Note that the kernels for `scheme` are on disk now."""
+    if CACHE.exists():
+        (CACHE / scheme).touch()
