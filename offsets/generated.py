@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "47a0237b1139219b748e025bd3ba6207b0a4cb3f393e512029206147d32379fa"
+DIGEST = "8529bf0fdce7027a0f334abeb18dd9e86e57b02ccd57079d9d44acb44d74bf99"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -96,7 +96,22 @@ KSA11 = (9, 9, 9)  # real: applied stress tensor (multiplied by block area)
 KSA12 = (10, 10, 10)  # real: applied stress tensor (multiplied by block area)
 KSA21 = (11, 11, 11)  # real: applied stress tensor (multiplied by block area)
 KSA22 = (12, 12, 12)  # real: applied stress tensor (multiplied by block area)
-NVSD = (12, 24, 48)
+KSJ11 = (13, 13, 13)  # real: Euler tensor: integral of density x' x' about the centroid
+KSJ12 = (14, 14, 14)  # real: Euler tensor: integral of density x' y'
+KSJ22 = (15, 15, 15)  # real: Euler tensor: integral of density y' y'
+KSAREA = (16, 16, 16)  # real: block area
+NVSD = (16, 32, 64)
+
+# fully-deformable extension of a block: heads of its two lists (page ours)
+KFG = (0, 0, 0)  # int: first grid-point of the block; 0 before GENERATE
+KFZ = (1, 1, 1)  # int: first zone of the block; 0 before GENERATE
+KFNG = (2, 2, 2)  # int: number of grid-points
+KFNZ = (3, 3, 3)  # int: number of zones
+KFMIX = (4, 4, 4)  # int: 1 if successive zones are pairs for mixed discretisation, else 0
+KFS11 = (6, 4, 3)  # real: stress that the zones begin with
+KFS12 = (7, 5, 4)  # real: stress that the zones begin with
+KFS22 = (8, 6, 5)  # real: stress that the zones begin with
+NVFD = (8, 12, 20)
 
 # one triangular zone of a fully-deformable block (page 55)
 KZ = (0, 0, 0)  # int: next zone in zone list; 0 at the end of the list
@@ -117,7 +132,9 @@ KYDG = (6, 5, 5)  # real: y velocity
 KGFX = (7, 6, 6)  # real: x force-sum
 KGFY = (8, 7, 7)  # real: y force-sum
 KGPM = (9, 8, 8)  # real: grid-point mass
-NVGP = (9, 16, 32)
+KGFIX = (9, 16, 32)  # int: velocities that are given, not calculated: 1 in x, 2 in y, 3 both
+KGEDGE = (10, 17, 33)  # int: 1 if its corner is a point of an edge, which is not rounded, else 0
+NVGP = (11, 18, 36)
 
 # domain extension: data of an edge-to-edge contact (page ours)
 KJL = (1, 1, 1)  # real: joint length p
@@ -142,16 +159,17 @@ NBLK = 10  # number of blocks
 NCON = 11  # number of contacts
 NDOM = 12  # number of domains
 NVIRT = 13  # number of virtual contacts among them
-NMADE = 14  # contacts made so far
-NBROKE = 15  # contacts broken so far
-NSHORT = 16  # edges that hold little more than their two roundings
-LROUND = 17  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 18  # address of the group that raised error NERR; 0 when there is none
-NWANT = 19  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 20  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 21  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 22  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 23
+NSOFT = 14  # number of deformable blocks
+NMADE = 15  # contacts made so far
+NBROKE = 16  # contacts broken so far
+NSHORT = 17  # edges that hold little more than their two roundings
+LROUND = 18  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 19  # address of the group that raised error NERR; 0 when there is none
+NWANT = 20  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 21  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 22  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 23  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 24
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -38,6 +38,8 @@ MESSAGES = {
     29: "restart file cannot be used",
     30: "address outside the main array",
     31: "file cannot be written",
+    32: "zone has turned inside out",
+    33: "zones do not fill the block",
 }
 
 

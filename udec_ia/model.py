@@ -13,17 +13,19 @@ from typing import TYPE_CHECKING, Any, Self, TextIO
 
 import numpy as np
 
-from offsets.generated import MCTOT, NBLK, NCON, TIME
+from offsets.generated import DTOL, MCTOT, NBLK, NCON, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops import settings
+from udec_ia.ops.change import change
 from udec_ia.ops.create import create
 from udec_ia.ops.cycle import cycle
 from udec_ia.ops.delete import delete
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
+from udec_ia.ops.zoning import NEAR, block_to_zone, generate
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -186,7 +188,7 @@ class Model:
     ) -> int:
         """CHANGE: attributes of the blocks in the range. Returns their number."""
         self._ready()
-        return settings.change(self.array, (x1, x2, y1, y2), type, material, constitutive)
+        return change(self.array, (x1, x2, y1, y2), type, material, constitutive)
 
     def generate(
         self,
@@ -198,10 +200,22 @@ class Model:
         gridpoints: list[tuple[float, float]] | None = None,
         zones: list[tuple[int, int, int]] | None = None,
         edge: float | None = None,
-    ) -> None:
-        """GENERATE: zones of a fully-deformable block. Error 24 without a block in the range, else 23."""
+    ) -> int:
+        """GENERATE: divide the first block in the range into zones. Returns its address."""
         self._ready()
-        settings.generate(self.array, (x1, x2, y1, y2))
+        self._boxes.forget()
+        where = (x1, x2, y1, y2)
+        ib = block_to_zone(self.array, where)
+        if mode.lower() == "manual":
+            if not gridpoints or not zones:
+                raise UdecError(
+                    26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
+                )
+            near = NEAR * float(self.h.cr[DTOL])
+            generate(self.array, ib, gridpoints, zones, near)
+        else:
+            raise UdecError(23, "automatic zones")
+        return ib
 
     def round(self, d: float) -> None:
         """ROUND: round every corner with the circle tangent at the distance d from it."""

@@ -122,7 +122,14 @@ COMMANDS = (
         "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
         "CHANGE 0 60 30 40 MATERIAL=2",
         numbers=RANGE,
-        words=(Word("Sdef", sets="type"), Word("Fdef", sets="type"), MATERIAL, CONSTITUTIVE),
+        words=(
+            Word("Sdef", sets="type"),
+            Word("Fdef", sets="type"),
+            Word("Rigid", sets="type"),
+            MATERIAL,
+            CONSTITUTIVE,
+        ),
+        ours="Rigid",
     ),
     Command(
         "CYcle",

@@ -52,8 +52,7 @@ HEADS: dict[str, tuple[int, ...]] = {
     "contact": (MCON,),
     "domain": (MDOM,),
 }
-
-
+SOFT = {MSDEF: "sdef", MFDEF: "fdef"}  # kind of the extension of a block with this head code
 SIZES: dict[str, Offset] = {"block": NVBL, "corner": NVCR, "contact": NVCN, "domain": NVDO}
 
 

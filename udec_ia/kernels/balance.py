@@ -23,16 +23,6 @@ from offsets.generated import (
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.shape import makeb
-
-
-@kernel
-def make_masses(h: Memory) -> None:
-    """Masses and moments of inertia of all blocks from the densities as they are now."""
-    ib = h.ci[IBPNT]
-    while ib != 0:
-        makeb(h, ib)
-        ib = iget(h, ib, KB)
 
 
 @kernel

@@ -212,7 +212,7 @@ def is_outline(h: Memory, iad: int, ib: int) -> bool:
     False if it bounds a space between blocks. A space may be a mere crack whose area has either sign; an
     outline has at least the area of the block, and it is negative.
     """
-    area, _, _, _ = geo(h, ib)
+    area, _, _, _, _, _ = geo(h, ib)
     return loop_area(h, iad, ib) < -area * real(h, 0.5)
 
 

@@ -6,35 +6,40 @@ can be taken up again at that very point and goes on as if it had not stopped.
 
 from __future__ import annotations
 
+from typing import Any
+
 from offsets.generated import JPHASE, MCTOT, NBROKE, NERR, NSPARE, TDEL, TIME
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
+from udec_ia.kernels.blocks import move_all
 from udec_ia.kernels.domains import accumulate
 from udec_ia.kernels.ford import ford_all
-from udec_ia.kernels.motion import motion_all
 from udec_ia.kernels.update import update_all
 
 BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 
 
 @kernel
-def run_cycles(h: Memory, n: int) -> int:
-    """Up to `n` cycles; returns how many were completed. Stops early when NERR is set."""
+def run_cycles(h: Memory, n: int, soft: Any) -> int:
+    """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
+
+    soft: None if all blocks are rigid, else what the laws CL2 to CL5 need (kernels.laws).
+    """
     done = 0
     while done < n:
         if h.ci[JPHASE] == BLOCKS:
             if h.ci[NSPARE] > 0 and not room(h, h.ci[NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
-            fastest = motion_all(h)
-            h.ci[JPHASE] = DOMAINS if accumulate(h, fastest) else CONTACTS
+            fastest = move_all(h, soft)
+            h.ci[JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
         if h.ci[JPHASE] == DOMAINS:
             if not update_all(h):
                 return done
             h.ci[JPHASE] = CONTACTS
         if h.ci[JPHASE] == CONTACTS:
             broken = h.ci[NBROKE]
-            ford_all(h)
+            ford_all(h, soft)
             h.ci[JPHASE] = BLOCKS if h.ci[NBROKE] == broken else BROKEN
         if h.ci[JPHASE] == BROKEN:  # domains that merged are looked through at once
             if not update_all(h):

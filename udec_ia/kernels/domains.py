@@ -19,6 +19,8 @@ hundredth of ETOL. A scene at rest pays nothing for its domains.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from offsets.generated import (
@@ -31,15 +33,10 @@ from offsets.generated import (
     KCCOD,
     KD,
     KDLOOP,
-    KTD,
     KUMAX,
-    KX,
     KXC,
-    KXD,
     KXDP,
-    KY,
     KYC,
-    KYD,
     KYDP,
     NERR,
     TDEL,
@@ -49,6 +46,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.points import velocity_at
 from udec_ia.kernels.segments import loop_start
 from udec_ia.kernels.touch import VIRTUAL
 
@@ -56,14 +54,7 @@ OVERLAP_TOO_GREAT = 15
 
 
 @kernel
-def velocity_at(h: Memory, ib: int, x: float, y: float) -> tuple[float, float]:
-    """Velocity of the point of block `ib` that is at (x, y)."""
-    td = getr(h, ib, KTD)
-    return getr(h, ib, KXD) - td * (y - getr(h, ib, KY)), getr(h, ib, KYD) + td * (x - getr(h, ib, KX))
-
-
-@kernel
-def relative_velocity(h: Memory, idm: int) -> float:
+def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
     """Greatest relative velocity, in x or in y, between two points of domain `idm` (ACCUM)."""
     if iget(h, idm, KDLOOP) == 0:
         return real(h, 0.0)
@@ -78,16 +69,16 @@ def relative_velocity(h: Memory, idm: int) -> float:
             lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
         elif iget(h, item, KCCOD) != VIRTUAL:
             x, y = getr(h, item, KXC), getr(h, item, KYC)
-            vx, vy = velocity_at(h, iget(h, item, KB1), x, y)
+            vx, vy = velocity_at(h, iget(h, item, KB1), item, x, y, soft)
             lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
-            vx, vy = velocity_at(h, iget(h, item, KB2), x, y)
+            vx, vy = velocity_at(h, iget(h, item, KB2), item, x, y, soft)
             lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
         if item == start and block == first:
             return max(hx - lx, hy - ly)
 
 
 @kernel
-def accumulate(h: Memory, fastest: float) -> bool:
+def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
     """Sum the fictitious displacements of one step; True if a domain is to be updated.
 
     fastest: a bound on the velocity of any point of any block in this step.
@@ -101,7 +92,7 @@ def accumulate(h: Memory, fastest: float) -> bool:
     most = real(h, 0.0)
     idm = h.ci[IDPNT]
     while idm != 0:
-        moved = relative_velocity(h, idm) * dt
+        moved = relative_velocity(h, idm, soft) * dt
         umax = getr(h, idm, KUMAX) + waiting + moved
         if umax + moved > h.cr[ETOL]:
             umax += moved

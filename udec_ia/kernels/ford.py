@@ -13,6 +13,8 @@ stored forces; it vanishes along a contact that slips and in an open one.
 
 from __future__ import annotations
 
+from typing import Any
+
 from offsets.generated import (
     AKN,
     AKS,
@@ -22,15 +24,10 @@ from offsets.generated import (
     COH,
     DTOL2,
     FTOL,
-    IBPNT,
     ICPNT,
     IERAD,
-    KB,
     KB1,
     KB2,
-    KBFT,
-    KBFX,
-    KBFY,
     KC,
     KCCOD,
     KCFN,
@@ -44,14 +41,9 @@ from offsets.generated import (
     KD2,
     KL1,
     KLB1,
-    KTD,
-    KX,
     KXC,
-    KXD,
     KXDC,
-    KY,
     KYC,
-    KYD,
     KYDC,
     NBROKE,
     NERR,
@@ -63,9 +55,10 @@ from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.segments import ahead_by, on_arc, same_segment
-from udec_ia.kernels.touch import CORNER_CORNER, EDGE_CORNER, VIRTUAL, ce, coord, faces
+from udec_ia.kernels.touch import CORNER_CORNER, EDGE_CORNER, VIRTUAL, ce, faces
 
 OVERLAP_TOO_GREAT = 15
 
@@ -148,24 +141,11 @@ def drop(h: Memory, ic: int, overlap: float) -> bool:
 
 
 @inlined
-def putfce(h: Memory, ib: int, fx: float, fy: float, x: float, y: float) -> None:
-    """Add the force (fx, fy) that acts at (x, y) to the force sums of block `ib` (PUTFCE)."""
-    putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
-    putr(h, ib, KBFY, getr(h, ib, KBFY) + fy)
-    moment = (x - getr(h, ib, KX)) * fy - (y - getr(h, ib, KY)) * fx
-    putr(h, ib, KBFT, getr(h, ib, KBFT) + moment)
-
-
-@inlined
-def cvel(h: Memory, ic: int) -> tuple[float, float]:
+def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
     """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL)."""
-    ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
     x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-    wi, wj = getr(h, ib, KTD), getr(h, jb, KTD)
-    vxi = getr(h, ib, KXD) - wi * (y - getr(h, ib, KY))
-    vyi = getr(h, ib, KYD) + wi * (x - getr(h, ib, KX))
-    vxj = getr(h, jb, KXD) - wj * (y - getr(h, jb, KY))
-    vyj = getr(h, jb, KYD) + wj * (x - getr(h, jb, KX))
+    vxi, vyi = velocity_at(h, iget(h, ic, KB1), ic, x, y, soft)
+    vxj, vyj = velocity_at(h, iget(h, ic, KB2), ic, x, y, soft)
     xd, yd = vxj - vxi, vyj - vyi
     putr(h, ic, KXDC, xd)
     putr(h, ic, KYDC, yd)
@@ -173,7 +153,7 @@ def cvel(h: Memory, ic: int) -> tuple[float, float]:
 
 
 @inlined
-def ford(h: Memory, ic: int) -> None:
+def ford(h: Memory, ic: int, soft: Any) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it."""
     before = getr(h, ic, KCN)
     nx, ny, overlap = settle(h, ic)
@@ -183,7 +163,7 @@ def ford(h: Memory, ic: int) -> None:
     still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, overlap):
         return  # an open contact looks at its neighbours only when the domain pass has run
-    xd, yd = cvel(h, ic)
+    xd, yd = cvel(h, ic, soft)
     if overlap <= zero:
         no_force(h, ic)
         return
@@ -211,21 +191,21 @@ def ford(h: Memory, ic: int) -> None:
     shear = fs + dashpot
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-    putfce(h, iget(h, ic, KB1), -fx, -fy, x, y)
-    putfce(h, iget(h, ic, KB2), fx, fy, x, y)
+    putfce(h, iget(h, ic, KB1), ic, -fx, -fy, x, y, soft)
+    putfce(h, iget(h, ic, KB2), ic, fx, fy, x, y, soft)
     if overlap > h.cr[DTOL2] and h.ci[NERR] == 0:
         h.ci[NERR] = OVERLAP_TOO_GREAT
         h.ci[IERAD] = ic
 
 
 @kernel
-def ford_all(h: Memory) -> None:
+def ford_all(h: Memory, soft: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[ICPNT]
     while ic != 0:
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
-            ford(h, ic)
+            ford(h, ic, soft)
         ic = following
 
 
@@ -238,25 +218,3 @@ def settle_all(h: Memory) -> None:
         if iget(h, ic, KCCOD) != VIRTUAL:
             drop(h, ic, restart(h, ic))
         ic = following
-
-
-@kernel
-def sum_all_forces(h: Memory) -> None:
-    """Force sums of all blocks from the forces stored in the contacts; the contacts stay as they are."""
-    zero = real(h, 0.0)
-    ib = h.ci[IBPNT]
-    while ib != 0:
-        putr(h, ib, KBFX, zero)
-        putr(h, ib, KBFY, zero)
-        putr(h, ib, KBFT, zero)
-        ib = iget(h, ib, KB)
-    ic = h.ci[ICPNT]
-    while ic != 0:
-        if getr(h, ic, KCFN) != zero:
-            nx, ny, _, _ = coord(h, ic)
-            fn, fs = getr(h, ic, KCFN), getr(h, ic, KCFS)
-            fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
-            x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-            putfce(h, iget(h, ic, KB1), -fx, -fy, x, y)
-            putfce(h, iget(h, ic, KB2), fx, fy, x, y)
-        ic = iget(h, ic, KC)

@@ -15,8 +15,6 @@ from offsets.generated import (
     CON2,
     GRAVX,
     GRAVY,
-    IBPNT,
-    KB,
     KBFIX,
     KBFT,
     KBFX,
@@ -71,39 +69,35 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
 
 
 @kernel
-def motion(h: Memory, ib: int) -> float:
-    """Law of motion for block `ib` (MOTION); resets its force sums.
-
-    Returns a bound on the velocity, in x or in y, of any point of the block.
-    """
+def accelerate(h: Memory, ib: int) -> None:
+    """Velocities of block `ib` at the end of the step, from its force sums, which are reset."""
     zero = real(h, 0.0)
     fx, fy, ft = getr(h, ib, KBFX), getr(h, ib, KBFY), getr(h, ib, KBFT)
     putr(h, ib, KBFX, zero)
     putr(h, ib, KBFY, zero)
     putr(h, ib, KBFT, zero)
     if iget(h, ib, KBFIX) == 1:
-        return zero
+        return
     dt, con1, con2 = h.cr[TDEL], h.cr[CON1], h.cr[CON2]
     bm = getr(h, ib, KBM)
-    xd = (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2
-    yd = (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2
-    td = (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2
+    putr(h, ib, KXD, (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2)
+    putr(h, ib, KYD, (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2)
+    putr(h, ib, KTD, (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2)
+
+
+@kernel
+def motion(h: Memory, ib: int) -> float:
+    """Law of motion for block `ib` (MOTION).
+
+    Returns a bound on the velocity, in x or in y, of any point of the block.
+    """
+    accelerate(h, ib)
+    if iget(h, ib, KBFIX) == 1:
+        return real(h, 0.0)
+    dt = h.cr[TDEL]
+    xd, yd, td = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KTD)
     x, y = getr(h, ib, KX), getr(h, ib, KY)
-    putr(h, ib, KXD, xd)
-    putr(h, ib, KYD, yd)
-    putr(h, ib, KTD, td)
     putr(h, ib, KX, x + xd * dt)
     putr(h, ib, KY, y + yd * dt)
     pvel(h, ib, x, y)
     return max(abs(xd), abs(yd)) + abs(td) * getr(h, ib, KBRO)
-
-
-@kernel
-def motion_all(h: Memory) -> float:
-    """Move every block; returns the greatest velocity bound."""
-    fastest = real(h, 0.0)
-    ib = h.ci[IBPNT]
-    while ib != 0:
-        fastest = max(fastest, motion(h, ib))
-        ib = iget(h, ib, KB)
-    return fastest

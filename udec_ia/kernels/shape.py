@@ -8,7 +8,8 @@ angle. With t the unit vector along an edge, clockwise, and Jt = (ty, -tx) point
     centre = corner - D t_in + R J t_in = corner + D t_out + R J t_out
 
 A concave corner gets R < 0: it carries no contact, the edges at it count down to the corner itself.
-A flat corner (R would be infinite) gets R = 0 and is a point of one long edge.
+A flat corner (R would be infinite) gets R = 0 and is a point of one long edge; so is, for good, a corner that
+GENERATE has put on an edge (KGEDGE), however the block deforms.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from offsets.generated import (
     KBI,
     KBM,
     KBRO,
+    KGEDGE,
+    KGP,
     KMAT,
     KP,
     KR,
@@ -41,14 +44,15 @@ FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a st
 
 
 @kernel
-def geo(h: Memory, ib: int) -> tuple[float, float, float, float]:
-    """Area, centroid x and y, and second moment of area about the centroid (GEO, INERT).
+def geo(h: Memory, ib: int) -> tuple[float, float, float, float, float, float]:
+    """Area, centroid x and y, and second moments of area xx, xy, yy about the centroid (GEO, INERT).
 
     Sums over the triangles that a first corner makes with every edge; a clockwise outline is positive.
     """
     ip0 = iget(h, ib, KP)
     x0, y0 = getr(h, ip0, KXP), getr(h, ip0, KYP)
-    twice, sx, sy, second = real(h, 0.0), real(h, 0.0), real(h, 0.0), real(h, 0.0)
+    zero, half = real(h, 0.0), real(h, 0.5)
+    twice, sx, sy, sxx, sxy, syy = zero, zero, zero, zero, zero, zero
     ip = ip0
     while True:
         iq = iget(h, ip, KR)  # the edge from iq to ip
@@ -58,25 +62,27 @@ def geo(h: Memory, ib: int) -> tuple[float, float, float, float]:
         twice += cross
         sx += cross * (ax + bx)
         sy += cross * (ay + by)
-        second += cross * ((ax * ax + ay * ay) + (ax * bx + ay * by) + (bx * bx + by * by))
+        sxx += cross * (ax * ax + ax * bx + bx * bx)
+        sxy += cross * (ax * ay + (ax * by + ay * bx) * half + bx * by)
+        syy += cross * (ay * ay + ay * by + by * by)
         ip = iq
         if ip == ip0:
             break
-    area = twice * real(h, 0.5)
-    three = real(h, 3.0)
+    area, three, twelve = twice * half, real(h, 3.0), real(h, 12.0)
     cx, cy = sx / (three * twice), sy / (three * twice)
-    return area, x0 + cx, y0 + cy, second / real(h, 12.0) - area * (cx * cx + cy * cy)
+    jxx, jyy = sxx / twelve - area * cx * cx, syy / twelve - area * cy * cy
+    return area, x0 + cx, y0 + cy, jxx, sxy / twelve - area * cx * cy, jyy
 
 
 @kernel
 def makeb(h: Memory, ib: int) -> None:
     """Install centroid, mass, moment of inertia and greatest corner distance of block `ib` (MAKEB)."""
-    area, x, y, second = geo(h, ib)
+    area, x, y, jxx, _, jyy = geo(h, ib)
     putr(h, ib, KX, x)
     putr(h, ib, KY, y)
     dens = h.cr[DENS + iget(h, ib, KMAT) - 1]
     putr(h, ib, KBM, dens * area)
-    putr(h, ib, KBI, dens * second)
+    putr(h, ib, KBI, dens * (jxx + jyy))
     ip0 = iget(h, ib, KP)
     far = real(h, 0.0)
     ip = ip0
@@ -99,10 +105,17 @@ def zcs(h: Memory, ip: int) -> tuple[float, float, float]:
 
 
 @kernel
+def is_edge_point(h: Memory, ip: int) -> bool:
+    """True if corner `ip` was put on an edge by GENERATE."""
+    ig = iget(h, ip, KGP)
+    return ig != 0 and iget(h, ig, KGEDGE) == 1
+
+
+@kernel
 def crad(h: Memory, ib: int) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
 
-    Returns the number of edges whose straight part is shorter than FTOL.
+    Returns the number of edges between two roundings whose straight part is shorter than FTOL.
     """
     d = h.cr[DTOL]
     short = 0
@@ -112,12 +125,13 @@ def crad(h: Memory, ib: int) -> int:
         iq = next_corner(h, ib, ip)
         z, c1, s1 = zcs(h, ip)
         _, c2, s2 = zcs(h, iq)
-        if z - d - d < h.cr[FTOL]:
+        on_edge = is_edge_point(h, ip)
+        if z - d - d < h.cr[FTOL] and not (on_edge or is_edge_point(h, iget(h, ip, KR))):
             short += 1
         turn = c2 * s1 - c1 * s2  # sine of the clockwise turn
         rad = real(h, 0.0)
         x, y = getr(h, ip, KXP), getr(h, ip, KYP)
-        if abs(turn) >= real(h, FLAT):
+        if abs(turn) >= real(h, FLAT) and not on_edge:
             if abs(s1 - s2) > abs(c1 - c2):  # the form with the larger denominator (report 2.3)
                 rad = d * (c1 + c2) / (s1 - s2)
             else:

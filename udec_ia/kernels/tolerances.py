@@ -31,7 +31,7 @@ from offsets.generated import (
 )
 from udec_ia.heap.accessors import Memory, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.shape import crad, zcs
+from udec_ia.kernels.shape import crad, is_edge_point, zcs
 
 
 @kernel
@@ -51,7 +51,11 @@ def tolset(h: Memory, d: float) -> None:
 
 @kernel
 def edges(h: Memory) -> tuple[float, float, int]:
-    """Mean length of all edges, length of the shortest one and the corner where it ends."""
+    """Mean length of all edges, length of the shortest one and the corner where it ends.
+
+    An edge between two roundings counts with its length, an edge from a rounding to an edge point with
+    twice its length, and one between two edge points not at all.
+    """
     total, least = real(h, 0.0), real(h, np.inf)
     n, shortest = 0, int64(0)
     ib = h.ci[IBPNT]
@@ -60,10 +64,14 @@ def edges(h: Memory) -> tuple[float, float, int]:
         ip = ip0
         while True:
             z, _, _ = zcs(h, ip)
-            total += z
-            n += 1
-            if z < least:
-                least, shortest = z, ip
+            one, two = is_edge_point(h, ip), is_edge_point(h, iget(h, ip, KR))
+            if one != two:
+                z += z
+            if not (one and two):
+                total += z
+                n += 1
+                if z < least:
+                    least, shortest = z, ip
             ip = iget(h, ip, KR)
             if ip == ip0:
                 break

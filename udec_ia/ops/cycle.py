@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 from time import perf_counter
 
+import numpy as np
+
 from offsets.generated import (
     AKN,
     AKS,
@@ -26,30 +28,43 @@ from offsets.generated import (
     IBPNT,
     IERAD,
     JPHASE,
+    KB,
     KB1,
     KB2,
+    KBEX,
     KCM,
     KCN,
+    KFZ,
     KMAT,
+    KX,
     KXC,
+    KY,
     KYC,
     MCON,
     MCTOT,
     MDOM,
+    MFDEF,
+    MFREE,
     NBLK,
     NCON,
     NCYC,
     NERR,
+    NSOFT,
     TDEL,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.balance import greatest_stiffness, least_mass, make_masses
+from udec_ia.kernels.balance import greatest_stiffness, least_mass
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
+from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
+from udec_ia.kernels.masses import make_masses
+from udec_ia.kernels.timestep import soft_step
 from udec_ia.ops.arrange import arrange
+from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
+from udec_ia.ops.soft import soft
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -70,6 +85,7 @@ def prepare(array: MainArray) -> None:
     arrange(array)
     h = array.h
     check_all_edges(array, float(h.cr[DTOL]))
+    _check_zones(array)
     h.cr[TDEL] = h.cr[FRAC] * critical_step(array)
     for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
         half = h.cr[alpha] * h.cr[TDEL] / 2
@@ -80,6 +96,15 @@ def prepare(array: MainArray) -> None:
             raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
         h.cr[con1] = 1 - half
         h.cr[con2] = 1 / (1 + half)
+
+
+def _check_zones(array: MainArray) -> None:
+    """Error 26 for a fully-deformable block without zones."""
+    h = array.h
+    for ib in chain(h, int(h.ci[IBPNT]), KB) if h.ci[NSOFT] else ():
+        if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFZ) == 0:
+            place = f"({getr(h, ib, KX):g}, {getr(h, ib, KY):g})"
+            raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
 
 
 def critical_step(array: MainArray) -> float:
@@ -108,7 +133,10 @@ def critical_step(array: MainArray) -> float:
         raise UdecError(
             23, "constitutive numbers 2 to 5", "use constitutive number 1", group=int(foreign or other)
         )
-    return 2 * math.sqrt(float(mass) / float(stiffness))
+    ratio = float(mass) / float(stiffness)
+    if h.ci[NSOFT]:
+        ratio = min(ratio, float(soft_step(h, np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype))[0]))
+    return 2 * math.sqrt(ratio)
 
 
 def cycle(array: MainArray, n: int, report: Report | None = None, every: int | None = None) -> int:
@@ -125,7 +153,7 @@ def cycle(array: MainArray, n: int, report: Report | None = None, every: int | N
     done, piece = 0, every or FIRST_PIECE
     while done < n:
         start = perf_counter()
-        done += int(run_cycles(array.h, min(piece, n - done)))
+        done += int(run_cycles(array.h, min(piece, n - done), soft(array)))
         _raise_error(array)
         if report is not None:
             report(done)
@@ -151,6 +179,9 @@ def _raise_error(array: MainArray) -> None:
         return
     group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
+    if number == ZONE_INSIDE_OUT:
+        detail = f"zone@{group} in cycle {int(h.ci[MCTOT])}"
+        raise UdecError(number, detail, "take stiffer zones, a smaller FRACTION or fewer loads", group=group)
     if iget(h, group, HEAD) == MDOM:
         detail = (
             f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} in cycle "

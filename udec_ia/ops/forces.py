@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.ford import sum_all_forces
+from udec_ia.kernels.sums import sum_all_forces
+from udec_ia.ops.soft import soft
 
 
 def renew_forces(array: MainArray) -> None:
@@ -11,4 +12,4 @@ def renew_forces(array: MainArray) -> None:
 
     A block that was cut or has lost a neighbour must not feel in the next cycle what it felt before.
     """
-    sum_all_forces(array.h)
+    sum_all_forces(array.h, soft(array))

@@ -1,9 +1,8 @@
-"""The commands that set numbers: PROPERTY, GRAVITY, DAMPING, FRACTION, SCALE, FIX, FREE, CHANGE, RSET."""
+"""The commands that set numbers: PROPERTY, GRAVITY, DAMPING, FRACTION, SCALE, FIX, FREE, RSET."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from offsets.generated import (
     AKN,
@@ -20,13 +19,7 @@ from offsets.generated import (
     FRAC,
     GRAVX,
     GRAVY,
-    KB1,
     KBFIX,
-    KCC,
-    KCM,
-    KCONS,
-    KMAT,
-    KP,
     KTD,
     KXD,
     KXDP,
@@ -37,10 +30,11 @@ from offsets.generated import (
     SHEAR,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import iget, puti, putr
+from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.lists import is_corner, nextcp
-from udec_ia.ops.limits import constitutive_number, finite, material_number, not_negative
+from udec_ia.kernels.lists import is_corner
+from udec_ia.ops.limits import finite, material_number, not_negative
+from udec_ia.ops.lists import items
 from udec_ia.ops.ranges import Range, blocks_in
 
 DEFAULT_FRACTION = 0.1
@@ -126,55 +120,10 @@ def _stop(array: MainArray, ib: int) -> None:
     h = array.h
     for k in (KXD, KYD, KTD):
         putr(h, ib, k, 0.0)
-    for item in items(array, ib):
+    for item in items(h, ib):
         if is_corner(h, item):
             putr(h, item, KXDP, 0.0)
             putr(h, item, KYDP, 0.0)
-
-
-def items(array: MainArray, ib: int) -> Iterator[int]:
-    """Corners and contacts of block `ib`, clockwise."""
-    first = item = iget(array.h, ib, KP)
-    while True:
-        yield item
-        item = nextcp(array.h, ib, item)
-        if item == first:
-            return
-
-
-def change(
-    array: MainArray, where: Range, kind: str | None, material: int | None, constitutive: int | None
-) -> int:
-    """CHANGE: attributes of the blocks in the range. Returns their number.
-
-    A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
-    follow a new material only before the first cycle.
-    """
-    if kind not in (None, "sdef", "fdef"):
-        raise UdecError(10, f"{kind}", "sdef or fdef")
-    if kind is not None:
-        raise UdecError(23, f"blocks of type {kind}")
-    if material is not None:
-        material_number(material)
-    if constitutive is not None:
-        constitutive_number(constitutive)
-    blocks = blocks_in(array, where)
-    h = array.h
-    for ib in blocks:
-        contacts = [ic for ic in items(array, ib) if not is_corner(h, ic) and iget(h, ic, KB1) == ib]
-        for number, of_block, of_contact in ((material, KMAT, KCM), (constitutive, KCONS, KCC)):
-            if number is not None:
-                puti(h, ib, of_block, number)
-                for ic in contacts:
-                    puti(h, ic, of_contact, number)
-    return len(blocks)
-
-
-def generate(array: MainArray, where: Range) -> None:
-    """GENERATE: zones of the first block in the range. Error 24 if there is none."""
-    if not blocks_in(array, where):
-        raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where))
-    raise UdecError(23, "zones of fully-deformable blocks")
 
 
 def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:

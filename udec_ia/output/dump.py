@@ -19,7 +19,7 @@ from offsets.table import Field, lay_out, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.walk import HEADS
+from udec_ia.inspect.walk import HEADS, SOFT
 
 TABLE = read_table()
 POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
@@ -87,12 +87,16 @@ def _pointers(h: Memory, addresses: Any, kind: str) -> list[tuple[Any, str]]:
     """For every pointer field of a kind: the addresses it holds in these groups, and what it leads to."""
     group = TABLE.group(kind)
     offset = lay_out(group, _ratio(h)).offset
-    return [
-        (h.ia[addresses + offset[field.name] + i - 1].astype(np.int64), field.target)
-        for field in group.fields
-        for i in range(field.count)
-        if field.target
-    ]
+    found: list[tuple[Any, str]] = []
+    for field in group.fields:
+        for i in range(field.count if field.target else 0):
+            values = h.ia[addresses + offset[field.name] + i - 1].astype(np.int64)
+            if field.target == "soft":  # the owner's head code says what its extension is
+                heads = h.ia[addresses - 1]
+                found += [(values[heads == code], extension) for code, extension in SOFT.items()]
+            else:
+                found.append((values, str(field.target)))
+    return found
 
 
 def _junk(h: Memory) -> list[Span]:

@@ -1,0 +1,37 @@
+"""The block pass: every block moves by the law of its type (report 2.6).
+
+`soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code,
+and such a scene neither compiles nor tests anything about deformable blocks. Otherwise it holds what the
+laws CL2 to CL5 need.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from offsets.generated import IBPNT, KB, MFDEF, MSDEF
+from udec_ia.heap.accessors import HEAD, Memory, iget, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.fdef import move_fdef
+from udec_ia.kernels.motion import motion
+from udec_ia.kernels.sdef import move_sdef
+
+
+@kernel
+def move_all(h: Memory, soft: Any) -> float:
+    """Move every block; returns a bound on the velocity, in x or in y, of any point."""
+    fastest = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        if soft is not None:
+            kind = iget(h, ib, HEAD)
+            if kind == MFDEF:
+                fastest = max(fastest, move_fdef(h, ib, soft))
+            elif kind == MSDEF:
+                fastest = max(fastest, move_sdef(h, ib, soft))
+            else:
+                fastest = max(fastest, motion(h, ib))
+        else:
+            fastest = max(fastest, motion(h, ib))
+        ib = iget(h, ib, KB)
+    return fastest

@@ -1,0 +1,22 @@
+"""Symmetric tensors in the plane, as three numbers 11, 12, 22, and how they turn."""
+
+from __future__ import annotations
+
+from udec_ia.heap.accessors import Memory, real
+from udec_ia.heap.jit import inlined
+
+
+@inlined
+def cayley(h: Memory, angle: float) -> tuple[float, float]:
+    """Cosine and sine of the rotation whose half angle has the tangent `angle`/2: orthogonal to rounding."""
+    one, half = real(h, 1.0), angle * real(h, 0.5)
+    below = one + half * half
+    return (one - half * half) / below, (half + half) / below
+
+
+@inlined
+def turned(s11: float, s12: float, s22: float, c: float, s: float) -> tuple[float, float, float]:
+    """The tensor turned anticlockwise by the angle with cosine `c` and sine `s`."""
+    cc, cs, ss = c * c, c * s, s * s
+    t = cs * (s12 + s12)
+    return cc * s11 - t + ss * s22, cs * (s11 - s22) + (cc - ss) * s12, ss * s11 + t + cc * s22

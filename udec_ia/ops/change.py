@@ -1,0 +1,189 @@
+"""CHANGE: type, material and constitutive numbers of blocks (report 4.2, 4.3).
+
+What a change of type keeps. Momentum and angular momentum: always. Stress: a rigid block that becomes
+deformable in a run begins with the mean stress of the contact forces on it, so that a block at rest stays
+at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
+simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
+lost. Masses never change after the first cycle.
+"""
+
+from __future__ import annotations
+
+from offsets.generated import (
+    KB1,
+    KBEX,
+    KBI,
+    KBM,
+    KCC,
+    KCM,
+    KCONS,
+    KFG,
+    KFS11,
+    KFS12,
+    KFS22,
+    KFZ,
+    KG,
+    KGP,
+    KMAT,
+    KS111,
+    KS112,
+    KS122,
+    KSA11,
+    KSA12,
+    KSA21,
+    KSA22,
+    KSAREA,
+    KTD,
+    KX,
+    KXD,
+    KXDP,
+    KXP,
+    KY,
+    KYD,
+    KYDP,
+    KYP,
+    KZ,
+    MCTOT,
+    MFDEF,
+    MRIG,
+    MSDEF,
+    NSOFT,
+    NVFD,
+    NVGP,
+    NVSD,
+    NVZO,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.memory import find, lose
+from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.masses import share_mass, zone_means
+from udec_ia.kernels.sdef import put_stress
+from udec_ia.kernels.shape import geo
+from udec_ia.ops.forces import renew_forces
+from udec_ia.ops.limits import constitutive_number, material_number
+from udec_ia.ops.lists import chain, items
+from udec_ia.ops.memory import require
+from udec_ia.ops.ranges import Range, blocks_in
+
+TYPES = {"rigid": MRIG, "sdef": MSDEF, "fdef": MFDEF}
+Stress = tuple[float, float, float]  # 11, 12, 22
+
+
+def change(
+    array: MainArray, where: Range, kind: str | None, material: int | None, constitutive: int | None
+) -> int:
+    """CHANGE: attributes of the blocks in the range. Returns their number.
+
+    A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
+    follow a new material only before the first cycle. Errors 4, 9 and 10; nothing is changed then.
+    """
+    if kind is not None and kind not in TYPES:
+        raise UdecError(10, f"{kind}", ", ".join(TYPES))
+    if material is not None:
+        material_number(material)
+    if constitutive is not None:
+        constitutive_number(constitutive)
+    blocks = blocks_in(array, where)
+    if kind is not None:
+        change_types(array, blocks, TYPES[kind])
+    h = array.h
+    for ib in blocks:
+        contacts = [ic for ic in items(h, ib) if not is_corner(h, ic) and iget(h, ic, KB1) == ib]
+        for number, of_block, of_contact in ((material, KMAT, KCM), (constitutive, KCONS, KCC)):
+            if number is not None:
+                puti(h, ib, of_block, number)
+                for ic in contacts:
+                    puti(h, ic, of_contact, number)
+    return len(blocks)
+
+
+def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
+    """Make all `blocks` the type `kind`; memory is found before the first one changes."""
+    changing = [ib for ib in blocks if iget(array.h, ib, HEAD) != kind]
+    require(array, len(changing) * (size_of(array.h, NVSD) + size_of(array.h, NVFD)))
+    h = array.h
+    rigid = [ib for ib in changing if iget(h, ib, HEAD) == MRIG]
+    for ib in rigid:
+        _become(h, ib, MSDEF, (0.0, 0.0, 0.0))
+    if h.ci[MCTOT] > 0:
+        renew_forces(array)
+        for ib in rigid:
+            _put_stress(h, ib, applied_stress(h, ib))
+    for ib in changing:
+        if iget(h, ib, HEAD) != kind:
+            _become(h, ib, kind, mean_stress(h, ib))
+    if h.ci[MCTOT] > 0:
+        renew_forces(array)
+
+
+def _become(h: Memory, ib: int, kind: int, stress: Stress) -> None:
+    """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one."""
+    if iget(h, ib, HEAD) == MFDEF:
+        _lose_zones(h, ib)
+    if iget(h, ib, HEAD) != MRIG:
+        lose(h, iget(h, ib, KBEX), NVSD if iget(h, ib, HEAD) == MSDEF else NVFD)
+        h.ci[NSOFT] -= 1
+    puti(h, ib, HEAD, kind)
+    puti(h, ib, KBEX, 0)
+    if kind != MRIG:
+        puti(h, ib, KBEX, find(h, NVSD if kind == MSDEF else NVFD))
+        h.ci[NSOFT] += 1
+        _put_stress(h, ib, stress)
+    share_mass(h, ib)
+
+
+def _put_stress(h: Memory, ib: int, stress: Stress) -> None:
+    """Internal stress of simply-deformable block `ib`, or that which the zones of `ib` are to begin with."""
+    s11, s12, s22 = stress
+    if iget(h, ib, HEAD) == MSDEF:
+        put_stress(h, iget(h, ib, KBEX), *(h.cr.dtype.type(s) for s in stress))
+        return
+    for k, value in ((KFS11, s11), (KFS12, s12), (KFS22, s22)):
+        putr(h, iget(h, ib, KBEX), k, value)
+
+
+def _lose_zones(h: Memory, ib: int) -> None:
+    """Give back zones and grid-points of block `ib`, which goes on as a rigid body with their momentum."""
+    ie = iget(h, ib, KBEX)
+    turning = float(getr(h, ib, KBI)) * float(getr(h, ib, KTD))
+    for item in items(h, ib):
+        if is_corner(h, item):
+            puti(h, item, KGP, 0)
+    for ig in chain(h, iget(h, ie, KFG), KG):
+        lose(h, ig, NVGP)
+    for iz in chain(h, iget(h, ie, KFZ), KZ):
+        lose(h, iz, NVZO)
+    area, _, _, jxx, _, jyy = geo(h, ib)
+    second = float(getr(h, ib, KBM)) * (jxx + jyy) / area
+    putr(h, ib, KBI, second)
+    putr(h, ib, KTD, turning / second if second else 0.0)
+    _renew_corners(h, ib)
+
+
+def _renew_corners(h: Memory, ib: int) -> None:
+    """Velocities of the corners of block `ib` from those of the block."""
+    x, y, td = (float(getr(h, ib, k)) for k in (KX, KY, KTD))
+    for ip in items(h, ib):
+        if is_corner(h, ip):
+            putr(h, ip, KXDP, float(getr(h, ib, KXD)) - td * (float(getr(h, ip, KYP)) - y))
+            putr(h, ip, KYDP, float(getr(h, ib, KYD)) + td * (float(getr(h, ip, KXP)) - x))
+
+
+def applied_stress(h: Memory, ib: int) -> Stress:
+    """Stress in simply-deformable block `ib` that would balance the applied stress."""
+    ie = iget(h, ib, KBEX)
+    s11, s12, s21, s22, area = (float(getr(h, ie, k)) for k in (KSA11, KSA12, KSA21, KSA22, KSAREA))
+    return s11 / area, (s12 + s21) / 2 / area, s22 / area
+
+
+def mean_stress(h: Memory, ib: int) -> Stress:
+    """Mean stress by area in deformable block `ib`."""
+    ie = iget(h, ib, KBEX)
+    if iget(h, ib, HEAD) == MSDEF:
+        return float(getr(h, ie, KS111)), float(getr(h, ie, KS112)), float(getr(h, ie, KS122))
+    if iget(h, ie, KFZ) == 0:
+        return float(getr(h, ie, KFS11)), float(getr(h, ie, KFS12)), float(getr(h, ie, KFS22))
+    area, s11, s12, s22 = zone_means(h, ie)
+    return float(s11 / area), float(s12 / area), float(s22 / area)

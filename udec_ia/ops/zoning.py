@@ -1,0 +1,329 @@
+"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1).
+
+Grid-points within 0.9 D of a corner are placed on it, others within 0.9 D of an edge on the edge, where
+they become corners of the block; every corner must have one. What does not fit is refused before anything
+is changed, and a grid-point that does not stay where it was asked for is reported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from offsets.generated import (
+    DTOL,
+    KBEX,
+    KCCOD,
+    KCOR,
+    KD1,
+    KD2,
+    KFG,
+    KFMIX,
+    KFNG,
+    KFNZ,
+    KFS11,
+    KFS12,
+    KFS22,
+    KFZ,
+    KG,
+    KGEDGE,
+    KGP,
+    KTD,
+    KX,
+    KXD,
+    KXDG,
+    KXG,
+    KXP,
+    KY,
+    KYD,
+    KYDG,
+    KYG,
+    KYP,
+    KZ,
+    KZG,
+    KZS11,
+    KZS12,
+    KZS22,
+    MCTOT,
+    MFDEF,
+    NSHORT,
+    NVCN,
+    NVCR,
+    NVDO,
+    NVFD,
+    NVGP,
+    NVZO,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.memory import find
+from udec_ia.kernels.bridge import flag
+from udec_ia.kernels.ford import restart
+from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.masses import share_mass
+from udec_ia.kernels.shape import crad
+from udec_ia.kernels.split import corner_on_edge
+from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.ops.change import change_types
+from udec_ia.ops.forces import renew_forces
+from udec_ia.ops.lists import items
+from udec_ia.ops.memory import require
+from udec_ia.ops.ranges import Range, blocks_in
+from udec_ia.ops.rounding import update_flagged
+
+Point = tuple[float, float]
+Triple = tuple[int, int, int]
+NEAR = 0.9  # part of the rounding length within which a grid-point is placed on a corner or an edge
+
+
+@dataclass
+class Place:
+    """Where a grid-point goes: at a corner, on the edge that ends at a corner, or inside (corner 0)."""
+
+    x: float
+    y: float
+    corner: int = 0
+    on_edge: bool = False
+    along: float = 0.0  # distance from the start of the edge
+
+
+class Outline:
+    """Corners of a block, clockwise, as arrays; edge k ends at corner k."""
+
+    def __init__(self, h: Memory, ib: int) -> None:
+        self.corners = [ip for ip in items(h, ib) if is_corner(h, ip)]
+        self.end = np.array([(getr(h, ip, KXP), getr(h, ip, KYP)) for ip in self.corners], float)
+        self.start = np.roll(self.end, 1, axis=0)
+        self.length = np.hypot(*(self.end - self.start).T)
+        self.unit = (self.end - self.start) / self.length[:, np.newaxis]
+
+    @property
+    def area(self) -> float:
+        """Area of the block."""
+        return float((self.end[:, 0] * self.start[:, 1] - self.start[:, 0] * self.end[:, 1]).sum() / 2)
+
+    def place(self, x: float, y: float, near: float) -> Place:
+        """Where the point (x, y) goes: to a corner or an edge within the distance `near`, or where it is."""
+        away = np.hypot(self.end[:, 0] - x, self.end[:, 1] - y)
+        k = int(away.argmin())
+        if away[k] <= near:
+            return Place(float(self.end[k, 0]), float(self.end[k, 1]), self.corners[k])
+        to = np.array((x, y)) - self.start
+        along = (to * self.unit).sum(axis=1)
+        off = np.abs(to[:, 0] * self.unit[:, 1] - to[:, 1] * self.unit[:, 0])
+        off[(along < 0) | (along > self.length)] = np.inf
+        k = int(off.argmin())
+        if off[k] <= near:
+            px, py = self.start[k] + along[k] * self.unit[k]
+            return Place(float(px), float(py), self.corners[k], True, float(along[k]))
+        return Place(x, y)
+
+    def holds(self, x: float, y: float) -> bool:
+        """True if the point (x, y) lies inside."""
+        above = self.end[:, 1] > y
+        crosses = above != (self.start[:, 1] > y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = (y - self.start[:, 1]) / (self.end[:, 1] - self.start[:, 1])
+            at = self.start[:, 0] + part * (self.end[:, 0] - self.start[:, 0])
+        return bool(np.count_nonzero(crosses & (at > x)) % 2)
+
+
+def generate(
+    array: MainArray,
+    ib: int,
+    points: Sequence[Point],
+    triples: Sequence[Triple],
+    near: float,
+    paired: bool = False,
+) -> list[str]:
+    """Divide block `ib` into zones. Returns remarks on grid-points that were moved.
+
+    points: numbered from the last one, which is number 1. triples: three of these numbers for each zone, in
+    either sense. near: distance within which a point is placed on a corner or an edge. paired: zones 1 and
+    2, 3 and 4 ... are pairs for mixed discretisation. Errors 14, 25, 26, 28 and 33; nothing is changed then.
+    """
+    h = array.h
+    outline = Outline(h, ib)
+    places = [outline.place(x, y, near) for x, y in reversed(points)]  # in the order of their numbers
+    boundary = _boundary(outline, places, float(h.cr[DTOL]))
+    zones = _clockwise(places, triples)
+    _check_cover(outline, places, boundary, zones)
+    new = sum(place.on_edge for place in places)
+    words = new * (size_of(h, NVCR) + 2 * size_of(h, NVCN) + 2 * size_of(h, NVDO)) + size_of(h, NVFD)
+    require(array, words + len(places) * size_of(h, NVGP) + len(zones) * size_of(h, NVZO))
+    change_types(array, [ib], MFDEF)
+    h = array.h
+    short = crad(h, ib)
+    _make_corners(h, ib, places)
+    addresses = _make_gridpoints(h, ib, places)
+    _make_zones(h, ib, addresses, zones, paired)
+    share_mass(h, ib)
+    h.ci[NSHORT] += crad(h, ib) - short
+    _flag_around(h, ib)
+    update_flagged(array)
+    if h.ci[MCTOT] > 0:
+        renew_forces(array)
+    moved = zip(range(1, len(places) + 1), reversed(points), places, strict=True)
+    return [
+        f"grid-point {number} ({x:g}, {y:g}) was placed on the block's outline at ({place.x:g}, {place.y:g})"
+        for number, (x, y), place in moved
+        if math.hypot(place.x - x, place.y - y) > 1e-3 * float(h.cr[DTOL])
+    ]
+
+
+def block_to_zone(array: MainArray, where: Range) -> int:
+    """The first block in the range. Error 24 if there is none, 28 if it is divided into zones already."""
+    blocks = blocks_in(array, where)
+    if not blocks:
+        raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where))
+    h, ib = array.h, blocks[0]
+    if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
+        advice = "give a range that holds another block only, or CHANGE it to RIGID first"
+        raise UdecError(28, f"block@{ib} is divided into zones already", advice, group=ib)
+    return ib
+
+
+def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
+    """Rows of `places` on the outline, clockwise.
+
+    Error 26 for a corner without a grid-point, 28 for two at one place, 14 if they stand too close.
+    """
+    on: dict[int, list[int]] = {ip: [] for ip in outline.corners}
+    for row, place in enumerate(places):
+        if place.corner:
+            on[place.corner].append(row)
+        elif not outline.holds(place.x, place.y):
+            raise UdecError(28, f"grid-point {row + 1} ({place.x:g}, {place.y:g}) lies outside the block")
+    found: list[int] = []
+    for k, ip in enumerate(outline.corners):
+        edge = sorted((row for row in on[ip] if places[row].on_edge), key=lambda row: places[row].along)
+        corner = [row for row in on[ip] if not places[row].on_edge]
+        x, y = outline.end[k]
+        if not corner:
+            raise UdecError(26, f"the corner ({x:g}, {y:g}) has no grid-point", "give one for every corner")
+        if len(corner) > 1:
+            numbers = " and ".join(str(row + 1) for row in corner)
+            raise UdecError(
+                28, f"grid-points {numbers} are both within {NEAR} D of the corner ({x:g}, {y:g})"
+            )
+        found += edge + corner
+    for one, two in zip(found, found[1:] + found[:1], strict=True):
+        a, b = places[one], places[two]
+        need = d * ((not a.on_edge) + (not b.on_edge))
+        least = math.hypot(b.x - a.x, b.y - a.y)
+        if least < need * (1 - 1e-6) or least == 0:
+            raise UdecError(
+                14,
+                f"grid-points {one + 1} and {two + 1} are {least:g} apart, which leaves no room for "
+                f"rounding by {d:g}",
+                "set them farther apart, or take a smaller ROUND",
+            )
+    return found
+
+
+def _clockwise(places: list[Place], triples: Sequence[Triple]) -> list[Triple]:
+    """The zones as rows of `places`, all clockwise. Error 25 for a wrong number, 33 for a flat zone."""
+    zones = []
+    for number, triple in enumerate(triples, 1):
+        for n in triple:
+            if not 1 <= n <= len(places):
+                raise UdecError(
+                    25, f"{n} in zone {number}", f"grid-points are numbered from 1 to {len(places)}"
+                )
+        i, j, k = (n - 1 for n in triple)
+        a, b, c = places[i], places[j], places[k]
+        turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
+        if abs(turn) <= 1e-6 * ((b.x - a.x) ** 2 + (b.y - a.y) ** 2 + (c.x - a.x) ** 2 + (c.y - a.y) ** 2):
+            raise UdecError(33, f"zone {number} ({triple[0]}, {triple[1]}, {triple[2]}) has no area")
+        zones.append((i, j, k) if turn < 0 else (i, k, j))
+    return zones
+
+
+def _check_cover(outline: Outline, places: list[Place], boundary: list[int], zones: list[Triple]) -> None:
+    """Error 33 unless the zones fill the block: side to side, without gap or overlap."""
+    sides: dict[tuple[int, int], int] = {}
+    for number, (i, j, k) in enumerate(zones, 1):
+        for side in ((i, j), (j, k), (k, i)):
+            if side in sides:
+                what = f"zones {sides[side]} and {number} lie on the same side of grid-points"
+                raise UdecError(33, f"{what} {side[0] + 1} and {side[1] + 1}")
+            sides[side] = number
+    outer = set(zip(boundary, boundary[1:] + boundary[:1], strict=True))
+    for i, j in outer:
+        if (i, j) not in sides:
+            raise UdecError(33, f"no zone stands on the edge between grid-points {i + 1} and {j + 1}")
+    for (i, j), number in sides.items():
+        if (j, i) not in sides and (i, j) not in outer:
+            raise UdecError(33, f"zone {number} has no neighbour over grid-points {i + 1} and {j + 1}")
+    used = {row for zone in zones for row in zone}
+    for row in range(len(places)):
+        if row not in used:
+            raise UdecError(33, f"grid-point {row + 1} belongs to no zone")
+    total = sum(_area(places, zone) for zone in zones)
+    if abs(total - outline.area) > 1e-6 * outline.area:
+        raise UdecError(33, f"the zones have the area {total:g}, the block {outline.area:g}")
+
+
+def _area(places: list[Place], zone: Triple) -> float:
+    a, b, c = (places[row] for row in zone)
+    return ((c.x - a.x) * (b.y - a.y) - (b.x - a.x) * (c.y - a.y)) / 2
+
+
+def _make_corners(h: Memory, ib: int, places: list[Place]) -> None:
+    """Put a corner on the block's outline for every grid-point on an edge."""
+    for place in sorted((p for p in places if p.on_edge), key=lambda p: p.along):
+        real = h.cr.dtype.type
+        place.corner = int(corner_on_edge(h, ib, place.corner, real(place.x), real(place.y)))
+
+
+def _flag_around(h: Memory, ib: int) -> None:
+    """Bring the contacts of block `ib` up to date with its new corners, and flag the domains around it."""
+    for ic in items(h, ib):
+        if not is_corner(h, ic):
+            if iget(h, ic, KCCOD) != VIRTUAL:
+                restart(h, ic)
+            flag(h, iget(h, ic, KD1))
+            flag(h, iget(h, ic, KD2))
+
+
+def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
+    """Grid-points at the given places, moving with the block; addresses in the order of `places`."""
+    ie = iget(h, ib, KBEX)
+    x, y, xd, yd, td = (float(getr(h, ib, k)) for k in (KX, KY, KXD, KYD, KTD))
+    addresses = []
+    for place in reversed(places):
+        ig = int(find(h, NVGP))
+        puti(h, ig, KG, iget(h, ie, KFG))
+        puti(h, ie, KFG, ig)
+        putr(h, ig, KXG, place.x)
+        putr(h, ig, KYG, place.y)
+        if place.corner:
+            puti(h, ig, KCOR, place.corner)
+            puti(h, ig, KGEDGE, int(place.on_edge))
+            puti(h, place.corner, KGP, ig)
+            putr(h, ig, KXG, getr(h, place.corner, KXP))
+            putr(h, ig, KYG, getr(h, place.corner, KYP))
+        putr(h, ig, KXDG, xd - td * (float(getr(h, ig, KYG)) - y))
+        putr(h, ig, KYDG, yd + td * (float(getr(h, ig, KXG)) - x))
+        addresses.append(ig)
+    puti(h, ie, KFNG, len(addresses))
+    return addresses[::-1]
+
+
+def _make_zones(h: Memory, ib: int, addresses: list[int], zones: list[Triple], paired: bool) -> None:
+    """Zones of block `ib`, in the order given, with the stress that the block has."""
+    ie = iget(h, ib, KBEX)
+    for triple in reversed(zones):
+        iz = int(find(h, NVZO))
+        puti(h, iz, KZ, iget(h, ie, KFZ))
+        puti(h, ie, KFZ, iz)
+        for i, row in enumerate(triple):
+            puti(h, iz, KZG, addresses[row], i)
+        for here, first in ((KZS11, KFS11), (KZS12, KFS12), (KZS22, KFS22)):
+            putr(h, iz, here, getr(h, ie, first))
+    puti(h, ie, KFNZ, len(zones))
+    puti(h, ie, KFMIX, int(paired))
