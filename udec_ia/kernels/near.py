@@ -16,7 +16,6 @@ import numpy as np
 from offsets.generated import (
     ATOL,
     CTOL,
-    DTOL,
     ETOL,
     FTOL,
     GTOL,
@@ -46,7 +45,18 @@ from udec_ia.kernels.segments import (
     same_segment,
 )
 from udec_ia.kernels.tips import blocked
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, cc, ce, faces, lean, meet
+from udec_ia.kernels.touch import (
+    CORNER_CORNER,
+    CORNER_EDGE,
+    EDGE_CORNER,
+    VIRTUAL,
+    cc,
+    ce,
+    faces,
+    lean,
+    meet,
+    past,
+)
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 AROUND = 6  # items looked at on either side for a contact of the same two blocks
@@ -54,15 +64,32 @@ SMALL = 48  # segments of a domain in which all pairs are tried
 
 
 @kernel
+def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
+    """How far the centre of corner `ip` has passed corner `iq` towards the edge that leaves or reaches it.
+
+    Past the arc of `iq`, if it has one: by the same number that tells arc_on_arc whether the centre is over
+    the arc, so that rounding cannot leave a place between arc and edge that is neither. along: distance
+    from `iq` along the edge, which counts at a concave corner. Two edges that meet in an edge point share
+    what is within FTOL of their bisector.
+    """
+    rad = getr(h, iq, KRAD)
+    if rad > 0:
+        dx, dy = getr(h, ip, KXCP) - getr(h, iq, KXCP), getr(h, ip, KYCP) - getr(h, iq, KYCP)
+        ahead, behind = lean(h, iq, dx, dy)
+        return ahead if leaving else behind
+    if rad < 0:
+        return along
+    way = past(h, iq, ip)
+    return (way if leaving else -way) + h.cr[FTOL]
+
+
+@kernel
 def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
     """Can the arc of corner `ip` and the edge that ends at `iq` have a contact? And their overlap."""
-    zero = real(h, 0.0)
     ex, ey, overlap, along, z = ce(h, ip, iq)
     if overlap < -h.cr[ATOL] or overlap > h.cr[CTOL]:
         return False, overlap
-    low = h.cr[DTOL] if getr(h, iget(h, iq, KR), KRAD) > 0 else zero
-    high = h.cr[DTOL] if getr(h, iq, KRAD) > 0 else zero
-    if along < low or along > z - high:
+    if _past(h, ip, iget(h, iq, KR), along, True) < 0 or _past(h, ip, iq, z - along, False) < 0:
         return False, overlap
     return faces(h, ip, -ex, -ey, real(h, FACING)), overlap
 

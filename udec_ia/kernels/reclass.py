@@ -42,7 +42,7 @@ from udec_ia.kernels.lists import (
     take_out,
 )
 from udec_ia.kernels.shape import zcs
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, ce, coord, lean
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL, ce, coord, lean, past
 
 RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
 
@@ -101,19 +101,18 @@ def _standing_before(h: Memory, ib: int, iad: int, ip: int) -> None:
 @kernel
 def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z: float) -> bool:
     """Corner `ip` has come near an end of the edge of block `ib` that ends at `iq`."""
-    code = iget(h, ic, KCCOD)
-    g = h.cr[GTOL]
+    code, border = iget(h, ic, KCCOD), h.cr[DTOL] - h.cr[GTOL]
     ia = iget(h, iq, KR)
-    if along < h.cr[DTOL] - g:
-        rad = getr(h, ia, KRAD)
-        if rad > 0:
-            return mvbak(h, ic, ib, CORNER_CORNER)
-        return rad == 0 and along < -g and mvbak(h, ic, ib, code)
+    rad = getr(h, ia, KRAD)
+    if rad > 0 and along < border:
+        return mvbak(h, ic, ib, CORNER_CORNER)
+    if rad == 0 and past(h, ia, ip) < -h.cr[GTOL]:
+        return mvbak(h, ic, ib, code)
     rad = getr(h, iq, KRAD)
-    if rad > 0:
+    if rad > 0 and z - along < border:
         puti(h, ic, KCCOD, CORNER_CORNER)
         return True
-    return rad == 0 and along > z + g and mvfor(h, ic, ib, code)
+    return rad == 0 and past(h, iq, ip) > h.cr[GTOL] and mvfor(h, ic, ib, code)
 
 
 @kernel

@@ -24,6 +24,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import corner_of, is_corner, next_corner, nextcp, prevcp
 from udec_ia.kernels.reclass import settle
+from udec_ia.kernels.shape import is_edge_point
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 BLOCK, CORNER, ARC, ITEM, PIECE = 0, 1, 2, 3, 4
@@ -52,7 +53,7 @@ def ahead_by(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
     """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
     ia = iget(h, ip, KR)
     tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
-    if on_arc(h, ib, ic):  # along the chord of the arc, which is normal to the line to the centre
+    if on_arc(h, ib, ic) and getr(h, ip, KRAD) > 0:  # along the arc's chord, normal to the line to the centre
         tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
     z = np.sqrt(tx * tx + ty * ty)
     return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
@@ -120,8 +121,8 @@ def _note(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -
 
 @kernel
 def _note_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
-    """Note the arc of corner `ip` if it is convex; other corners carry no contact."""
-    if getr(h, ip, KRAD) > 0:
+    """Note the arc of corner `ip` if it is convex or an edge point; other corners carry no contact."""
+    if getr(h, ip, KRAD) > 0 or is_edge_point(h, ip):
         return _note(seg, n, ib, ip, 1, item, piece)
     return n
 

@@ -48,7 +48,7 @@ def find_tips(h: Memory, seg: Any, n: int) -> Any:
     for i in range(n):
         if seg[i, ARC] == 1:
             r = getr(h, seg[i, CORNER], KRAD)
-            if r + r < h.cr[BTOL]:
+            if r > 0 and r + r < h.cr[BTOL]:
                 tips[m] = i
                 m += 1
     return tips[:m].copy()

@@ -8,15 +8,36 @@ KB1 to block KB2; the overlap is positive when the rounded outlines overlap.
 
 The contact point lies on the normal through the circle's centre, in the middle of the overlap. Where
 a contact passes from edge to arc, both forms give the same normal and the same overlap.
+
+A point of an edge (KRAD = 0: a flat corner, or one that GENERATE has put there) is a circle of radius zero
+that may touch edges and arcs of others. Whatever slides past it goes from the one edge to the other where
+their bisector is: there both give the same overlap.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from offsets.generated import DTOL, GTOL, KCCOD, KCN, KCP1, KCP2, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
+from offsets.generated import (
+    DTOL,
+    GTOL,
+    KCCOD,
+    KCN,
+    KCP1,
+    KCP2,
+    KNB,
+    KR,
+    KRAD,
+    KXC,
+    KXCP,
+    KXP,
+    KYC,
+    KYCP,
+    KYP,
+)
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.lists import next_corner
 from udec_ia.kernels.shape import zcs
 
 CORNER_CORNER = 1
@@ -46,6 +67,25 @@ def cc(h: Memory, ip: int, iq: int) -> tuple[float, float, float]:
     return dx / z, dy / z, getr(h, ip, KRAD) + getr(h, iq, KRAD) - z
 
 
+@kernel
+def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
+    """Unit vectors of the edges that arrive at and leave corner `ip`."""
+    _, tx, ty = zcs(h, ip)
+    _, ux, uy = zcs(h, next_corner(h, iget(h, ip, KNB), ip))
+    return tx, ty, ux, uy
+
+
+@kernel
+def past(h: Memory, iq: int, ip: int) -> float:
+    """How far the circle of corner `ip` has passed corner `iq` of another block, clockwise.
+
+    Measured along the mean direction of the two edges at `iq`, so zero on their bisector.
+    """
+    tx, ty, ux, uy = tangents(h, iq)
+    x, y = getr(h, ip, KXCP) - getr(h, iq, KXP), getr(h, ip, KYCP) - getr(h, iq, KYP)
+    return (x * (tx + ux) + y * (ty + uy)) * real(h, 0.5)
+
+
 @inlined
 def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
@@ -55,6 +95,9 @@ def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     With m = centre - corner, t_out = (D m - R Jm)/m.m and -t_in = (D m + R Jm)/m.m.
     """
     d, r = h.cr[DTOL], getr(h, ip, KRAD)
+    if r <= 0:
+        tx, ty, ux, uy = tangents(h, ip)
+        return x * ux + y * uy, -(x * tx + y * ty)
     mx, my = getr(h, ip, KXCP) - getr(h, ip, KXP), getr(h, ip, KYCP) - getr(h, ip, KYP)
     mm = mx * mx + my * my
     along = d * (x * mx + y * my)
@@ -69,6 +112,9 @@ def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
     Opposite to a blunt arc a vector leans a little over both ends: it does not face the arc at all.
     """
     ahead, behind = lean(h, ip, x, y)
+    if getr(h, ip, KRAD) <= 0:  # a point of an edge: outwards is to the left of its edges
+        tx, ty, ux, uy = tangents(h, ip)
+        return max(ahead, behind) <= slack and y * (tx + ux) - x * (ty + uy) > 0
     return max(ahead, behind) <= slack and min(ahead, behind) <= 0
 
 
