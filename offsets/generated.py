@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "8529bf0fdce7027a0f334abeb18dd9e86e57b02ccd57079d9d44acb44d74bf99"
+DIGEST = "2bda5bd3223f9f65f0fef7f500a4cf8c870caa1e30088bd479fa8e1f5a7e7e5e"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -11,6 +11,8 @@ MFDEF = 3  # fully-deformable block
 MCOR = 4  # corner
 MCON = 5  # contact
 MDOM = 6  # domain
+MBND = 8  # boundary condition
+MSIG = 9  # signal
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -144,6 +146,37 @@ KJSN = (4, 4, 4)  # real: average normal stress
 KJTS = (5, 5, 5)  # real: average shear stress
 NVDE = (5, 10, 20)
 
+# one boundary condition on a grid-point, a block, or an edge of a block (page ours)
+KN = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
+KNB = (2, 2, 2)  # int: block that it acts on; never 0
+KNG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
+KNP = (4, 4, 4)  # int: corner that ends the edge it acts on; 0 if not on an edge
+KNS = (5, 5, 5)  # int: signal that load and velocity are multiplied by; 0 if constant
+KNFIX = (6, 6, 6)  # int: velocities that are given: 1 in x, 2 in y, 3 both
+KNFX = (8, 5, 3)  # real: force in x
+KNFY = (9, 6, 4)  # real: force in y
+KNVX = (10, 7, 5)  # real: velocity in x
+KNVY = (11, 8, 6)  # real: velocity in y
+KNCXX = (12, 9, 7)  # real: viscous resistance in x to velocity in x
+KNCXY = (13, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
+KNCYY = (14, 11, 9)  # real: viscous resistance in y to velocity in y
+NVBN = (14, 22, 36)
+
+# a factor that changes with time: a sine or a FUNCTION (page ours)
+KT = (1, 1, 1)  # int: next signal in the list; 0 at the end of the list
+KTNUM = (2, 2, 2)  # int: number of the FUNCTION; 0 for a sine
+KTP = (3, 3, 3)  # int: first point of the function; 0 for a sine
+KTFREQ = (5, 3, 2)  # real: frequency of the sine
+KTLAST = (6, 4, 3)  # real: time for which the sine lasts
+KTNOW = (7, 5, 4)  # real: the factor in the present cycle
+NVSG = (7, 10, 16)
+
+# one point of a FUNCTION (page ours)
+KTPN = (0, 0, 0)  # int: next point, later in time; 0 at the end of the function
+KTPT = (2, 2, 2)  # real: time
+KTPF = (3, 3, 3)  # real: factor
+NVTP = (3, 6, 12)
+
 # Integers of the common block: index of the variable, or of its first element
 JUNK = 0  # list of spare memory groups; 0 when there are none
 MFREE = 1  # first unused memory address
@@ -155,21 +188,23 @@ IBPNT = 6  # list of blocks; 0 when there are none
 ICPNT = 7  # list of contacts; 0 when there are none
 IDPNT = 8  # list of domains; 0 when there are none
 IODPNT = 9  # outer domain; 0 when there are no blocks
-NBLK = 10  # number of blocks
-NCON = 11  # number of contacts
-NDOM = 12  # number of domains
-NVIRT = 13  # number of virtual contacts among them
-NSOFT = 14  # number of deformable blocks
-NMADE = 15  # contacts made so far
-NBROKE = 16  # contacts broken so far
-NSHORT = 17  # edges that hold little more than their two roundings
-LROUND = 18  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 19  # address of the group that raised error NERR; 0 when there is none
-NWANT = 20  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 21  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 22  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 23  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 24
+IBNPNT = 10  # list of boundary conditions; 0 when there are none
+ISGPNT = 11  # list of signals; 0 when there are none
+NBLK = 12  # number of blocks
+NCON = 13  # number of contacts
+NDOM = 14  # number of domains
+NVIRT = 15  # number of virtual contacts among them
+NSOFT = 16  # number of deformable blocks
+NMADE = 17  # contacts made so far
+NBROKE = 18  # contacts broken so far
+NSHORT = 19  # edges that hold little more than their two roundings
+LROUND = 20  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 21  # address of the group that raised error NERR; 0 when there is none
+NWANT = 22  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 23  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 24  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 25  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 26
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -196,13 +231,14 @@ GRAVY = 20  # y gravitational acceleration
 TIME = 21  # time since the first cycle
 UPEND = 22  # displacement that waits to be added to every KUMAX
 WFRIC = 23  # work done against friction so far
-AKN = 24  # normal joint stiffness, material I
-AKS = 74  # shear joint stiffness, material I
-AMU = 124  # joint friction coefficient, material I
-COH = 174  # joint cohesion, material I
-DENS = 224  # density, material I
-BULK = 274  # bulk modulus, material I
-SHEAR = 324  # shear modulus, material I
-ALAM1 = 374  # Lame constant, material I
-ALAM2 = 424  # Lame constant, material I
-NCOMR = 474
+WBOUND = 24  # work of the boundary conditions so far
+AKN = 25  # normal joint stiffness, material I
+AKS = 75  # shear joint stiffness, material I
+AMU = 125  # joint friction coefficient, material I
+COH = 175  # joint cohesion, material I
+DENS = 225  # density, material I
+BULK = 275  # bulk modulus, material I
+SHEAR = 325  # shear modulus, material I
+ALAM1 = 375  # Lame constant, material I
+ALAM2 = 425  # Lame constant, material I
+NCOMR = 475

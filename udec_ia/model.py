@@ -19,10 +19,12 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops import settings
+from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
 from udec_ia.ops.change import change
 from udec_ia.ops.create import create
 from udec_ia.ops.cycle import cycle
 from udec_ia.ops.delete import delete
+from udec_ia.ops.insitu import insitu
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
@@ -200,6 +202,7 @@ class Model:
         gridpoints: list[tuple[float, float]] | None = None,
         zones: list[tuple[int, int, int]] | None = None,
         edge: float | None = None,
+        mixed: bool = False,
     ) -> int:
         """GENERATE: divide the first block in the range into zones. Returns its address."""
         self._ready()
@@ -212,10 +215,70 @@ class Model:
                     26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
                 )
             near = NEAR * float(self.h.cr[DTOL])
-            generate(self.array, ib, gridpoints, zones, near)
+            generate(self.array, ib, gridpoints, zones, near, mixed)
         else:
             raise UdecError(23, "automatic zones")
         return ib
+
+    def boundary(
+        self,
+        x1: float,
+        x2: float,
+        y1: float,
+        y2: float,
+        *,
+        xvel: float | None = None,
+        yvel: float | None = None,
+        xforce: float = 0.0,
+        yforce: float = 0.0,
+        stress: Triple = ZERO,
+        xgrad: Triple = ZERO,
+        ygrad: Triple = ZERO,
+        viscous: bool = False,
+        sine: tuple[float, float] | None = None,
+        function: int | None = None,
+        free: bool = False,
+    ) -> int:
+        """BOUNDARY: conditions on what lies in the range (see ops.bounds). Returns their number."""
+        self._ready()
+        return boundary(
+            self.array,
+            (x1, x2, y1, y2),
+            xvel=xvel,
+            yvel=yvel,
+            xforce=xforce,
+            yforce=yforce,
+            stress=stress,
+            xgrad=xgrad,
+            ygrad=ygrad,
+            viscous=viscous,
+            sine=sine,
+            function=function,
+            free=free,
+        )
+
+    def function(self, n: int, *tf: float) -> None:
+        """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
+        if len(tf) % 2:
+            raise UdecError(8, f"{len(tf)} numbers given")
+        self._ready(sound=False)
+        set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
+
+    def insitu(
+        self,
+        x1: float,
+        x2: float,
+        y1: float,
+        y2: float,
+        s11: float,
+        s12: float,
+        s22: float,
+        xgrad: Triple = ZERO,
+        ygrad: Triple = ZERO,
+    ) -> int:
+        """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
+        self._ready()
+        return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
 
     def round(self, d: float) -> None:
         """ROUND: round every corner with the circle tangent at the distance d from it."""

@@ -43,6 +43,8 @@ ADVICE = {
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
     31: "check that the folder exists and can be written to",
+    32: "take stiffer zones, a smaller FRACTION or smaller loads",
+    33: "the zones must cover the block side to side, each side between two grid-points once",
 }
 
 

@@ -37,6 +37,7 @@ class Word:
 
     values: names of the numbers that follow the word. repeated: a list of such tuples follows.
     sets: the argument that the word sets; by default the keyword itself, in lower case.
+    Several values without a list are one tuple.
     Without values the word sets True, or its own name if it shares an argument with others.
     """
 
@@ -118,6 +119,29 @@ COMMANDS = (
         list="x y",
     ),
     Command(
+        "BOundary",
+        "Conditions on the grid-points and block centroids in x1<x<x2, y1<y<y2: velocities or forces; on the "
+        "edges with both ends there: stresses (tension positive, growing with x and y by XGrad and YGrad) or "
+        "viscous, non-reflecting edges. A sine (frequency, duration) or a FUNCTION of time multiplies loads "
+        "and velocities. Free takes all conditions away.",
+        "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
+        numbers=RANGE,
+        words=(
+            Word("XVel", "v"),
+            Word("YVel", "v"),
+            Word("XForce", "f"),
+            Word("YForce", "f"),
+            Word("Stress", "s11 s12 s22"),
+            Word("XGrad", "g11 g12 g22"),
+            Word("YGrad", "g11 g12 g22"),
+            Word("Viscous"),
+            Word("SIne", "freq t"),
+            Word("Function", "n"),
+            Word("FRee"),
+        ),
+        ours="the command, which the report lists under further developments",
+    ),
+    Command(
         "Change",
         "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
         "CHANGE 0 60 30 40 MATERIAL=2",
@@ -157,6 +181,14 @@ COMMANDS = (
     Command(
         "END", "The last line of a deck, after STOP.", "END", opens=True, ours="only said to be one more line"
     ),
+    Command(
+        "FUnction",
+        "Function number n of time for BOUNDARY: factors f at the times t, linear between them.",
+        "FUNCTION 1 0 0 0.5 1",
+        numbers="n",
+        list="t f",
+        ours="the command",
+    ),
     Command("FRaction", "Use the fraction f of the critical time-step.", "FRAC 0.1", numbers="f"),
     Command("Fix", "Fix the blocks with centroids in x1<x<x2, y1<y<y2.", "FIX 0 60 0 10", numbers=RANGE),
     Command(
@@ -165,7 +197,8 @@ COMMANDS = (
     Command(
         "GEnerate",
         "Make the first block in range fully-deformable: grid-points (x,y), and zones as triples of them, "
-        "where the last grid-point is number 1.",
+        "where the last grid-point is number 1. Automatic makes triangles with sides of about the length d. "
+        "Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
         numbers=RANGE,
         words=(
@@ -174,10 +207,11 @@ COMMANDS = (
             Word("Gridpoints", "x y", repeated=True),
             Word("Zones", "l m n", repeated=True),
             Word("Edge", "d"),
+            Word("MIxed"),
         ),
         first="mode",
         first_error=22,
-        ours="the form, whose line the scan of the report has lost; Edge",
+        ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
     Command("Gravity", "Set the gravitational accelerations in x and y.", "GRAVITY 0 -9.81", numbers="gx gy"),
     Command(
@@ -186,6 +220,15 @@ COMMANDS = (
         "HELP PROPERTY",
         text="command",
         opens=True,
+        ours="the command",
+    ),
+    Command(
+        "INsitu",
+        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2, tension positive; "
+        "they grow with x and y by XGrad and YGrad.",
+        "INSITU 0 60 0 40 -1.E6 0 -2.E6",
+        numbers=RANGE + " s11 s12 s22",
+        words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
         ours="the command",
     ),
     Command(

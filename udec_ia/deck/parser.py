@@ -176,6 +176,9 @@ class _Parser:
         """What `word` sets its argument to, read from the tokens after it."""
         if word.repeated:
             return self._tuples(word.values)
-        if word.values:
+        names = word.values.split()
+        if len(names) > 1:
+            return tuple(self._number(name) for name in names)
+        if names:
             return self._number(word.values)
         return word.keyword.lower() if word.sets else True

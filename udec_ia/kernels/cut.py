@@ -36,6 +36,7 @@ from offsets.generated import (
     KYP,
     LROUND,
     MCTOT,
+    MSDEF,
     NBLK,
     NBROKE,
     NSHORT,
@@ -44,14 +45,16 @@ from offsets.generated import (
     NVCN,
     NVCR,
     NVDO,
+    NVSD,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, puti, real, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
 from udec_ia.kernels.ford import restart, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
+from udec_ia.kernels.masses import share_extension
 from udec_ia.kernels.shape import crad, zcs
 from udec_ia.kernels.split import corner_on_edge, spli
 from udec_ia.kernels.tolerances import set_rounding
@@ -169,7 +172,7 @@ def _shortest(h: Memory, ib: int) -> float:
 
 
 @kernel
-def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) -> int:
     """Split block `ib` between its crossings `k` and `k` + 1; returns the new block."""
     ia, iz = which[k, CORNER], which[k + 1, CORNER]
     if which[k, AT] == 0:
@@ -177,6 +180,8 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
     jb = spli(h, ib, ia, iz)
+    if soft is not None and iget(h, ib, HEAD) == MSDEF:
+        share_extension(h, ib, jb)
     if h.ci[LROUND] == 0 and h.ci[MCTOT] == 0:
         least = min(_shortest(h, ib), _shortest(h, jb))
         if least < h.cr[DTOL] * real(h, 4.0):
@@ -211,7 +216,9 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
 
 
 @kernel
-def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, found: int) -> tuple[int, int]:
+def cut_path(
+    h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, found: int, soft: Any
+) -> tuple[int, int]:
     """Split the blocks in the given rows and update the domains at the cracks' ends.
 
     Returns the status and the new number of boxes.
@@ -220,6 +227,8 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
     first = n
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 6 * size_of(h, NVCN) + 5 * size_of(h, NVDO)
+    if soft is not None:
+        need += size_of(h, NVSD)
     cuts = 0
     for r in range(found):
         cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]
@@ -237,7 +246,7 @@ def cut_path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, f
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            blocks[n] = _cut_block(h, blocks[row], where, which, k)
+            blocks[n] = _cut_block(h, blocks[row], where, which, k, soft)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])
             n += 1

@@ -13,6 +13,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.blocks import move_all
+from udec_ia.kernels.bounds import apply_bounds
 from udec_ia.kernels.domains import accumulate
 from udec_ia.kernels.ford import ford_all
 from udec_ia.kernels.update import update_all
@@ -24,13 +25,15 @@ BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 def run_cycles(h: Memory, n: int, soft: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
-    soft: None if all blocks are rigid, else what the laws CL2 to CL5 need (kernels.laws).
+    soft: None if all blocks are rigid and free of boundary conditions, else what the laws CL2 to CL5 need.
     """
     done = 0
     while done < n:
         if h.ci[JPHASE] == BLOCKS:
             if h.ci[NSPARE] > 0 and not room(h, h.ci[NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
+            if soft is not None:
+                apply_bounds(h)
             fastest = move_all(h, soft)
             h.ci[JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
         if h.ci[JPHASE] == DOMAINS:

@@ -72,10 +72,12 @@ from offsets.generated import (
     KZS22,
     NERR,
     TDEL,
+    WBOUND,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
+from udec_ia.kernels.motion import FIXED
 from udec_ia.kernels.shape import crad
 from udec_ia.kernels.tensor import cayley, turned
 
@@ -93,15 +95,20 @@ def putfdf(h: Memory, ig: int, fx: float, fy: float) -> None:
 def gpmot(h: Memory, ig: int) -> tuple[float, float]:
     """Law of motion for grid-point `ig` (GPMOT); resets its force sum; returns its velocity.
 
-    A component of the velocity that KGFIX says is given stays as it is.
+    A component of the velocity that KGFIX says is given stays as it is; its reaction does work.
     """
     zero = real(h, 0.0)
     dt, con1, con2, m = h.cr[TDEL], h.cr[CON1], h.cr[CON2], getr(h, ig, KGPM)
+    fx, fy = getr(h, ig, KGFX) + m * h.cr[GRAVX], getr(h, ig, KGFY) + m * h.cr[GRAVY]
     xd, yd, fix = getr(h, ig, KXDG), getr(h, ig, KYDG), iget(h, ig, KGFIX)
     if fix & 1 == 0:
-        xd = (con1 * xd + (getr(h, ig, KGFX) / m + h.cr[GRAVX]) * dt) * con2
+        xd = (con1 * xd + fx / m * dt) * con2
+    else:
+        h.cr[WBOUND] -= fx * xd * dt
     if fix & 2 == 0:
-        yd = (con1 * yd + (getr(h, ig, KGFY) / m + h.cr[GRAVY]) * dt) * con2
+        yd = (con1 * yd + fy / m * dt) * con2
+    else:
+        h.cr[WBOUND] -= fy * yd * dt
     putr(h, ig, KGFX, zero)
     putr(h, ig, KGFY, zero)
     putr(h, ig, KXDG, xd)
@@ -307,7 +314,7 @@ def move_fdef(h: Memory, ib: int, soft: Any) -> float:
     putr(h, ib, KBFX, zero)
     putr(h, ib, KBFY, zero)
     putr(h, ib, KBFT, zero)
-    if iget(h, ib, KBFIX) == 1:
+    if iget(h, ib, KBFIX) == FIXED:
         stand_still(h, ib)
         return zero
     fastest = zero

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from offsets.generated import (
     IBPNT,
     KB,
     KBEX,
     KBM,
+    KED11,
+    KED12,
+    KED22,
     KFG,
     KFZ,
     KG,
     KGPM,
+    KS111,
+    KS112,
+    KS122,
     KSAREA,
     KSJ11,
     KSJ12,
@@ -23,10 +31,14 @@ from offsets.generated import (
     KZS22,
     MFDEF,
     MSDEF,
+    NSOFT,
+    NVSD,
 )
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real
 from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import find
 from udec_ia.kernels.fdef import zone_area
+from udec_ia.kernels.sdef import put_strain_rate, put_stress
 from udec_ia.kernels.shape import geo, makeb
 
 
@@ -73,12 +85,26 @@ def share_mass(h: Memory, ib: int) -> None:
 
 
 @kernel
-def make_masses(h: Memory) -> None:
+def share_extension(h: Memory, ib: int, jb: int) -> None:
+    """Block `jb`, cut from simply-deformable block `ib`, has the same type, stress and strain rate."""
+    ie, je = iget(h, ib, KBEX), find(h, NVSD)
+    puti(h, jb, HEAD, MSDEF)
+    puti(h, jb, KBEX, je)
+    h.ci[NSOFT] += 1
+    put_stress(h, je, getr(h, ie, KS111), getr(h, ie, KS112), getr(h, ie, KS122))
+    put_strain_rate(h, je, getr(h, ie, KED11), getr(h, ie, KED12), getr(h, ie, KED22))
+    share_mass(h, ib)
+    share_mass(h, jb)
+
+
+@kernel
+def make_masses(h: Memory, soft: Any) -> None:
     """Masses and moments of inertia of all blocks from the densities as they are now."""
     ib = h.ci[IBPNT]
     while ib != 0:
         makeb(h, ib)
-        share_mass(h, ib)
+        if soft is not None:
+            share_mass(h, ib)
         ib = iget(h, ib, KB)
 
 

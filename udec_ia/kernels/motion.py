@@ -4,6 +4,8 @@ Central differences, velocities at half steps:
 
     v := (CON1 v + (F/m + g) dt) CON2      w := (CON1 w + (M/I) dt) CON2
 
+A velocity that a boundary condition gives stays as it is; a block that has both given does not turn.
+
 The corners are turned with the block by the rotation whose half angle has the tangent w dt/2: it keeps
 every length to rounding, so that a block does not grow while it spins.
 """
@@ -39,6 +41,8 @@ from offsets.generated import (
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import kernel
+
+FIXED, GIVEN_X, GIVEN_Y = 1, 2, 4  # KBFIX: FIX; velocities that BOUNDARY gives
 
 
 @kernel
@@ -76,13 +80,17 @@ def accelerate(h: Memory, ib: int) -> None:
     putr(h, ib, KBFX, zero)
     putr(h, ib, KBFY, zero)
     putr(h, ib, KBFT, zero)
-    if iget(h, ib, KBFIX) == 1:
+    fix = iget(h, ib, KBFIX)
+    if fix == FIXED:
         return
     dt, con1, con2 = h.cr[TDEL], h.cr[CON1], h.cr[CON2]
     bm = getr(h, ib, KBM)
-    putr(h, ib, KXD, (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2)
-    putr(h, ib, KYD, (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2)
-    putr(h, ib, KTD, (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2)
+    if fix & GIVEN_X == 0:
+        putr(h, ib, KXD, (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2)
+    if fix & GIVEN_Y == 0:
+        putr(h, ib, KYD, (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2)
+    if fix != GIVEN_X + GIVEN_Y:
+        putr(h, ib, KTD, (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2)
 
 
 @kernel
@@ -92,7 +100,7 @@ def motion(h: Memory, ib: int) -> float:
     Returns a bound on the velocity, in x or in y, of any point of the block.
     """
     accelerate(h, ib)
-    if iget(h, ib, KBFIX) == 1:
+    if iget(h, ib, KBFIX) == FIXED:
         return real(h, 0.0)
     dt = h.cr[TDEL]
     xd, yd, td = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KTD)

@@ -60,7 +60,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
-from udec_ia.kernels.motion import accelerate
+from udec_ia.kernels.motion import FIXED, accelerate
 from udec_ia.kernels.shape import crad
 from udec_ia.kernels.tensor import cayley, turned
 
@@ -177,7 +177,7 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
 def move_sdef(h: Memory, ib: int, soft: Any) -> float:
     """One step of simply-deformable block `ib`; returns a bound on the velocity of any of its points."""
     ie = iget(h, ib, KBEX)
-    if iget(h, ib, KBFIX) == 1:
+    if iget(h, ib, KBFIX) == FIXED:
         accelerate(h, ib)
         reset_applied(h, ie)
         return real(h, 0.0)

@@ -4,7 +4,7 @@ What a change of type keeps. Momentum and angular momentum: always. Stress: a ri
 deformable in a run begins with the mean stress of the contact forces on it, so that a block at rest stays
 at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
 simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
-lost. Masses never change after the first cycle.
+lost, and so are boundary conditions on the block. Masses never change after the first cycle.
 """
 
 from __future__ import annotations
@@ -61,6 +61,7 @@ from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.masses import share_mass, zone_means
 from udec_ia.kernels.sdef import put_stress
 from udec_ia.kernels.shape import geo
+from udec_ia.ops.bounds import forget_block
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import constitutive_number, material_number
 from udec_ia.ops.lists import chain, items
@@ -106,20 +107,21 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
     h = array.h
     rigid = [ib for ib in changing if iget(h, ib, HEAD) == MRIG]
     for ib in rigid:
-        _become(h, ib, MSDEF, (0.0, 0.0, 0.0))
+        become(h, ib, MSDEF)
     if h.ci[MCTOT] > 0:
         renew_forces(array)
         for ib in rigid:
             _put_stress(h, ib, applied_stress(h, ib))
     for ib in changing:
         if iget(h, ib, HEAD) != kind:
-            _become(h, ib, kind, mean_stress(h, ib))
+            become(h, ib, kind, mean_stress(h, ib))
     if h.ci[MCTOT] > 0:
         renew_forces(array)
 
 
-def _become(h: Memory, ib: int, kind: int, stress: Stress) -> None:
+def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> None:
     """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one."""
+    forget_block(h, ib)
     if iget(h, ib, HEAD) == MFDEF:
         _lose_zones(h, ib)
     if iget(h, ib, HEAD) != MRIG:

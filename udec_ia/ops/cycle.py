@@ -80,7 +80,7 @@ def prepare(array: MainArray) -> None:
     if h.ci[NBLK] == 0:
         raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
     if h.ci[MCTOT] == 0:
-        make_masses(h)
+        make_masses(h, soft(array))
     settle_default(array)
     arrange(array)
     h = array.h

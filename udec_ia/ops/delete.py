@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from offsets.generated import MCTOT, MFDEF, NBLK
+from offsets.generated import MCTOT, MRIG, NBLK
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.remove import delb
+from udec_ia.ops.change import become
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.ranges import Range, blocks_in
 from udec_ia.ops.rounding import update_flagged
@@ -15,20 +15,18 @@ from udec_ia.ops.rounding import update_flagged
 def delete(array: MainArray, where: Range) -> int:
     """Delete the blocks whose centroids lie in the range. Returns their number.
 
-    Error 19, and nothing is deleted, if no contact would be left; error 21 for fully-deformable blocks.
+    Error 19, and nothing is deleted, if no contact would be left.
     """
     h = array.h
     blocks = blocks_in(array, where)
     if not blocks:
         return 0
-    for ib in blocks:
-        if iget(h, ib, HEAD) == MFDEF:
-            raise UdecError(21, f"block@{ib}", group=ib)
     if h.ci[NBLK] - len(blocks) < 2:
         raise UdecError(
             19, f"only {int(h.ci[NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
         )
     for ib in blocks:
+        become(h, ib, MRIG)  # gives back what only a deformable block has
         delb(h, ib)
     update_flagged(array)
     if h.ci[MCTOT] > 0:

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from offsets.generated import DTOL, MCTOT, NBLK
+from offsets.generated import DTOL, KBEX, KFG, MCTOT, MFDEF, NBLK
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.cross import MOST, X, Y
 from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
@@ -15,6 +16,7 @@ from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import finite
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import update_flagged
+from udec_ia.ops.soft import soft
 
 
 class Boxes:
@@ -47,7 +49,7 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
     """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
 
     A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
-    runs too close to a corner or an edge.
+    runs too close to a corner or an edge; error 17 if it would split a block that has zones.
     """
     finite(x1, y1, x2, y2)
     z = math.hypot(x2 - x1, y2 - y1)
@@ -75,7 +77,10 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
     if status != DONE:
         _refuse(array, status, found, float(where[0, X]), float(where[0, Y]))
-    status, boxes.n = cut_path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found)
+    for ib in boxes.blocks[rows[:found]].tolist():
+        if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
+            raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
+    status, boxes.n = cut_path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, soft(array))
     if status == NO_MEMORY:
         try:
             find_room(array)

@@ -1,0 +1,177 @@
+"""Boundary conditions: given velocities, loads and non-reflecting edges (the report's further developments).
+
+A condition acts on a grid-point, on a block at its centroid, or on the middle of a block's edge:
+
+    velocity   V f takes the place of what the law of motion would give
+    load       F f
+    viscous    -C v, with C = rho Cp L along the normal of the edge and rho Cs L along the edge: a wave that
+               arrives is absorbed, and one is put in as a load of 2 rho C v L
+
+f is 1, a sine or a FUNCTION of time. Loads keep the direction and the size that they had when they were
+given. The work that they do is summed in WBOUND.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets.generated import (
+    IBNPNT,
+    ISGPNT,
+    KBEX,
+    KBFT,
+    KBFX,
+    KBFY,
+    KBM,
+    KED11,
+    KED12,
+    KED22,
+    KGPM,
+    KN,
+    KNB,
+    KNCXX,
+    KNCXY,
+    KNCYY,
+    KNFIX,
+    KNFX,
+    KNFY,
+    KNG,
+    KNP,
+    KNS,
+    KNVX,
+    KNVY,
+    KR,
+    KT,
+    KTD,
+    KTFREQ,
+    KTLAST,
+    KTNOW,
+    KTP,
+    KTPF,
+    KTPN,
+    KTPT,
+    KX,
+    KXD,
+    KXDG,
+    KXP,
+    KY,
+    KYD,
+    KYDG,
+    KYP,
+    MSDEF,
+    TDEL,
+    TIME,
+    WBOUND,
+)
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.fdef import putfdf
+from udec_ia.kernels.sdef import putstr
+
+
+@kernel
+def _function(h: Memory, isg: int, t: float) -> float:
+    """Factor of a FUNCTION at the time `t`: linear between its points, constant before and after them."""
+    it = iget(h, isg, KTP)
+    t0, f0 = getr(h, it, KTPT), getr(h, it, KTPF)
+    while it != 0:
+        t1, f1 = getr(h, it, KTPT), getr(h, it, KTPF)
+        if t <= t1:
+            return f0 if t1 == t0 else f0 + (f1 - f0) * max((t - t0) / (t1 - t0), real(h, 0.0))
+        t0, f0 = t1, f1
+        it = iget(h, it, KTPN)
+    return f0
+
+
+@kernel
+def set_signals(h: Memory) -> None:
+    """Factors of all signals for the step that begins: their values halfway through it."""
+    t = h.cr[TIME] + h.cr[TDEL] * real(h, 0.5)
+    isg = h.ci[ISGPNT]
+    while isg != 0:
+        factor = real(h, 0.0)
+        if iget(h, isg, KTP) != 0:
+            factor = _function(h, isg, t)
+        elif t <= getr(h, isg, KTLAST):
+            factor = np.sin(real(h, 2 * np.pi) * getr(h, isg, KTFREQ) * t)
+        putr(h, isg, KTNOW, factor)
+        isg = iget(h, isg, KT)
+
+
+@kernel
+def _velocity(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
+    """Velocity of what condition `iu` acts on: a grid-point, or its block at (x, y)."""
+    ig, ib = iget(h, iu, KNG), iget(h, iu, KNB)
+    if ig != 0:
+        return getr(h, ig, KXDG), getr(h, ig, KYDG)
+    rx, ry, td = x - getr(h, ib, KX), y - getr(h, ib, KY), getr(h, ib, KTD)
+    xd, yd = getr(h, ib, KXD) - td * ry, getr(h, ib, KYD) + td * rx
+    if iget(h, ib, HEAD) == MSDEF:
+        ie = iget(h, ib, KBEX)
+        e12 = getr(h, ie, KED12)
+        xd, yd = xd + getr(h, ie, KED11) * rx + e12 * ry, yd + e12 * rx + getr(h, ie, KED22) * ry
+    return xd, yd
+
+
+@kernel
+def _push(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
+    """Add a force to what condition `iu` acts on."""
+    ig, ib = iget(h, iu, KNG), iget(h, iu, KNB)
+    putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
+    putr(h, ib, KBFY, getr(h, ib, KBFY) + fy)
+    if ig != 0:
+        putfdf(h, ig, fx, fy)
+        return
+    moment = (x - getr(h, ib, KX)) * fy - (y - getr(h, ib, KY)) * fx
+    putr(h, ib, KBFT, getr(h, ib, KBFT) + moment)
+    if iget(h, ib, HEAD) == MSDEF:
+        putstr(h, ib, fx, fy, x, y)
+
+
+@kernel
+def _give_velocity(h: Memory, iu: int, factor: float) -> None:
+    """Set the velocities that condition `iu` gives; what that takes from rest is work of the boundary."""
+    ig, ib, fix = iget(h, iu, KNG), iget(h, iu, KNB), iget(h, iu, KNFIX)
+    if ig != 0:
+        vx, vy, m = getr(h, ig, KXDG), getr(h, ig, KYDG), getr(h, ig, KGPM)
+    else:
+        vx, vy, m = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KBM)
+    before = vx * vx + vy * vy
+    if fix & 1 != 0:
+        vx = getr(h, iu, KNVX) * factor
+    if fix & 2 != 0:
+        vy = getr(h, iu, KNVY) * factor
+    if ig != 0:
+        putr(h, ig, KXDG, vx)
+        putr(h, ig, KYDG, vy)
+    else:
+        putr(h, ib, KXD, vx)
+        putr(h, ib, KYD, vy)
+    h.cr[WBOUND] += m * (vx * vx + vy * vy - before) * real(h, 0.5)
+
+
+@kernel
+def apply_bounds(h: Memory) -> None:
+    """Apply all boundary conditions for the step that begins."""
+    zero, half = real(h, 0.0), real(h, 0.5)
+    set_signals(h)
+    iu = h.ci[IBNPNT]
+    while iu != 0:
+        factor = real(h, 1.0)
+        if iget(h, iu, KNS) != 0:
+            factor = getr(h, iget(h, iu, KNS), KTNOW)
+        if iget(h, iu, KNFIX) != 0:
+            _give_velocity(h, iu, factor)
+        ib, ip = iget(h, iu, KNB), iget(h, iu, KNP)
+        x, y = getr(h, ib, KX), getr(h, ib, KY)
+        if ip != 0:
+            ia = iget(h, ip, KR)
+            x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
+        vx, vy = _velocity(h, iu, x, y)
+        cxx, cxy, cyy = getr(h, iu, KNCXX), getr(h, iu, KNCXY), getr(h, iu, KNCYY)
+        fx = getr(h, iu, KNFX) * factor - cxx * vx - cxy * vy
+        fy = getr(h, iu, KNFY) * factor - cxy * vx - cyy * vy
+        if fx != zero or fy != zero:
+            _push(h, iu, fx, fy, x, y)
+            h.cr[WBOUND] += (fx * vx + fy * vy) * h.cr[TDEL]
+        iu = iget(h, iu, KN)

@@ -1,0 +1,349 @@
+"""BOUNDARY and FUNCTION: boundary conditions (kernels.bounds).
+
+Velocities and forces act on the grid-points on the outlines of fully-deformable blocks that lie in the range,
+and on rigid and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges
+that have both ends in the range. Tension is positive. A stress S(x, y) = S0 + x SX + y SY on an edge from a
+to b with the outward normal n and the length L gives the tractions t = S n at its ends: the forces
+L (2 ta + tb)/6 and L (ta + 2 tb)/6 at the grid-points of a fully-deformable block, else L (ta + tb)/2 in the
+middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from offsets.generated import (
+    ALAM1,
+    ALAM2,
+    DENS,
+    IBNPNT,
+    IBPNT,
+    ISGPNT,
+    KB,
+    KBEX,
+    KBFIX,
+    KCOR,
+    KFG,
+    KG,
+    KGFIX,
+    KGP,
+    KMAT,
+    KN,
+    KNB,
+    KNCXX,
+    KNCXY,
+    KNCYY,
+    KNFIX,
+    KNFX,
+    KNFY,
+    KNG,
+    KNP,
+    KNS,
+    KNVX,
+    KNVY,
+    KR,
+    KT,
+    KTFREQ,
+    KTLAST,
+    KTNUM,
+    KTP,
+    KTPF,
+    KTPN,
+    KTPT,
+    KX,
+    KXG,
+    KXP,
+    KY,
+    KYG,
+    KYP,
+    MBND,
+    MFDEF,
+    MSIG,
+    NVBN,
+    NVSG,
+    NVTP,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.memory import find, lose
+from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.motion import FIXED
+from udec_ia.ops.limits import finite, not_negative
+from udec_ia.ops.lists import chain, items
+from udec_ia.ops.memory import require
+from udec_ia.ops.ranges import Range
+
+Triple = tuple[float, float, float]  # components 11, 12, 22
+Target = tuple[int, int, int]  # block; grid-point or 0; corner that ends an edge, or 0
+ZERO: Triple = (0.0, 0.0, 0.0)
+
+
+@dataclass
+class Load:
+    """What one target gets: a force, and viscous resistance xx, xy, yy."""
+
+    fx: float = 0.0
+    fy: float = 0.0
+    cxx: float = 0.0
+    cxy: float = 0.0
+    cyy: float = 0.0
+
+    def add(self, fx: float, fy: float, c: Triple = ZERO) -> None:
+        self.fx += fx
+        self.fy += fy
+        self.cxx += c[0]
+        self.cxy += c[1]
+        self.cyy += c[2]
+
+
+def boundary(
+    array: MainArray,
+    where: Range,
+    *,
+    xvel: float | None = None,
+    yvel: float | None = None,
+    xforce: float = 0.0,
+    yforce: float = 0.0,
+    stress: Triple = ZERO,
+    xgrad: Triple = ZERO,
+    ygrad: Triple = ZERO,
+    viscous: bool = False,
+    sine: tuple[float, float] | None = None,
+    function: int | None = None,
+    free: bool = False,
+) -> int:
+    """BOUNDARY: set conditions in the range, or with `free` take all away. Returns their number.
+
+    xvel, yvel: given velocities, m/s. xforce, yforce: N/m on each grid-point or block. stress, with xgrad and
+    ygrad its growth per metre: 11, 12, 22. viscous: non-reflecting edges. sine: frequency (Hz) and how long
+    it lasts (s), or function: number of a FUNCTION; loads and velocities are multiplied by it. Errors 24, 26,
+    28.
+    """
+    finite(*where, xforce, yforce, *stress, *xgrad, *ygrad, *(v for v in (xvel, yvel) if v is not None))
+    if free:
+        return _set_free(array.h, where)
+    fix = (xvel is not None) + 2 * (yvel is not None)
+    loads: dict[Target, Load] = {}
+    if fix or xforce or yforce:
+        for target in _points(array.h, where):
+            loads.setdefault(target, Load()).add(xforce, yforce)
+    if viscous or any((*stress, *xgrad, *ygrad)):
+        for ib, ip in _edges(array.h, where):
+            _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
+    if not loads:
+        raise UdecError(24, "nothing lies in the range x {:g} to {:g}, y {:g} to {:g}".format(*where))
+    words = len(loads) * size_of(array.h, NVBN) + size_of(array.h, NVSG)
+    signal = _find_function(array.h, function) if function is not None else 0
+    require(array, words)
+    h = array.h
+    if sine is not None:
+        signal = _make_sine(h, *sine)
+    for target, load in loads.items():
+        on_point = target[2] == 0 and bool(fix)
+        if on_point:
+            _release(h, target, fix)
+        _make(h, target, load, fix if on_point else 0, (xvel or 0.0, yvel or 0.0), signal)
+    return len(loads)
+
+
+def _inside(where: Range, x: float, y: float) -> bool:
+    return where[0] < x < where[1] and where[2] < y < where[3]
+
+
+def _points(h: Memory, where: Range) -> Iterator[Target]:
+    """Grid-points on outlines in the range, and other blocks with their centroids in it."""
+    for ib in chain(h, int(h.ci[IBPNT]), KB):
+        if iget(h, ib, HEAD) == MFDEF:
+            for ig in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
+                if iget(h, ig, KCOR) and _inside(where, float(getr(h, ig, KXG)), float(getr(h, ig, KYG))):
+                    yield ib, ig, 0
+        elif _inside(where, float(getr(h, ib, KX)), float(getr(h, ib, KY))):
+            yield ib, 0, 0
+
+
+def _edges(h: Memory, where: Range) -> Iterator[tuple[int, int]]:
+    """Block and end corner of the edges with both ends in the range."""
+    for ib in chain(h, int(h.ci[IBPNT]), KB):
+        for ip in items(h, ib):
+            if is_corner(h, ip):
+                ends = [_corner(h, ip), _corner(h, iget(h, ip, KR))]
+                if all(_inside(where, x, y) for x, y in ends):
+                    yield ib, ip
+
+
+def _corner(h: Memory, ip: int) -> tuple[float, float]:
+    return float(getr(h, ip, KXP)), float(getr(h, ip, KYP))
+
+
+def _load_edge(
+    h: Memory, ib: int, ip: int, stress: Sequence[Triple], viscous: bool, loads: dict[Target, Load]
+) -> None:
+    """Add what stress and viscous resistance on one edge give to the targets of the edge."""
+    ia = iget(h, ip, KR)
+    (ax, ay), (bx, by) = _corner(h, ia), _corner(h, ip)
+    length = math.hypot(bx - ax, by - ay)
+    nx, ny = -(by - ay) / length, (bx - ax) / length  # outwards: to the left of a clockwise edge
+
+    def traction(x: float, y: float) -> tuple[float, float]:
+        s11, s12, s22 = (s + x * sx + y * sy for s, sx, sy in zip(*stress, strict=True))
+        return s11 * nx + s12 * ny, s12 * nx + s22 * ny
+
+    (tax, tay), (tbx, tby) = traction(ax, ay), traction(bx, by)
+    cn, cs = _impedances(h, ib) if viscous else (0.0, 0.0)
+    c = (cn * nx * nx + cs * ny * ny, (cn - cs) * nx * ny, cn * ny * ny + cs * nx * nx)
+    if iget(h, ib, HEAD) == MFDEF:
+        half = (c[0] * length / 2, c[1] * length / 2, c[2] * length / 2)
+        start, end = (ib, iget(h, ia, KGP), 0), (ib, iget(h, ip, KGP), 0)
+        loads.setdefault(start, Load()).add(length * (2 * tax + tbx) / 6, length * (2 * tay + tby) / 6, half)
+        loads.setdefault(end, Load()).add(length * (tax + 2 * tbx) / 6, length * (tay + 2 * tby) / 6, half)
+    else:
+        whole = (c[0] * length, c[1] * length, c[2] * length)
+        middle = loads.setdefault((ib, 0, ip), Load())
+        middle.add(length * (tax + tbx) / 2, length * (tay + tby) / 2, whole)
+
+
+def _impedances(h: Memory, ib: int) -> tuple[float, float]:
+    """rho Cp and rho Cs of the material of block `ib`. Error 26 without density and moduli."""
+    m = iget(h, ib, KMAT)
+    rho, one, two = (float(h.cr[k + m - 1]) for k in (DENS, ALAM1, ALAM2))
+    if not (rho > 0 and one > 0 and one > two):
+        detail = f"density, BULK and G of material {m} for a viscous edge"
+        raise UdecError(26, detail, f"PROPERTY MATERIAL={m} DENSITY=... BULK=... G=...")
+    return math.sqrt(rho * one), math.sqrt(rho * (one - two) / 2)
+
+
+def _make(
+    h: Memory, target: Target, load: Load, fix: int, velocity: tuple[float, float], signal: int
+) -> None:
+    """A condition at the head of the list."""
+    ib, ig, ip = target
+    iu = int(find(h, NVBN))
+    puti(h, iu, HEAD, MBND)
+    for k, n in ((KN, int(h.ci[IBNPNT])), (KNB, ib), (KNG, ig), (KNP, ip), (KNS, signal), (KNFIX, fix)):
+        puti(h, iu, k, n)
+    reals = ((KNFX, load.fx), (KNFY, load.fy), (KNCXX, load.cxx), (KNCXY, load.cxy), (KNCYY, load.cyy))
+    for kr, value in (*reals, (KNVX, velocity[0]), (KNVY, velocity[1])):
+        putr(h, iu, kr, value)
+    h.ci[IBNPNT] = iu
+    if fix and ig:
+        puti(h, ig, KGFIX, iget(h, ig, KGFIX) | fix)
+    elif fix and iget(h, ib, KBFIX) != FIXED:
+        puti(h, ib, KBFIX, iget(h, ib, KBFIX) | 2 * fix)
+
+
+def _release(h: Memory, target: Target, fix: int) -> None:
+    """Earlier conditions no longer give the velocities `fix` of the target; those left with nothing go."""
+    ib, ig, _ = target
+    for iu in chain(h, int(h.ci[IBNPNT]), KN):
+        if iget(h, iu, KNFIX) & fix and iget(h, iu, KNB) == ib and iget(h, iu, KNG) == ig:
+            puti(h, iu, KNFIX, iget(h, iu, KNFIX) & ~fix)
+            reals = (KNFX, KNFY, KNCXX, KNCXY, KNCYY)
+            if iget(h, iu, KNFIX) == 0 and not any(float(getr(h, iu, k)) for k in reals):
+                drop(h, iu)
+
+
+def drop(h: Memory, iu: int) -> None:
+    """Take condition `iu` out of the list and give its group back."""
+    before = 0
+    for other in chain(h, int(h.ci[IBNPNT]), KN):
+        if other == iu:
+            break
+        before = other
+    if before:
+        puti(h, before, KN, iget(h, iu, KN))
+    else:
+        h.ci[IBNPNT] = iget(h, iu, KN)
+    puti(h, iu, HEAD, 0)
+    lose(h, iu, NVBN)
+
+
+def forget_block(h: Memory, ib: int) -> None:
+    """Take away all conditions on block `ib`, which is about to go or to change."""
+    for iu in chain(h, int(h.ci[IBNPNT]), KN):
+        if iget(h, iu, KNB) == ib:
+            _free(h, iu)
+
+
+def _free(h: Memory, iu: int) -> None:
+    """Take condition `iu` away and set free what it held."""
+    ib, ig = iget(h, iu, KNB), iget(h, iu, KNG)
+    if ig:
+        puti(h, ig, KGFIX, iget(h, ig, KGFIX) & ~iget(h, iu, KNFIX))
+    elif iget(h, ib, KBFIX) != FIXED:
+        puti(h, ib, KBFIX, iget(h, ib, KBFIX) & ~(2 * iget(h, iu, KNFIX)))
+    drop(h, iu)
+
+
+def _set_free(h: Memory, where: Range) -> int:
+    """Take away the conditions in the range; returns their number."""
+    points, edges = set(_points(h, where)), {(ib, 0, ip) for ib, ip in _edges(h, where)}
+    gone = [
+        iu
+        for iu in chain(h, int(h.ci[IBNPNT]), KN)
+        if (iget(h, iu, KNB), iget(h, iu, KNG), iget(h, iu, KNP)) in points | edges
+    ]
+    for iu in gone:
+        _free(h, iu)
+    return len(gone)
+
+
+def _make_sine(h: Memory, frequency: float, lasts: float) -> int:
+    """A signal that is a sine of the given frequency for a time."""
+    not_negative("the time for which the sine lasts", lasts)
+    if not not_negative("the frequency", frequency) > 0:
+        raise UdecError(28, "the frequency must be positive")
+    isg = _make_signal(h)
+    putr(h, isg, KTFREQ, frequency)
+    putr(h, isg, KTLAST, lasts)
+    return isg
+
+
+def _make_signal(h: Memory) -> int:
+    isg = int(find(h, NVSG))
+    puti(h, isg, HEAD, MSIG)
+    puti(h, isg, KT, int(h.ci[ISGPNT]))
+    h.ci[ISGPNT] = isg
+    return isg
+
+
+def _find_function(h: Memory, number: int) -> int:
+    """The signal that is FUNCTION `number`. Error 26 if there is none."""
+    for isg in chain(h, int(h.ci[ISGPNT]), KT):
+        if iget(h, isg, KTP) and iget(h, isg, KTNUM) == number:
+            return isg
+    raise UdecError(26, f"FUNCTION {number}", f"define it before: FUNCTION {number} t1 f1 t2 f2 ...")
+
+
+def set_function(array: MainArray, number: int, points: Sequence[tuple[float, float]]) -> None:
+    """FUNCTION: factors over time, for boundary conditions; a function of the same number is replaced.
+
+    points: (time, factor), the times in ascending order. Errors 26 and 28.
+    """
+    if not points:
+        raise UdecError(26, "a function needs at least one point", "FUNCTION n t1 f1 t2 f2 ...")
+    for t, f in points:
+        finite(t, f)
+    for (one, _), (two, _) in pairwise(points):
+        if two <= one:
+            raise UdecError(28, f"the times must ascend, but {two:g} follows {one:g}")
+    require(array, size_of(array.h, NVSG) + len(points) * size_of(array.h, NVTP))
+    h = array.h
+    isg = next(
+        (s for s in chain(h, int(h.ci[ISGPNT]), KT) if iget(h, s, KTP) and iget(h, s, KTNUM) == number), 0
+    )
+    for it in chain(h, iget(h, isg, KTP), KTPN) if isg else ():
+        lose(h, it, NVTP)
+    isg = isg or _make_signal(h)
+    puti(h, isg, KTNUM, number)
+    first = 0
+    for t, f in reversed(points):
+        it = int(find(h, NVTP))
+        puti(h, it, KTPN, first)
+        putr(h, it, KTPT, t)
+        putr(h, it, KTPF, f)
+        first = it
+    puti(h, isg, KTP, first)
