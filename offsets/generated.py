@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "2bda5bd3223f9f65f0fef7f500a4cf8c870caa1e30088bd479fa8e1f5a7e7e5e"
+DIGEST = "ba2813a7e2034a73dcb48252bbc7cd5c3f894aa3c40546e61c3e2bcd150918b0"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -147,19 +147,19 @@ KJTS = (5, 5, 5)  # real: average shear stress
 NVDE = (5, 10, 20)
 
 # one boundary condition on a grid-point, a block, or an edge of a block (page ours)
-KN = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
-KNB = (2, 2, 2)  # int: block that it acts on; never 0
-KNG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
-KNP = (4, 4, 4)  # int: corner that ends the edge it acts on; 0 if not on an edge
-KNS = (5, 5, 5)  # int: signal that load and velocity are multiplied by; 0 if constant
-KNFIX = (6, 6, 6)  # int: velocities that are given: 1 in x, 2 in y, 3 both
-KNFX = (8, 5, 3)  # real: force in x
-KNFY = (9, 6, 4)  # real: force in y
-KNVX = (10, 7, 5)  # real: velocity in x
-KNVY = (11, 8, 6)  # real: velocity in y
-KNCXX = (12, 9, 7)  # real: viscous resistance in x to velocity in x
-KNCXY = (13, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
-KNCYY = (14, 11, 9)  # real: viscous resistance in y to velocity in y
+KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
+KUB = (2, 2, 2)  # int: block that it acts on; never 0
+KUG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
+KUP = (4, 4, 4)  # int: corner that ends the edge it acts on; 0 if not on an edge
+KUS = (5, 5, 5)  # int: signal that load and velocity are multiplied by; 0 if constant
+KUFIX = (6, 6, 6)  # int: velocities that are given: 1 in x, 2 in y, 3 both
+KUFX = (8, 5, 3)  # real: force in x
+KUFY = (9, 6, 4)  # real: force in y
+KUVX = (10, 7, 5)  # real: velocity in x
+KUVY = (11, 8, 6)  # real: velocity in y
+KUCXX = (12, 9, 7)  # real: viscous resistance in x to velocity in x
+KUCXY = (13, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
+KUCYY = (14, 11, 9)  # real: viscous resistance in y to velocity in y
 NVBN = (14, 22, 36)
 
 # a factor that changes with time: a sine or a FUNCTION (page ours)

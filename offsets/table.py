@@ -120,7 +120,17 @@ def read_table(text: str | None = None) -> Table:
                     )
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
+    _check_names(groups, common)
     return Table(tuple(groups), tuple(heads), tuple(common), hashlib.sha256(text.encode()).hexdigest())
+
+
+def _check_names(groups: list[Group], common: list[Field]) -> None:
+    """TableError if two fields have one name: generated.py has all of them side by side."""
+    names = [field.name for group in groups for field in group.fields if field.role != "head"]
+    names += [field.name for field in common]
+    double = {name for name in names if names.count(name) > 1}
+    if double:
+        raise TableError(f"groups.table: two fields are called {', '.join(sorted(double))}")
 
 
 def _field(words: list[str], doc: str) -> Field:

@@ -98,7 +98,7 @@ def test_a_table_is_a_copy() -> None:
 
 def test_unknown_kind_lists_the_kinds() -> None:
     with pytest.raises(
-        ValueError, match="'rock': choose one of block, corner, contact, domain, sdef, zone, "
+        ValueError, match="'rock': choose one of block, corner, contact, domain, sdef, fdef, zone, "
     ):
         table(two_blocks(), "rock")
 

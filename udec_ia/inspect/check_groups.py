@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from offsets import RATIOS, generated, lay_out, read_table
-from offsets.generated import MFREE, MSDEF
+from offsets.generated import MFREE
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import HEADS
+from udec_ia.inspect.walk import HEADS, SOFT
 
 Numbers = NDArray[Any]
 
@@ -150,11 +150,11 @@ class State:
         self._row_at[at] = np.arange(len(at))
 
     def _main_list(self, kind: str) -> dict[int, None]:
-        """Addresses along the block, contact or domain list, and the check of its links back."""
+        """Addresses along a main list, and the check of its links back if it has any."""
         head = TABLE.group(kind).list_head
         assert head is not None
         (link,) = names(kind, "next")
-        (back,) = names(kind, "back")
+        back = next(iter(names(kind, "back")), None)
         iad, source, before = self.common(head), head, 0
         seen: dict[int, None] = {}
         while iad != 0:
@@ -164,7 +164,7 @@ class State:
             if iad in seen:
                 self.report(2, f"{source} leads back to {kind}@{iad}: the {kind} list is a circle")
                 break
-            if self.get(iad, back) != before:
+            if back is not None and self.get(iad, back) != before:
                 self.report(
                     2,
                     f"{back} of {kind}@{iad} is {self.get(iad, back)}, but {source} leads here from {before}",
@@ -228,17 +228,36 @@ class State:
     def _extensions(self, kind: str) -> list[int]:
         """Addresses of the groups of `kind` that stand in no list but hang on a group in use."""
         pointers = [
-            self.column(owner, field.name)
+            self._owned(owner, field.name, kind)
             for owner in self.address
             for field in TABLE.group(owner).fields
-            if field.role == "extension" and field.target == kind
+            if field.role in ("extension", "first") and kind in TARGETS.get(field.target or "", ())
         ]
-        if kind == "sdef":
-            heads = self.h.ia[self.address["block"] - 1]
-            pointers.append(self.column("block", KBEX)[heads == MSDEF])
-        at = np.unique(np.concatenate(pointers)) if pointers else np.empty(0, np.int64)
-        fits = (at > 0) & ((at - 1) % self.ratio == 0) & (at < self.free - self.layout[kind].size + 1)
-        return [int(iad) for iad in at[fits] if self._kind_at[iad] == 0]
+        found: dict[int, None] = {}
+        link = next(iter(names(kind, "next")), None)
+        for iad in np.concatenate(pointers).tolist() if pointers else ():
+            while self._free_for(iad, kind) and iad not in found:
+                found[iad] = None
+                iad = self.get(iad, link) if link else 0
+            if iad and iad in found and link:
+                self.report(
+                    2, f"{link} leads back to {kind}@{iad}: two lists of the kind meet, or one is a circle"
+                )
+        return list(found)
+
+    def _owned(self, owner: str, name: str, kind: str) -> Numbers:
+        """Pointers in field `name` of all groups of `owner` that may lead to `kind`, by their head codes."""
+        values = self.column(owner, name)
+        if FIELDS[name].target != "soft":
+            return values
+        heads = self.h.ia[self.address[owner] - 1]
+        return values[[SOFT.get(int(head)) == kind for head in heads]] if len(values) else values
+
+    def _free_for(self, iad: int, kind: str) -> bool:
+        """True if a group of `kind` can stand at `iad`, where none is known yet."""
+        if not 0 < iad <= self.free - self.layout[kind].size or (iad - 1) % self.ratio:
+            return False
+        return bool(self._kind_at[iad] == 0)
 
 
 def check_pointers(state: State) -> None:
@@ -266,12 +285,14 @@ def check_pointers(state: State) -> None:
 def _check_block_extensions(state: State) -> None:
     blocks = state.address["block"]
     extension = state.column("block", KBEX)
-    expected = "sdef"
-    simple = state.h.ia[blocks - 1] == MSDEF
-    rigid = np.isin(state.h.ia[blocks - 1], HEADS["block"][:1])
-    bad = (rigid & (extension != 0)) | (simple & (state.rows(expected, extension) < 0))
-    for row in np.flatnonzero(bad):
-        what = f"which is no {expected} in use" if simple[row] else "but a rigid block has no extension"
+    for row, head in enumerate(state.h.ia[blocks - 1].tolist()):
+        kind = SOFT.get(head)
+        if kind is None and extension[row] != 0:
+            what = "but a rigid block has no extension"
+        elif kind is not None and state.rows(kind, extension[row : row + 1])[0] < 0:
+            what = f"which is no {kind} in use"
+        else:
+            continue
         state.report(2, f"{KBEX} of block@{blocks[row]} points to {extension[row]}, {what}")
 
 

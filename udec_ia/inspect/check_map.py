@@ -12,7 +12,7 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import FORWARD, HOSTS, KL, KR, LISTED, TABLE, State, names
+from udec_ia.inspect.check_groups import FORWARD, HOSTS, KL, KR, TABLE, State, names
 from udec_ia.kernels.touch import VIRTUAL
 
 (KNB,) = names("corner", "host")
@@ -202,7 +202,7 @@ def _check_domains(state: State, loops: dict[int, Passage], whole: bool) -> None
 
 def _check_counts(state: State) -> None:
     """Invariant 5: blocks - contacts + domains = 2, and the counts of the common block are true."""
-    blocks, contacts, domains = (len(state.address[kind]) for kind in LISTED)
+    blocks, contacts, domains = (len(state.address[kind]) for kind in ("block", "contact", "domain"))
     if blocks and blocks - contacts + domains != 2:
         state.report(5, f"{blocks} blocks - {contacts} contacts + {domains} domains is not 2")
     if not blocks and contacts + domains:

@@ -10,17 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import MFREE, MSDEF
+from offsets.generated import MFREE
 from offsets.table import Group, Layout, lay_out, read_table
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import HEADS, LISTS, Unsound, groups
+from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, groups
 
 
 def table(array: MainArray, kind: str) -> Any:
     """All groups of `kind` that the lists reach, one row each, as a copy.
 
-    kind: block, corner, contact, domain, sdef, zone, gridpoint or jointext. Rows stand in list order;
-    corners block by block, clockwise from KP; extensions in the order of their blocks or domains.
+    kind: block, corner, contact, domain, sdef, fdef, zone, gridpoint, jointext, bound, signal or tabpoint.
+    Rows stand in list order; corners block by block, clockwise from KP; extensions in the order of their
+    blocks or domains, zones and grid-points block by block.
     Fields: `address`, then those of the field table by name and in its units, integers as int64, reals
     in the type of the word scheme; a triple is a field of three. Raises ValueError for an unknown kind
     and Unsound if the lists are broken.
@@ -67,19 +68,39 @@ class _Reader:
         return view[first] if field.count == 1 else view[first[:, np.newaxis] + np.arange(field.count)]
 
     def addresses(self, kind: str) -> Any:
-        """Addresses of all groups of `kind`; zones and grid-points hang on no list yet."""
+        """Addresses of all groups of `kind`, in list order; those of blocks block by block."""
         if kind in LISTS:
             return np.fromiter(groups(self.h, kind), np.int64)
         if kind == "corner":
             return self.corners()
-        if kind == "sdef":
+        if kind in SOFT.values():
+            (code,) = (code for code, name in SOFT.items() if name == kind)
             blocks = self.addresses("block")
-            soft = blocks[self.field("block", "HEAD", blocks) == MSDEF]
-            return self.sound("sdef", self.field("block", "KBEX", soft))
+            soft = blocks[self.field("block", "HEAD", blocks) == code]
+            return self.sound(kind, self.field("block", "KBEX", soft))
+        if kind == "gridpoint":
+            return self.chains(kind, "KG", self.field("fdef", "KFG", self.addresses("fdef")))
+        if kind == "zone":
+            return self.chains(kind, "KZ", self.field("fdef", "KFZ", self.addresses("fdef")))
+        if kind == "tabpoint":
+            return self.chains(kind, "KTPN", self.field("signal", "KTP", self.addresses("signal")))
         if kind == "jointext":
             found = self.field("domain", "KDEX", self.addresses("domain"))
             return self.sound("jointext", found[found != 0])
         return np.empty(0, np.int64)
+
+    def chains(self, kind: str, link: str, heads: Any) -> Any:
+        """Addresses of the groups of `kind` in the lists that begin at `heads`, linked by `link`."""
+        found: dict[int, None] = {}
+        for head in heads:
+            iad = int(head)
+            while iad:
+                self.sound(kind, np.array([iad]))
+                if iad in found:
+                    raise Unsound(f"the list through {kind}@{iad} does not come to an end")
+                found[iad] = None
+                iad = int(self.field(kind, link, np.array([iad]))[0])
+        return np.fromiter(found, np.int64)
 
     def corners(self) -> Any:
         """Addresses of all corners: round all blocks at once along the reverse lists, then turned about."""

@@ -11,9 +11,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from offsets.generated import (
+    IBNPNT,
     IBPNT,
     ICPNT,
     IDPNT,
+    ISGPNT,
     KB,
     KB1,
     KB2,
@@ -26,6 +28,9 @@ from offsets.generated import (
     KL2,
     KP,
     KR,
+    KT,
+    KU,
+    MBND,
     MCON,
     MCOR,
     MDOM,
@@ -33,10 +38,13 @@ from offsets.generated import (
     MFREE,
     MRIG,
     MSDEF,
+    MSIG,
     NVBL,
+    NVBN,
     NVCN,
     NVCR,
     NVDO,
+    NVSG,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
@@ -45,15 +53,26 @@ LISTS: dict[str, tuple[int, Offset]] = {
     "block": (IBPNT, KB),
     "contact": (ICPNT, KC),
     "domain": (IDPNT, KD),
+    "bound": (IBNPNT, KU),
+    "signal": (ISGPNT, KT),
 }
 HEADS: dict[str, tuple[int, ...]] = {
     "block": (MRIG, MSDEF, MFDEF),
     "corner": (MCOR,),
     "contact": (MCON,),
     "domain": (MDOM,),
+    "bound": (MBND,),
+    "signal": (MSIG,),
 }
 SOFT = {MSDEF: "sdef", MFDEF: "fdef"}  # kind of the extension of a block with this head code
-SIZES: dict[str, Offset] = {"block": NVBL, "corner": NVCR, "contact": NVCN, "domain": NVDO}
+SIZES: dict[str, Offset] = {
+    "block": NVBL,
+    "corner": NVCR,
+    "contact": NVCN,
+    "domain": NVDO,
+    "bound": NVBN,
+    "signal": NVSG,
+}
 
 
 class Unsound(UdecError):

@@ -27,19 +27,6 @@ from offsets.generated import (
     KED12,
     KED22,
     KGPM,
-    KN,
-    KNB,
-    KNCXX,
-    KNCXY,
-    KNCYY,
-    KNFIX,
-    KNFX,
-    KNFY,
-    KNG,
-    KNP,
-    KNS,
-    KNVX,
-    KNVY,
     KR,
     KT,
     KTD,
@@ -50,6 +37,19 @@ from offsets.generated import (
     KTPF,
     KTPN,
     KTPT,
+    KU,
+    KUB,
+    KUCXX,
+    KUCXY,
+    KUCYY,
+    KUFIX,
+    KUFX,
+    KUFY,
+    KUG,
+    KUP,
+    KUS,
+    KUVX,
+    KUVY,
     KX,
     KXD,
     KXDG,
@@ -101,7 +101,7 @@ def set_signals(h: Memory) -> None:
 @kernel
 def _velocity(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
     """Velocity of what condition `iu` acts on: a grid-point, or its block at (x, y)."""
-    ig, ib = iget(h, iu, KNG), iget(h, iu, KNB)
+    ig, ib = iget(h, iu, KUG), iget(h, iu, KUB)
     if ig != 0:
         return getr(h, ig, KXDG), getr(h, ig, KYDG)
     rx, ry, td = x - getr(h, ib, KX), y - getr(h, ib, KY), getr(h, ib, KTD)
@@ -116,7 +116,7 @@ def _velocity(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
 @kernel
 def _push(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
     """Add a force to what condition `iu` acts on."""
-    ig, ib = iget(h, iu, KNG), iget(h, iu, KNB)
+    ig, ib = iget(h, iu, KUG), iget(h, iu, KUB)
     putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
     putr(h, ib, KBFY, getr(h, ib, KBFY) + fy)
     if ig != 0:
@@ -131,16 +131,16 @@ def _push(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
 @kernel
 def _give_velocity(h: Memory, iu: int, factor: float) -> None:
     """Set the velocities that condition `iu` gives; what that takes from rest is work of the boundary."""
-    ig, ib, fix = iget(h, iu, KNG), iget(h, iu, KNB), iget(h, iu, KNFIX)
+    ig, ib, fix = iget(h, iu, KUG), iget(h, iu, KUB), iget(h, iu, KUFIX)
     if ig != 0:
         vx, vy, m = getr(h, ig, KXDG), getr(h, ig, KYDG), getr(h, ig, KGPM)
     else:
         vx, vy, m = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KBM)
     before = vx * vx + vy * vy
     if fix & 1 != 0:
-        vx = getr(h, iu, KNVX) * factor
+        vx = getr(h, iu, KUVX) * factor
     if fix & 2 != 0:
-        vy = getr(h, iu, KNVY) * factor
+        vy = getr(h, iu, KUVY) * factor
     if ig != 0:
         putr(h, ig, KXDG, vx)
         putr(h, ig, KYDG, vy)
@@ -158,20 +158,20 @@ def apply_bounds(h: Memory) -> None:
     iu = h.ci[IBNPNT]
     while iu != 0:
         factor = real(h, 1.0)
-        if iget(h, iu, KNS) != 0:
-            factor = getr(h, iget(h, iu, KNS), KTNOW)
-        if iget(h, iu, KNFIX) != 0:
+        if iget(h, iu, KUS) != 0:
+            factor = getr(h, iget(h, iu, KUS), KTNOW)
+        if iget(h, iu, KUFIX) != 0:
             _give_velocity(h, iu, factor)
-        ib, ip = iget(h, iu, KNB), iget(h, iu, KNP)
+        ib, ip = iget(h, iu, KUB), iget(h, iu, KUP)
         x, y = getr(h, ib, KX), getr(h, ib, KY)
         if ip != 0:
             ia = iget(h, ip, KR)
             x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
         vx, vy = _velocity(h, iu, x, y)
-        cxx, cxy, cyy = getr(h, iu, KNCXX), getr(h, iu, KNCXY), getr(h, iu, KNCYY)
-        fx = getr(h, iu, KNFX) * factor - cxx * vx - cxy * vy
-        fy = getr(h, iu, KNFY) * factor - cxy * vx - cyy * vy
+        cxx, cxy, cyy = getr(h, iu, KUCXX), getr(h, iu, KUCXY), getr(h, iu, KUCYY)
+        fx = getr(h, iu, KUFX) * factor - cxx * vx - cxy * vy
+        fy = getr(h, iu, KUFY) * factor - cxy * vx - cyy * vy
         if fx != zero or fy != zero:
             _push(h, iu, fx, fy, x, y)
             h.cr[WBOUND] += (fx * vx + fy * vy) * h.cr[TDEL]
-        iu = iget(h, iu, KN)
+        iu = iget(h, iu, KU)

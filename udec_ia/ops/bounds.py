@@ -31,19 +31,6 @@ from offsets.generated import (
     KGFIX,
     KGP,
     KMAT,
-    KN,
-    KNB,
-    KNCXX,
-    KNCXY,
-    KNCYY,
-    KNFIX,
-    KNFX,
-    KNFY,
-    KNG,
-    KNP,
-    KNS,
-    KNVX,
-    KNVY,
     KR,
     KT,
     KTFREQ,
@@ -53,6 +40,19 @@ from offsets.generated import (
     KTPF,
     KTPN,
     KTPT,
+    KU,
+    KUB,
+    KUCXX,
+    KUCXY,
+    KUCYY,
+    KUFIX,
+    KUFX,
+    KUFY,
+    KUG,
+    KUP,
+    KUS,
+    KUVX,
+    KUVY,
     KX,
     KXG,
     KXP,
@@ -223,10 +223,10 @@ def _make(
     ib, ig, ip = target
     iu = int(find(h, NVBN))
     puti(h, iu, HEAD, MBND)
-    for k, n in ((KN, int(h.ci[IBNPNT])), (KNB, ib), (KNG, ig), (KNP, ip), (KNS, signal), (KNFIX, fix)):
+    for k, n in ((KU, int(h.ci[IBNPNT])), (KUB, ib), (KUG, ig), (KUP, ip), (KUS, signal), (KUFIX, fix)):
         puti(h, iu, k, n)
-    reals = ((KNFX, load.fx), (KNFY, load.fy), (KNCXX, load.cxx), (KNCXY, load.cxy), (KNCYY, load.cyy))
-    for kr, value in (*reals, (KNVX, velocity[0]), (KNVY, velocity[1])):
+    reals = ((KUFX, load.fx), (KUFY, load.fy), (KUCXX, load.cxx), (KUCXY, load.cxy), (KUCYY, load.cyy))
+    for kr, value in (*reals, (KUVX, velocity[0]), (KUVY, velocity[1])):
         putr(h, iu, kr, value)
     h.ci[IBNPNT] = iu
     if fix and ig:
@@ -238,43 +238,43 @@ def _make(
 def _release(h: Memory, target: Target, fix: int) -> None:
     """Earlier conditions no longer give the velocities `fix` of the target; those left with nothing go."""
     ib, ig, _ = target
-    for iu in chain(h, int(h.ci[IBNPNT]), KN):
-        if iget(h, iu, KNFIX) & fix and iget(h, iu, KNB) == ib and iget(h, iu, KNG) == ig:
-            puti(h, iu, KNFIX, iget(h, iu, KNFIX) & ~fix)
-            reals = (KNFX, KNFY, KNCXX, KNCXY, KNCYY)
-            if iget(h, iu, KNFIX) == 0 and not any(float(getr(h, iu, k)) for k in reals):
+    for iu in chain(h, int(h.ci[IBNPNT]), KU):
+        if iget(h, iu, KUFIX) & fix and iget(h, iu, KUB) == ib and iget(h, iu, KUG) == ig:
+            puti(h, iu, KUFIX, iget(h, iu, KUFIX) & ~fix)
+            reals = (KUFX, KUFY, KUCXX, KUCXY, KUCYY)
+            if iget(h, iu, KUFIX) == 0 and not any(float(getr(h, iu, k)) for k in reals):
                 drop(h, iu)
 
 
 def drop(h: Memory, iu: int) -> None:
     """Take condition `iu` out of the list and give its group back."""
     before = 0
-    for other in chain(h, int(h.ci[IBNPNT]), KN):
+    for other in chain(h, int(h.ci[IBNPNT]), KU):
         if other == iu:
             break
         before = other
     if before:
-        puti(h, before, KN, iget(h, iu, KN))
+        puti(h, before, KU, iget(h, iu, KU))
     else:
-        h.ci[IBNPNT] = iget(h, iu, KN)
+        h.ci[IBNPNT] = iget(h, iu, KU)
     puti(h, iu, HEAD, 0)
     lose(h, iu, NVBN)
 
 
 def forget_block(h: Memory, ib: int) -> None:
     """Take away all conditions on block `ib`, which is about to go or to change."""
-    for iu in chain(h, int(h.ci[IBNPNT]), KN):
-        if iget(h, iu, KNB) == ib:
+    for iu in chain(h, int(h.ci[IBNPNT]), KU):
+        if iget(h, iu, KUB) == ib:
             _free(h, iu)
 
 
 def _free(h: Memory, iu: int) -> None:
     """Take condition `iu` away and set free what it held."""
-    ib, ig = iget(h, iu, KNB), iget(h, iu, KNG)
+    ib, ig = iget(h, iu, KUB), iget(h, iu, KUG)
     if ig:
-        puti(h, ig, KGFIX, iget(h, ig, KGFIX) & ~iget(h, iu, KNFIX))
+        puti(h, ig, KGFIX, iget(h, ig, KGFIX) & ~iget(h, iu, KUFIX))
     elif iget(h, ib, KBFIX) != FIXED:
-        puti(h, ib, KBFIX, iget(h, ib, KBFIX) & ~(2 * iget(h, iu, KNFIX)))
+        puti(h, ib, KBFIX, iget(h, ib, KBFIX) & ~(2 * iget(h, iu, KUFIX)))
     drop(h, iu)
 
 
@@ -283,8 +283,8 @@ def _set_free(h: Memory, where: Range) -> int:
     points, edges = set(_points(h, where)), {(ib, 0, ip) for ib, ip in _edges(h, where)}
     gone = [
         iu
-        for iu in chain(h, int(h.ci[IBNPNT]), KN)
-        if (iget(h, iu, KNB), iget(h, iu, KNG), iget(h, iu, KNP)) in points | edges
+        for iu in chain(h, int(h.ci[IBNPNT]), KU)
+        if (iget(h, iu, KUB), iget(h, iu, KUG), iget(h, iu, KUP)) in points | edges
     ]
     for iu in gone:
         _free(h, iu)
