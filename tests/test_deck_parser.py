@@ -177,7 +177,8 @@ def words(draw: st.DrawFn, command: Command) -> tuple[list[str], list[Any], dict
             ]
             pieces += [text for text, _ in read]
             tuples = [tuple(values) for _, values in read]
-            named[word.argument] = tuples if word.repeated else tuples[0][0]
+            one = tuples[0] if len(tuples[0]) > 1 else tuples[0][0]
+            named[word.argument] = tuples if word.repeated else one
         else:
             named[word.argument] = word.keyword.lower() if word.sets else True
     return pieces, positional, named

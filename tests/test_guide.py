@@ -113,7 +113,9 @@ def test_the_index_lists_every_page() -> None:
 def test_faithfulness_knows_our_fields_and_errors() -> None:
     text = FAITHFULNESS.read_text()
     table = read_table()
-    ours = {field.name for group in table.groups for field in group.fields if field.ours}
+    ours = {
+        field.name for group in table.groups for field in group.fields if field.ours and field.role != "head"
+    }
     ours |= {field.name for field in table.common if field.ours} | {"FTOL", "GTOL", "HTOL"}
     words = set(re.findall(r"\w+", text))
     assert ours - words == set()

@@ -31,7 +31,7 @@ from udec_ia.output.outline import (
     outlines,
     snapshot,
 )
-from udec_ia.output.plot import Frame, Plots
+from udec_ia.output.plot import Frame, Plots, What
 
 ROUNDED_AREA = 1.0 - (4.0 - np.pi) * ROUNDING**2
 # a quarter circle drawn as n chords loses R^2 (pi/4 - (n/2) sin(pi/2n)) of its area
@@ -188,7 +188,7 @@ def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
     shift(h, list(groups(h, "block"))[1], 0.2, 0.1)
     plots.draw(h, 1)
     assert plots.files == []
-    plots.draw(h, 0, contacts=True, domains=True, addresses=True)
+    plots.draw(h, 0, What(contacts=True, domains=True, addresses=True))
     assert [path.name for path in plots.files] == ["deck-plot-1.png", "deck-plot-1.svg"]
     files = plots.close()
     assert [path.name for path in files[2:]] == ["deck-plot-2.png", "deck-plot-2.svg"]

@@ -393,12 +393,21 @@ class Model:
         return dump(self.h, n, m)
 
     def plot(
-        self, n: int = 0, contacts: bool = False, domains: bool = False, addresses: bool = False
+        self,
+        n: int = 0,
+        contacts: bool = False,
+        domains: bool = False,
+        addresses: bool = False,
+        stresses: bool = False,
+        velocities: bool = False,
+        displacements: bool = False,
+        contour: str = "",
     ) -> None:
-        """PLOT: start a frame (0) or draw over the last one (1)."""
-        from udec_ia.output.plot import Plots
+        """PLOT: start a frame (0) or draw over the last one (1); contour: a key of field.CONTOURS."""
+        from udec_ia.output.plot import Plots, What
 
         self._ready()
         if self._plots is None:
             self._plots = Plots(self.out, self.name)
-        self._plots.draw(self.h, n, contacts, domains, addresses)
+        what = What(contacts, domains, addresses, stresses, velocities, displacements, contour.lower())
+        self._plots.draw(self.h, n, what)

@@ -234,19 +234,39 @@ COMMANDS = (
     Command(
         "PLot",
         "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
-        "contacts with their forces, domains, and addresses.",
+        "contacts with their forces, domains, addresses, principal stresses, velocities, displacements since "
+        "the frame began, and zones coloured by a stress (11, 12, 22), pressure or shear stress.",
         "PLOT 0 CONTACTS",
         optional="n",
-        words=(Word("Contacts"), Word("Domains"), Word("Addresses")),
+        words=(
+            Word("Contacts"),
+            Word("Domains"),
+            Word("Addresses"),
+            Word("Stresses"),
+            Word("Velocities"),
+            Word("DIsplacements"),
+            *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
+        ),
         ours="the words; n is used in both example runs",
     ),
     Command(
         "Print",
-        "Print data of blocks, contacts, corners, domains, or the linked lists of blocks and domains.",
+        "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
+        "grid-points, zones, or boundary conditions.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(
             Word(keyword, sets=SEVERAL)
-            for keyword in ("Blocks", "Contacts", "CORners", "Domains", "List", "DList")
+            for keyword in (
+                "Blocks",
+                "Contacts",
+                "CORners",
+                "Domains",
+                "List",
+                "DList",
+                "Gridpoints",
+                "Zones",
+                "BOundaries",
+            )
         ),
         first=SEVERAL,
     ),

@@ -19,10 +19,14 @@ from offsets.generated import (
     KB,
     KB1,
     KB2,
+    KBEX,
     KC,
     KD,
     KD1,
     KDLOOP,
+    KFG,
+    KFZ,
+    KG,
     KL,
     KL1,
     KL2,
@@ -30,6 +34,7 @@ from offsets.generated import (
     KR,
     KT,
     KU,
+    KZ,
     MBND,
     MCON,
     MCOR,
@@ -44,7 +49,9 @@ from offsets.generated import (
     NVCN,
     NVCR,
     NVDO,
+    NVGP,
     NVSG,
+    NVZO,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
@@ -123,6 +130,24 @@ def groups(h: Memory, kind: str) -> Iterator[int]:
         return following and expect(h, following, (kind,), f"the list link of {kind}@{iad}")
 
     yield from _bounded(h, f"the {kind} list", first, step, 0)
+
+
+def members(h: Memory, block: int, kind: str) -> Iterator[int]:
+    """Addresses of the zones or grid-points of `block`, in list order; none if it has no zones."""
+    if iget(h, block, HEAD) != MFDEF:
+        return
+    head, link, size = {"gridpoint": (KFG, KG, NVGP), "zone": (KFZ, KZ, NVZO)}[kind]
+    first = iget(h, iget(h, block, KBEX), head)
+    if first == 0:
+        return
+
+    def step(iad: int) -> int:
+        following = iget(h, iad, link)
+        if following and not 1 <= following <= int(h.ci[MFREE]) - size_of(h, size):
+            raise Unsound(f"the list link of {kind}@{iad} points to {following}, outside the main array")
+        return following
+
+    yield from _bounded(h, f"the {kind} list of block@{block}", first, step, 0)
 
 
 def next_item(h: Memory, block: int, iad: int) -> int:

@@ -17,6 +17,7 @@ import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
+from udec_ia.output.field import Field, field
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
 ARC_POINTS = 6  # points on an arc where a domain's polygon follows it
@@ -67,25 +68,25 @@ class Domain:
 
 @dataclass(frozen=True)
 class State:
-    """The block system at one moment; contacts and domains only where they were asked for."""
+    """The block system at one moment; contacts, domains and the field where they were asked for."""
 
     cycle: int
     time: float
     outlines: Outlines
     contacts: Contacts | None = None
     domains: tuple[Domain, ...] = ()
-    addresses: bool = False
+    field: Field | None = None
 
 
-def snapshot(h: Memory, contacts: bool = False, domains: bool = False, addresses: bool = False) -> State:
-    """A copy of what can be drawn of the present state."""
+def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False) -> State:
+    """A copy of what can be drawn of the present state; inside: also points and stresses."""
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cr[g.TIME]),
         outlines(h),
         contact_forces(h) if contacts else None,
         tuple(domain_polygons(h)) if domains else (),
-        addresses,
+        field(h) if inside else None,
     )
 
 

@@ -7,6 +7,7 @@ has the colour of its material, what moves gets a shade for each state, the dark
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,14 +27,43 @@ from udec_ia.output.draw import (
     paper,
     scale_for,
 )
+from udec_ia.output.field import (
+    draw_contours,
+    draw_displacements,
+    draw_principal,
+    draw_velocities,
+    draw_zones,
+)
 from udec_ia.output.outline import State, snapshot
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
 KEY_WIDTH = 1.35  # inches for the key on the right
 DPI = 150
+
+
+@dataclass(frozen=True)
+class What:
+    """What a picture shows beside blocks, centroids and zones; contour: a key of field.CONTOURS, or ""."""
+
+    contacts: bool = False
+    domains: bool = False
+    addresses: bool = False
+    stresses: bool = False
+    velocities: bool = False
+    displacements: bool = False
+    contour: str = ""
+
+    @property
+    def notes(self) -> int:
+        """Number of notes on scales."""
+        return self.stresses + self.velocities + self.displacements
+
+
+BARE = What()
 
 
 class Plots:
@@ -46,16 +76,15 @@ class Plots:
         self.count = 0
         self.frame: Frame | None = None
 
-    def draw(
-        self, h: Memory, n: int = 0, contacts: bool = False, domains: bool = False, addresses: bool = False
-    ) -> None:
+    def draw(self, h: Memory, n: int = 0, what: What = BARE) -> None:
         """PLOT n: start a frame with the present state (0), or draw it over the last one (1)."""
         if n not in (0, 1):
             raise UdecError(28, f"PLOT {n}", "PLOT 0 starts a frame, PLOT 1 draws over the last one")
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
-        self.frame.add(snapshot(h, contacts, domains, addresses), float(h.cr[g.PSCALE]))
+        inside = bool(h.ci[g.NSOFT]) or what.velocities or what.displacements
+        self.frame.add(snapshot(h, what.contacts, what.domains, inside), what, float(h.cr[g.PSCALE]))
 
     def close(self) -> list[Path]:
         """Write the frame that is open, if any; returns the files written by now."""
@@ -75,11 +104,13 @@ class Frame:
     def __init__(self, name: str) -> None:
         self.name = name
         self.scale = 0.0
+        self.what = BARE
         self.states: list[State] = []
 
-    def add(self, state: State, scale: float = 0.0) -> None:
+    def add(self, state: State, what: What = BARE, scale: float = 0.0) -> None:
         """Draw one more state over those before it, at the plot scale now in force."""
         self.states.append(state)
+        self.what = what
         self.scale = scale
 
     def save(self, base: Path) -> list[Path]:
@@ -99,20 +130,38 @@ class Frame:
         box = limits(self.states)
         inches = scale_for(box, self.scale)
         notes = self._notes()
-        key = KEY_WIDTH if len(self.states) > 1 else 0.0
-        figure, axes = paper(box, inches, key, NOTE_HEIGHT * len(notes))
+        key = KEY_WIDTH if len(self.states) > 1 or self.what.contour else 0.0
+        figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
         last = self.states[-1]
         axes.set_title(self.name, loc="left", fontsize=10, color=INK)
         axes.set_title(f"cycle {last.cycle}, t = {last.time:.4g} s", loc="right", fontsize=9, color=INK)
-        figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
         draw_blocks(axes, self.states, inches)
         for state in self.states:
             draw_domains(axes, state.domains)
             if state.contacts is not None:
-                draw_contacts(axes, state.contacts, state.addresses, box)
-            if state.addresses:
-                draw_addresses(axes, state.outlines, inches)
+                draw_contacts(axes, state.contacts, self.what.addresses, box)
+        if self.what.addresses:
+            draw_addresses(axes, last.outlines, inches)
+        notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))
+        figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
         return figure
+
+    def _draw_inside(self, axes: Axes, size: float) -> list[str]:
+        """Zones, stresses, velocities and displacements of the last state; returns notes on their scales."""
+        what, first, now = self.what, self.states[0].field, self.states[-1].field
+        if now is None:
+            return []
+        if what.contour:
+            draw_contours(axes, now, what.contour)
+        draw_zones(axes, now)
+        notes = []
+        if what.stresses:
+            notes.append(draw_principal(axes, now, size))
+        if what.velocities:
+            notes.append(draw_velocities(axes, now, size))
+        if what.displacements and first is not None:
+            notes.append(draw_displacements(axes, first, now, size))
+        return notes
 
     def _notes(self) -> list[str]:
         """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""

@@ -18,14 +18,23 @@ import offsets.generated as g
 from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, point
+from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, members, point
 
 T = TypeVar("T")
 LINE = 120
 GAP = "  "
 TABLE = read_table()
 HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
-TABLES = {"blocks": "block", "contacts": "contact", "corners": "corner", "domains": "domain"}
+TABLES = {
+    "blocks": "block",
+    "contacts": "contact",
+    "corners": "corner",
+    "domains": "domain",
+    "gridpoints": "gridpoint",
+    "zones": "zone",
+    "boundaries": "bound",
+}
+NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
@@ -65,6 +74,8 @@ def printout(h: Memory, *what: str) -> str:
     for name in what:
         if name in TABLES:
             parts += _group_tables(h, TABLES[name])
+            if name == "blocks" and any(iget(h, iad, HEAD) == g.MSDEF for iad in _all(h, "block")):
+                parts += _group_tables(h, "sdef")
         elif name in LISTS:
             parts += _lists(h, LISTS[name])
         else:
@@ -93,10 +104,17 @@ def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:
 
 
 def _all(h: Memory, kind: str) -> Iterator[int]:
-    """Addresses of all groups of a kind; corners block by block, clockwise."""
+    """Addresses of all groups of a kind; corners, grid-points and zones block by block."""
     if kind == "corner":
         for block in groups(h, "block"):
             yield from corners(h, block)
+    elif kind in ("gridpoint", "zone"):
+        for block in groups(h, "block"):
+            yield from members(h, block, kind)
+    elif kind == "sdef":
+        for block in groups(h, "block"):
+            if iget(h, block, HEAD) == g.MSDEF:
+                yield iget(h, block, g.KBEX)
     else:
         yield from groups(h, kind)
 
@@ -104,9 +122,10 @@ def _all(h: Memory, kind: str) -> Iterator[int]:
 def _group_tables(h: Memory, kind: str) -> list[str]:
     """The tables of one kind of group: what it describes, then how it is linked."""
     addresses, complaint = _until_broken(_all(h, kind))
+    name = NAMES.get(kind, kind)
     if not addresses:
-        return [f"No {kind}s", *complaint]
-    codes = HEADS[kind]
+        return [f"No {name}s", *complaint]
+    codes = HEADS.get(kind, ())
     described: list[Column] = []
     linked: list[Column] = []
     for field in TABLE.group(kind).fields:
@@ -116,12 +135,12 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
         else:
             column = _field_column(h, addresses, field)
             (described if field.role in ("data", "host") else linked).append(column)
-    code = "" if len(codes) > 1 else f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}"
+    code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
     address = Column("address", "", [str(iad) for iad in addresses])
-    title = f"{kind.capitalize()}s: {len(addresses)}{code}"
+    title = f"{name.capitalize()}s: {len(addresses)}{code}"
     return [
         *_stacked(title, address, described),
-        *_stacked(f"{kind.capitalize()}s: links", address, linked),
+        *(_stacked(f"{name.capitalize()}s: links", address, linked) if linked else []),
         *complaint,
     ]
 
@@ -131,7 +150,7 @@ def _field_column(h: Memory, addresses: Iterable[int], field: Field) -> Column:
     if field.real:
         cells = [f"{getr(h, iad, offset):.6g}" for iad in addresses]
     else:
-        cells = [str(iget(h, iad, offset)) for iad in addresses]
+        cells = [" ".join(str(iget(h, iad, offset, i)) for i in range(field.count)) for iad in addresses]
     return Column(field.name, "" if field.unit == "-" else field.unit, cells)
 
 
