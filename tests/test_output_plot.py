@@ -202,7 +202,7 @@ def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
 def test_addresses_are_written_in_the_picture(tmp_path: Path) -> None:
     h = two_blocks().h
     frame = Frame("deck")
-    frame.add(snapshot(h, contacts=True, domains=True, addresses=True))
+    frame.add(snapshot(h, contacts=True, domains=True), What(addresses=True))
     texts = [text.get_text() for text in frame.figure().axes[0].texts]
     wanted = [*groups(h, "block"), *groups(h, "contact"), iget(h, next(groups(h, "block")), g.KP)]
     assert {str(iad) for iad in wanted} <= set(texts)
