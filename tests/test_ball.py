@@ -111,7 +111,7 @@ def test_what_32_bit_reals_cost() -> None:
     """Coordinates of 10 m hold 1e-6 m: of an overlap of 0.9 mm, measured between two of them, 2e-3 may go.
     1000 cycles round a coordinate 1000 times by half of that: 5e-4 m in all if they never cancelled.
 
-    Really lost: 4e-4 of the overlap, 1.3e-4 of its force and 1.4e-5 of the way.
+    What is really lost is in docs/words.md.
     """
     narrow, wide = roll("i32r32"), roll("i32r64")
     assert narrow.overlap == pytest.approx(wide.overlap, rel=2e-3)

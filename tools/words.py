@@ -1,0 +1,114 @@
+"""What the widths of integers and reals cost and bear, shown on the ball of Appendix II-1.
+
+    python tools/words.py
+
+prints the tables of docs/words.md: the deck examples/ball-rolling.dat is run in all five word schemes,
+without its plots, and held against the formulas for a disc that rolls.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+from pathlib import Path
+from typing import NamedTuple
+
+from offsets.generated import MFREE, NBLK
+from udec_ia import Model
+from udec_ia.heap.words import ALL_SCHEMES
+
+DECK = Path(__file__).parent.parent / "examples" / "ball-rolling.dat"
+SIDE, RADIUS, DENSITY, KN, STEP = 5**0.5, 1.115, 2000.0, 1e8, 0.002  # of the deck; s, m, kg/m3, N/m
+LEFT_OUT = ("PLOT", "P B", "SAVE", "STOP", "END")
+
+
+class Ball(NamedTuple):
+    """overlap (m) and force (N/m) of the settled ball; travelled: m, after 200, 400, ... 1000 cycles."""
+
+    overlap: float
+    force: float
+    travelled: list[float]
+
+
+def expected() -> Ball:
+    """By formula: the ball settles under gravity (4, -8) on a slope of 1 in 2, and rolls under (0, -10)."""
+    mass = DENSITY * SIDE**2
+    force = mass * (4 * 1 + 8 * 2) / 5**0.5
+    acceleration = 10 / 5**0.5 / (1 + SIDE**2 / 6 / RADIUS**2)
+    return Ball(force / KN, force, [acceleration * (200 * k * STEP) ** 2 / 2 for k in range(1, 6)])
+
+
+def roll(build: str) -> Ball:
+    """The ball as the deck has it."""
+    m = Model(build)
+    settled, places = None, []
+    for line in DECK.read_text().splitlines():
+        if line.startswith(LEFT_OUT):
+            continue
+        m.run(line)
+        if line.startswith("CYCLE"):
+            (ball,) = (row for row in m.table("block") if row["KBFIX"] == 0)
+            places.append((float(ball["KX"]), float(ball["KY"])))
+            settled = settled or tuple(float(m.table("contact")[name][0]) for name in ("KCN", "KCFN"))
+    (x0, y0), *rest = places
+    return Ball(*settled, [hypot(x - x0, y - y0) for x, y in rest])
+
+
+def wall(build: str) -> tuple[int, int]:
+    """Blocks and words in use of a wall of 6 by 6 square blocks."""
+    m = Model(build)
+    m.block(0, 0, 0, 6, 6, 6, 6, 0)
+    for k in range(1, 6):
+        m.split(-1, k, 7, k)
+        m.split(k, -1, k, 7)
+    return int(m.h.ci[NBLK]), int(m.h.ci[MFREE]) - 1
+
+
+def row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def head(*cells: str) -> str:
+    return f"{row(*cells)}\n|{'---|' * len(cells)}"
+
+
+def sizes() -> list[str]:
+    """What each scheme can hold."""
+    lines = [head("scheme", "words of IA(), at most", "bytes for a block of a wall", "blocks, about")]
+    for name, scheme in ALL_SCHEMES.items():
+        blocks, words = wall(name)
+        each, most = words * scheme.int_bits / 8 / blocks, float(f"{scheme.top_address * blocks / words:.2g}")
+        lines.append(row(name, f"{scheme.top_address:,}", f"{each:.0f}", f"{most:,.0f}"))
+    return lines
+
+
+def errors(balls: dict[str, Ball]) -> list[str]:
+    """The errors of each scheme against the formulas."""
+    right = expected()
+    cells = [f"travelled, {200 * k} cycles" for k in range(1, 6)]
+    lines = [head("scheme", "overlap", "Fn", *cells)]
+    for name, ball in balls.items():
+        pairs = [(ball.overlap, right.overlap), (ball.force, right.force)]
+        pairs += zip(ball.travelled, right.travelled, strict=True)
+        lines.append(row(name, *(f"{100 * (ours / formula - 1):+.3f} %" for ours, formula in pairs)))
+    return lines
+
+
+def cost(balls: dict[str, Ball]) -> list[str]:
+    """What 32-bit reals differ from 64-bit ones."""
+    lines = [head("32-bit against 64-bit reals", "overlap", "Fn", "travelled, at most")]
+    for narrow, wide in (("i16r32", "i16r64"), ("i32r32", "i32r64")):
+        one, two = balls[narrow], balls[wide]
+        travelled = max(abs(a / b - 1) for a, b in zip(one.travelled, two.travelled, strict=True))
+        settled = (abs(one.overlap / two.overlap - 1), abs(one.force / two.force - 1))
+        lines.append(row(f"{narrow} against {wide}", *(f"{part:.1e}" for part in (*settled, travelled))))
+    return lines
+
+
+def report() -> str:
+    """The tables, as they stand in docs/words.md."""
+    balls = {name: roll(name) for name in ALL_SCHEMES}
+    return "\n\n".join("\n".join(table) for table in (sizes(), errors(balls), cost(balls))) + "\n"
+
+
+if __name__ == "__main__":
+    print(report(), end="")
