@@ -209,6 +209,18 @@ def test_addresses_are_written_in_the_picture(tmp_path: Path) -> None:
     assert str(next(groups(h, "domain"))) in texts
 
 
+def test_the_note_gives_the_resultant_force() -> None:
+    """The summary of a run gives normal forces: here 3, where the arrows are 5 long."""
+    h = two_blocks().h
+    for contact in groups(h, "contact"):
+        putr(h, contact, g.KCFN, 3.0)
+        putr(h, contact, g.KCFS, 4.0)
+    frame = Frame("deck")
+    frame.add(snapshot(h, contacts=True))
+    notes = "".join(text.get_text() for text in frame.figure().texts)
+    assert "largest contact force (resultant): 5 N/m" in notes
+
+
 def test_only_two_kinds_of_plot(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as error:
         Plots(tmp_path, "deck").draw(two_blocks().h, 2)

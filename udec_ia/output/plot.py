@@ -79,7 +79,8 @@ class Plots:
     def draw(self, h: Memory, n: int = 0, what: What = BARE) -> None:
         """PLOT n: start a frame with the present state (0), or draw it over the last one (1)."""
         if n not in (0, 1):
-            raise UdecError(28, f"PLOT {n}", "PLOT 0 starts a frame, PLOT 1 draws over the last one")
+            advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
+            raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
@@ -170,4 +171,4 @@ class Frame:
         if last.contacts is None:
             return outer
         force = np.hypot(*last.contacts.force.T).max(initial=0.0)
-        return [*outer, f"largest contact force: {force:.4g} N/m"]
+        return [*outer, f"largest contact force (resultant): {force:.4g} N/m"]

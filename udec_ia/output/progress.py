@@ -86,12 +86,12 @@ def summary(
 ) -> str:
     """The line that ends every run.
 
-    cycles: all of the run; time: in s; force: largest contact force in N/m; wall: wall time in s.
+    cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s.
     """
     names = ", ".join(path.name for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
     written = f"wrote {names}{more}" if files else "no file written"
     return (
         f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
-        f"largest contact force {force:.4g} N/m; {written}; {wall:.1f} s"
+        f"largest normal force {force:.4g} N/m; {written}; {wall:.1f} s"
     )
