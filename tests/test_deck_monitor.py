@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recorder import Recorder
 
+from udec_ia import Model
 from udec_ia.deck.interactive import converse, history, history_file
 from udec_ia.deck.language import COMMANDS
 from udec_ia.deck.monitor import run_deck
@@ -102,28 +103,54 @@ def test_an_interrupted_run_is_saved() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "number", "column"),
+    ("line", "parameter", "column"),
     [
-        ("BLOCK MAT=99 0 0 0 1 1 1", 4, 11),
-        ("BLOCK 0 0 0 1 1 1", 4, 1),
-        ("BLOCK C=9 0 0 0 1 1 1", 9, 9),
-        ("DAMP 9 10", 13, 6),
-        ("ROUND 9", 14, 7),
-        ("CYCLE 5", 14, 1),
-        ("GEN 0 1 0 1 AUTO", 23, 13),
-        ("FIX 0 1 0 1", 24, 5),
-        ("SAVE there/it.h5", 29, 6),
-        ("RSET 1 2 3", 30, 8),
-        ("HELP FOO", 2, 6),
+        ("BLOCK MAT=99 0 0 0 1 1 1", "material", 11),
+        ("BLOCK 0 0 0 1 1 1", "material", 1),
+        ("BLOCK 0,0 0,1\n+ 1,1", "y2", 13),
+        ("PROP M 1 KN=1 K=2", "kn", 13),
+        ("PROP M 1 KN=1 K=2", "bulk", 17),
+        ("DAMP 9 10", "freq", 8),
+        ("CYCLE 5", "", 1),
+        ("GEN 0 1 0 1 AUTO", "mode", 13),
+        ("SAVE there/it.h5", "", 6),
+        ("SAVE", "", 1),
+        ("HELP FOO", "", 6),
     ],
 )
-def test_errors_of_the_model_point_at_the_parameter_to_blame(line: str, number: int, column: int) -> None:
+def test_errors_of_the_model_point_at_the_parameter_to_blame(line: str, parameter: str, column: int) -> None:
     model = Recorder()
-    for name in ("block", "damping", "round", "cycle", "generate", "fix", "save", "rset"):
-        model.fails(name, number)
+    for name in ("block", "property", "damping", "cycle", "generate", "save"):
+        model.failures[name] = UdecError(28, parameter=parameter)
     _, error = refused(f"START\n{line}\n", model)
-    assert (error.number, error.line, error.column, error.source) == (number, 2, column, line)
+    assert (error.line, error.column, error.source) == (2, column, line.split("\n")[0])
     assert error.advice
+
+
+def test_a_command_that_takes_blocks_says_how_many() -> None:
+    """Cut along the middle, then across both halves; what happens to none says so."""
+    out = io.StringIO()
+    lines = (
+        "BLOCK 0,0 0,2 2,2 2,0\nSPLIT -1,1 3,1\nSPLIT 1,-1 1,3\nSPLIT 5,5 6,6\nFIX 0 2 0 1\nFREE 0 1 0 1\n"
+    )
+    run_deck(Model(), f"START\n{lines}CHANGE 0 2 0 2 MAT=3\nDELETE 0 1 0 1\nDELETE 0 1 0 1\n", out)
+    assert [line for line in out.getvalue().split("\n") if not line.startswith(">")] == [
+        " SPLIT: 1 block cut off, 2 blocks now",
+        " SPLIT: 2 blocks cut off, 4 blocks now",
+        " SPLIT: no block cut",
+        " FIX: 2 blocks fixed",
+        " FREE: 1 block set free",
+        " CHANGE: 4 blocks changed",
+        " DELETE: 1 block deleted, 3 blocks now",
+        " DELETE: no block in range",
+        "",
+    ]
+
+
+def test_files_named_in_a_deck_are_in_the_folder_for_files() -> None:
+    model, _ = obey("START\nSAVE one.h5\nSAVE\nRESTART one.h5\nSAVE /there/one.h5\n")
+    in_out, elsewhere = {"path": Path("results/one.h5")}, {"path": Path("/there/one.h5")}
+    assert [named for _, _, named in model.calls[1:]] == [in_out, {}, in_out, elsewhere]
 
 
 def test_a_file_that_cannot_be_written_is_error_31() -> None:

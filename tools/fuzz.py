@@ -368,6 +368,7 @@ def fuzz(kind: str, seed: int, many: int, until: float) -> list[str]:
 
 
 def main() -> int:
+    """Play decks and read files until enough, or until one ends as none may; returns the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--decks", type=int, default=2000, help="number of decks")
     parser.add_argument("--files", type=int, default=2000, help="number of restart files")

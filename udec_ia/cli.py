@@ -16,7 +16,6 @@ import udec_ia
 from udec_ia.deck.interactive import converse, history, history_file
 from udec_ia.deck.monitor import Monitor, run_deck
 from udec_ia.errors import UdecError
-from udec_ia.heap.jit import is_cached, note_cached
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.model import Model
 
@@ -62,8 +61,6 @@ def _run(args: argparse.Namespace) -> int:
     model.progress = sys.stdout
     if args.deck is not None:
         model.name = args.deck.stem
-    if not is_cached(args.build):
-        print("compiling once for this machine, up to a minute ...", file=sys.stderr, flush=True)
     if args.deck is not None:
         run_deck(model, args.deck, sys.stdout).stop()
     elif sys.stdin.isatty():
@@ -73,7 +70,6 @@ def _run(args: argparse.Namespace) -> int:
         monitor = Monitor(model, sys.stdout)
         monitor.run(sys.stdin, "stdin")
         monitor.stop()
-    note_cached(args.build)
     return 0
 
 

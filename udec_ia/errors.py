@@ -48,14 +48,18 @@ class UdecError(Exception):
 
     number: key of MESSAGES. detail: what exactly is wrong. advice: what to do about it.
     file, line, column, source, token: place in the deck (line and column count from 1), or None.
-    group: address of the group concerned, or 0. saved: restart file written because of the error.
+    group: address of the group concerned, or 0. parameter: name of the argument that is to blame, or "".
+    saved: restart file written because of the error.
     """
 
-    def __init__(self, number: int, detail: str = "", advice: str = "", *, group: int = 0) -> None:
+    def __init__(
+        self, number: int, detail: str = "", advice: str = "", *, group: int = 0, parameter: str = ""
+    ) -> None:
         self.number = number
         self.detail = detail
         self.advice = advice
         self.group = group
+        self.parameter = parameter
         self.file: str | None = None
         self.line: int | None = None
         self.column: int | None = None

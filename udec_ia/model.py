@@ -2,21 +2,29 @@
 
 A Model owns one main array. Every method below does what the command of the same name does, takes the
 numbers that the command takes, and raises UdecError with the number that the command would print.
+
+What a run has to say besides goes to the log "udec_ia", as warnings, which Python shows on standard error
+unless it is told otherwise: that routines are being compiled, that a time-step may be unstable.
 """
 
 from __future__ import annotations
 
 import io
+import logging
+import operator
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Self, TextIO
+from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
 
+import numba
 import numpy as np
 
 from offsets.generated import DTOL, MCTOT, NBLK, NCON, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.jit import is_cached, note_cached
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops import settings
 from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
@@ -33,6 +41,9 @@ if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
     from udec_ia.output.plot import Plots
 
+log = logging.getLogger("udec_ia")
+announced: set[str] = set()  # word schemes whose compilation this process has announced
+
 RESTART_FILE = "restart.h5"
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
@@ -42,23 +53,27 @@ class Model:
 
     build: word scheme, "i16r32", "i32r32", "i16r64", "i32r64" or "i64r64".
     mtop: size of IA() in words, fixed as in 1980; None lets the array grow as needed.
-    out: folder for restart files and plots; made when the first file is written.
+    out: folder for plots, and for restart files whose names are given in a deck or not at all; made when the
+    first file is written.
+    tell: takes what CYCLE has to warn of.
     """
 
     def __init__(self, build: str = DEFAULT_SCHEME, mtop: int | None = None, out: str | Path = ".") -> None:
-        self.array = MainArray(scheme(build), mtop)
-        self.mtop = mtop
+        self.mtop = None if mtop is None else _words(mtop)
+        self.array = MainArray(scheme(build), self.mtop)
         self.out = Path(out)
         self.name = "udec"
         self.deck_log: list[str] = []
         self.progress: TextIO | None = None
         self.animate = False
+        self.tell: Callable[[str], None] = log.warning
         self.started = False
         self._saved: list[Path] = []
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
         self._touched = False  # RSET has changed a word since the heap was last known to be sound
+        self._warned = ""  # the last warning, which is not repeated by every CYCLE
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
 
@@ -75,22 +90,29 @@ class Model:
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
         self._boxes.forget()
         self._touched = False
+        self._warned = ""
         self.started = True
 
     def save(self, path: str | Path | None = None) -> Path:
-        """SAVE: write the restart file, by default restart.h5 in the folder for files."""
+        """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
+
+        Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
+        """
         from udec_ia.restart import save
 
-        written = save(self.array, self._file(path), self.deck_log)
+        written = save(self.array, self.out / RESTART_FILE if path is None else path, self.deck_log)
         if written not in self._saved:
             self._saved.append(written)
         return written
 
     def restart(self, path: str | Path | None = None) -> None:
-        """RESTART: go on from a restart file. Error 29 if it cannot be used; the model is then as it was."""
+        """RESTART: go on from the restart file `path`, by default restart.h5 in the folder `out`.
+
+        Error 29 if it cannot be used; the model is then as it was.
+        """
         from udec_ia.restart import load
 
-        self.array, self.deck_log = load(self._file(path))
+        self.array, self.deck_log = load(self.out / RESTART_FILE if path is None else path)
         self._boxes.forget()
         self._touched = False
         self.started = True
@@ -99,7 +121,7 @@ class Model:
     def restore(cls, path: str | Path) -> Self:
         """A new model from a restart file, in the word scheme of the file."""
         model = cls()
-        model.restart(Path(path).absolute())
+        model.restart(path)
         return model
 
     def stop(self) -> str:
@@ -132,10 +154,15 @@ class Model:
     def _ready(self, sound: bool = True) -> None:
         """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
 
-        A routine that follows pointers must never meet one that RSET has damaged: error 20.
+        A routine that follows pointers must never meet one that RSET has damaged: error 20. Such routines are
+        compiled ones, too: the first one of a process says so if nobody has compiled them before.
         """
         if not self.started:
             self.start()
+        name = self.array.scheme.name
+        if sound and not (name in announced or is_cached(name) or numba.config.DISABLE_JIT):
+            announced.add(name)
+            log.warning("compiling once for this machine, up to a minute ...")
         if sound and self._touched:
             from udec_ia.inspect.check import check_links
 
@@ -145,15 +172,12 @@ class Model:
                 raise UdecError(20, str(broken[0]), advice)
             self._touched = False
 
-    def _file(self, path: str | Path | None) -> Path:
-        return self.out / (RESTART_FILE if path is None else path)
-
     # ---- the block system
 
     def block(self, *xy: float, material: int = 1, constitutive: int = 1) -> int:
         """BLOCK: create the block with the corners x1, y1, x2, y2, ..., clockwise. Returns its address."""
         if len(xy) % 2:
-            raise UdecError(8, f"{len(xy)} coordinates given")
+            raise UdecError(8, f"{len(xy)} coordinates given", "give x1, y1, x2, y2, ...")
         self._ready()
         return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
 
@@ -354,12 +378,23 @@ class Model:
             self._animation = Animation(self.name)
         report = Report(lambda: self.h, n, self.progress, self._animation)
         try:
-            return cycle(self.array, n, report, max(1, n // PICTURES) if self.animate else None)
+            done = cycle(self.array, n, report, max(1, n // PICTURES) if self.animate else None, self._warn)
         finally:
             report.close()
+        if done > 0:
+            note_cached(self.array.scheme.name)
+        return done
+
+    def _warn(self, text: str) -> None:
+        if text != self._warned:
+            self._warned = text
+            self.tell(text)
 
     def run(self, text_or_path: str | Path, stream: TextIO | None = None) -> str | None:
-        """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned."""
+        """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned.
+
+        FileNotFoundError if there is no file of that name, and it cannot be meant as a command either.
+        """
         from udec_ia.deck.monitor import run_deck
 
         out = io.StringIO() if stream is None else stream
@@ -411,3 +446,11 @@ class Model:
             self._plots = Plots(self.out, self.name)
         what = What(contacts, domains, addresses, stresses, velocities, displacements, contour.lower())
         self._plots.draw(self.h, n, what)
+
+
+def _words(mtop: SupportsIndex) -> int:
+    """`mtop` as an integer; TypeError that says so if it is none."""
+    try:
+        return operator.index(mtop)
+    except TypeError:
+        raise TypeError(f"mtop is a number of words, an integer, not {mtop!r}") from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 from udec_ia.deck.reader import Token
 from udec_ia.errors import UdecError
@@ -46,30 +46,6 @@ ADVICE = {
     32: "take stiffer zones, a smaller FRACTION or smaller loads",
     33: "the zones must cover the block side to side, each side between two grid-points once",
 }
-
-
-# The argument that is to blame for an error that a method of Model raises; the command if it was not given.
-BLAME = {
-    2: ("command",),
-    4: ("material",),
-    9: ("constitutive",),
-    13: ("fcrit",),
-    14: ("d",),
-    16: ("fcrit",),
-    22: ("mode",),
-    23: ("mode", "type"),
-    24: ("x1",),
-    25: ("zones",),
-    28: ("d", "f", "s", "n"),
-    29: ("path",),
-    31: ("path",),
-    30: ("ia", "n"),
-}
-
-
-def place_of(error: UdecError, places: Mapping[str, Token], head: Token) -> Token:
-    """Where the cause of `error` stands among the arguments at `places` of the command at `head`."""
-    return next((places[name] for name in BLAME.get(error.number, ()) if name in places), head)
 
 
 def at(error: UdecError, place: Token) -> UdecError:

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from udec_ia.deck.advice import at, place_of
-from udec_ia.deck.parser import Call, parse
-from udec_ia.deck.reader import Statement, statements
+from offsets.generated import NBLK
+from udec_ia.deck.advice import at
+from udec_ia.deck.language import COMMANDS, match
+from udec_ia.deck.parser import NUMBER, Call, parse
+from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.deck.reference import explain, summary
 from udec_ia.errors import UdecError
 
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
     from udec_ia.model import Model
 
 DAMAGED = 20  # after this error the main array is not worth saving: RESTART would refuse it
+FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
+COUNTED = {"split": "cut off", "delete": "deleted", "fix": "fixed", "free": "set free", "change": "changed"}
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
 
@@ -64,17 +69,20 @@ class Monitor:
         if not statement.tokens:
             return
         call = parse(statement)
+        name = call.command.name
         if not (call.command.opens or self.model.started):
-            raise at(UdecError(3, f"this is {call.command.name.upper()}"), call.head)
+            raise at(UdecError(3, f"this is {name.upper()}"), call.head)
         try:
             result = self._carry_out(call)
         except UdecError as error:
-            raise at(error, place_of(error, call.places, call.head)) from error.__cause__
+            raise at(error, call.place_of(error)) from error.__cause__
         except BrokenPipeError:
             raise
         except OSError as error:
-            refused = UdecError(31, f"{error.strerror or error}: {error.filename or call.command.name}")
-            raise at(refused, place_of(refused, call.places, call.head)) from error
+            refused = UdecError(31, f"{error.strerror or error}: {error.filename or name}")
+            raise at(refused, call.place_of(refused)) from error
+        if name in COUNTED and isinstance(result, int):
+            self._write(counted(name, result, self.model))
         self._show(result)
         self.model.deck_log += [
             line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
@@ -96,7 +104,14 @@ class Monitor:
             if name == "stop":
                 self.stop()
             return None
-        return getattr(self.model, name)(*call.positional, **call.named)
+        named = dict(call.named)
+        if "path" in named:  # files named in a deck are in the folder for files
+            named["path"] = self.model.out / named["path"]
+        tell, self.model.tell = self.model.tell, lambda text: self._write(f" {name.upper()}: {text}")
+        try:
+            return getattr(self.model, name)(*call.positional, **named)
+        finally:
+            self.model.tell = tell
 
     def _show(self, result: object) -> None:
         if isinstance(result, str):
@@ -128,13 +143,28 @@ class Monitor:
 def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
     """Obey a whole deck on `model` and return the monitor that did.
 
-    deck: the path of a deck, or its text; a str is a path if there is a file of that name.
-    Raises UdecError, and OSError if the file cannot be read.
+    deck: the path of a deck, or its text; a str is a path if there is a file of that name, or if it looks
+    like one. Raises UdecError, and OSError if the file cannot be read.
     """
     monitor = Monitor(model, out)
-    if isinstance(deck, Path) or os.path.isfile(deck):
+    if isinstance(deck, Path) or os.path.isfile(deck) or _names_a_file(deck):
         with open(deck, encoding="utf-8-sig", errors="replace") as lines:
             monitor.run(lines, str(deck))
     else:
         monitor.run(io.StringIO(deck, newline=None), "text")
     return monitor
+
+
+def _names_a_file(text: str) -> bool:
+    """True if `text` is one line that begins with no command and ends like the name of a file: in `.dat`."""
+    if FILE_NAME.fullmatch(text) is None or match(COMMANDS, text.split()[0]):
+        return False
+    return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
+
+
+def counted(name: str, n: int, model: Model) -> str:
+    """One line on what the command `name`, which returned `n`, has done."""
+    if n == 0:
+        return f" {name.upper()}: no block {'cut' if name == 'split' else 'in range'}"
+    now = f", {model.h.ci[NBLK]} blocks now" if name in ("split", "delete") else ""
+    return f" {name.upper()}: {n} block{'s' if n > 1 else ''} {COUNTED[name]}{now}"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field
+from itertools import cycle
 from typing import Any
 
 from udec_ia.deck.advice import ADVICE, at, hint, quoted
@@ -32,6 +33,10 @@ class Call:
     positional: list[Any] = field(default_factory=list)
     named: dict[str, Any] = field(default_factory=dict)
     places: dict[str, Token] = field(default_factory=dict)
+
+    def place_of(self, error: UdecError) -> Token:
+        """Where the argument that `error` blames stands; a text is a command's only one, else the command."""
+        return self.places.get(error.parameter or self.command.text, self.head)
 
 
 def parse(statement: Statement) -> Call:
@@ -73,6 +78,7 @@ class _Parser:
         self.call = Call(command, tokens[0])
 
     def parse(self) -> Call:
+        """The call that the tokens spell: numbers, then words, then the list."""
         command = self.command
         if command.text:
             self._text()
@@ -87,8 +93,7 @@ class _Parser:
         while (token := self._next()) and not self._at_number():
             self._word(token)
         if command.list:
-            self.call.places[command.list] = self._next() or self._gap()
-            self.call.positional += [value for values in self._tuples(command.list) for value in values]
+            self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, f"{quoted(token.text)} is one number too many", self._advice()), token)
         return self.call
@@ -133,6 +138,15 @@ class _Parser:
         self.call.positional.append(self._number(name))
         self.call.places[name] = self.tokens[self.read - 1]
 
+    def _list(self, names: str) -> None:
+        """Read the tuples that end the command: x1, y1, x2, y2, ... are the names of their numbers."""
+        first = self.read
+        values = [value for values in self._tuples(names) for value in values]
+        self.call.positional += values
+        n = len(names.split())
+        for k, (token, name) in enumerate(zip(self.tokens[first:], cycle(names.split()), strict=False)):
+            self.call.places[f"{name}{k // n + 1}"] = token
+
     def _tuples(self, names: str) -> list[tuple[int | float, ...]]:
         """Read one tuple and all that follow; the numbers of a tuple stand on one line."""
         first, *others = names.split()
@@ -151,8 +165,12 @@ class _Parser:
             detail = f"nothing follows {quoted(self.tokens[self.read - 1].text)}"
             raise at(UdecError(7, detail, self._advice()), self._gap())
         allowed = [word for word in self.command.words if word.argument == self.command.first]
-        if match(allowed, token.text) is None:
-            raise self._unrecognised(token, self.command.first_error, allowed)
+        if match(allowed, token.text) is not None:
+            return
+        if self.command.first_error == 10 and match(self.command.words, token.text) is not None:
+            detail = f"{self.command.first.upper()} is missing before {quoted(token.text)}"
+            raise at(UdecError(7, detail, self._advice()), self._gap())
+        raise self._unrecognised(token, self.command.first_error, allowed)
 
     def _unrecognised(self, token: Token, error: int, allowed: list[Word] | tuple[Word, ...]) -> UdecError:
         advice = hint(token.text, (word.keyword for word in allowed), self._advice())

@@ -21,6 +21,8 @@ from udec_ia.ops.rounding import check_rounding
 
 Point = tuple[float, float]
 FINEST = 1e-4  # rounding of a coordinate, as a part of the shortest edge, that leaves room to cut
+PART = 0.01  # length of the smallest parts that are cut, as a part of the block's
+CLOCKWISE = "give the corners in clockwise order, along an outline that does not cross itself"
 
 
 def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
@@ -34,18 +36,12 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     material_number(material)
     constitutive_number(constitutive)
     if len(corners) < 3:
-        raise UdecError(5, f"{len(corners)} given")
-    for x, y in corners:
-        finite(x, y)
+        raise UdecError(5, f"{len(corners)} given", "give at least three corners, clockwise")
+    for k, (x, y) in enumerate(corners, 1):
+        finite(array, **{f"x{k}": x, f"y{k}": y})
+    _check_size(array, corners)
     _check_outline(corners)
-    ends = zip(corners, (*corners[1:], corners[0]), strict=True)
-    least, x, y = min((math.dist(a, b), *b) for a, b in ends)
-    digit = float(np.finfo(h.cr.dtype).eps) * max(abs(x) + abs(y) for x, y in corners)
-    if least < digit / FINEST:
-        detail = f"an edge {least:g} long, where {array.scheme.real_bits}-bit reals resolve {digit:g}"
-        raise UdecError(28, detail, "take the origin nearer to the block, or a --build with 64-bit reals")
-    if h.ci[LROUND]:
-        check_rounding(float(h.cr[DTOL]), least, x, y)
+    _check_edges(array, corners)
     require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
     h = array.h
     ib = new_block(h, material, constitutive)
@@ -61,24 +57,56 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     return int(ib)
 
 
+def _check_size(array: MainArray, corners: Sequence[Point]) -> None:
+    """Error 28 unless the reals can hold a length to the power of four, as a moment of inertia is."""
+    reals = np.finfo(array.scheme.real_type)
+    size = max(abs(x) + abs(y) for x, y in corners)
+    least, most = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
+    if not least <= size <= most:
+        bits = array.scheme.real_bits
+        detail = f"a block {size:g} across, where {bits}-bit reals bear {least:.0e} to {most:.0e}"
+        raise UdecError(28, detail, "take another unit of length", parameter="x1")
+
+
+def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
+    """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings."""
+    ends = zip(corners, (*corners[1:], corners[0]), strict=True)
+    least, x, y = min((math.dist(a, b), *b) for a, b in ends)
+    bits = array.scheme.real_bits
+    digit = float(np.finfo(array.scheme.real_type).eps) * max(abs(x) + abs(y) for x, y in corners)
+    if least < digit / FINEST:
+        detail = f"an edge {least:g} long, where {bits}-bit reals resolve {digit:g}"
+        advice = "take the origin nearer to the block, or a --build with 64-bit reals"
+        raise UdecError(28, detail, advice, parameter="x1")
+    if array.h.ci[LROUND]:
+        check_rounding(float(array.h.cr[DTOL]), least, x, y)
+
+
 def _check_outline(corners: Sequence[Point]) -> None:
     """Error 6 unless the corners, taken clockwise, enclose an area and no two edges meet elsewhere."""
     n = len(corners)
     edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
     twice = sum(b[0] * a[1] - a[0] * b[1] for a, b in edges)
     if not twice > 0:
-        raise UdecError(6, "the corners must be given clockwise")
+        raise UdecError(6, "its corners run anticlockwise", CLOCKWISE)
     for i, (a, b) in enumerate(edges):
         if a == b:
-            raise UdecError(6, f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row")
+            raise _crooked(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
+    for i, (a, b) in enumerate(edges):
         for j in range(i + 1, n):
             if j - i in (1, n - 1):
                 shared, end = (b, edges[j][1]) if j - i == 1 else (a, edges[j][0])
                 start = a if j - i == 1 else b
                 if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
-                    raise UdecError(6, f"the outline turns back on itself at ({shared[0]:g}, {shared[1]:g})")
+                    corner = corners.index(shared)
+                    raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
             elif _meet(a, b, *edges[j]):
-                raise UdecError(6, f"the outline crosses itself near ({a[0]:g}, {a[1]:g})")
+                raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
+
+
+def _crooked(detail: str, k: int) -> UdecError:
+    """Error 6 at corner `k`, counted from 0."""
+    return UdecError(6, detail, CLOCKWISE, parameter=f"x{k + 1}")
 
 
 def _turn(a: Point, b: Point, c: Point) -> float:

@@ -17,6 +17,7 @@ from offsets.generated import (
     AKS,
     ALPB,
     ALPHA,
+    BETA,
     C1B,
     C2B,
     CON1,
@@ -61,6 +62,7 @@ from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
 from udec_ia.kernels.masses import make_masses
 from udec_ia.kernels.timestep import soft_step
 from udec_ia.ops.arrange import arrange
+from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
@@ -68,7 +70,9 @@ from udec_ia.ops.soft import soft
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
+GRID = 5.0  # highest frequency of a grid of equal square blocks, two contacts a face, in that of the estimate
 Report = Callable[[int], None]
+Warn = Callable[[str], None]
 
 
 def prepare(array: MainArray) -> None:
@@ -86,7 +90,7 @@ def prepare(array: MainArray) -> None:
     h = array.h
     check_all_edges(array, float(h.cr[DTOL]))
     _check_zones(array)
-    h.cr[TDEL] = h.cr[FRAC] * critical_step(array)
+    h.cr[TDEL] = time_step(array)
     for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
         half = h.cr[alpha] * h.cr[TDEL] / 2
         if half >= 1:
@@ -105,6 +109,34 @@ def _check_zones(array: MainArray) -> None:
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFZ) == 0:
             place = f"({getr(h, ib, KX):g}, {getr(h, ib, KY):g})"
             raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
+
+
+def time_step(array: MainArray) -> float:
+    """FRAC times the estimate of the critical time-step; error 28 if the reals cannot hold it."""
+    step = float(array.h.cr[FRAC]) * critical_step(array)
+    reals = np.finfo(array.scheme.real_type)
+    if not reals.smallest_normal < step < reals.max:
+        raise UdecError(28, f"the time-step is {step:g} s", "look at DENSITY, KN, KS and FRACTION")
+    return step
+
+
+def instability(array: MainArray) -> str:
+    """A warning if stiffness damping may make the time-step unstable, else "".
+
+    A dashpot lowers the critical time-step to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of
+    critical damping at the highest frequency w: here GRID times that of the estimate.
+    """
+    cr = array.h.cr
+    beta, step, fraction = float(cr[BETA]), float(cr[TDEL]), float(cr[FRAC])
+    w = GRID * 2 * fraction / step
+    damped = beta * w / 2
+    critical = 2 / w / (math.hypot(1, damped) + damped)
+    if beta == 0 or step <= critical:
+        return ""
+    return (
+        f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: "
+        f"take FRACTION {fraction * critical / step:.2g} or less, a smaller fcrit, or MASS damping alone"
+    )
 
 
 def critical_step(array: MainArray) -> float:
@@ -139,15 +171,20 @@ def critical_step(array: MainArray) -> float:
     return 2 * math.sqrt(ratio)
 
 
-def cycle(array: MainArray, n: int, report: Report | None = None, every: int | None = None) -> int:
+def cycle(
+    array: MainArray, n: int, report: Report | None = None, every: int | None = None, warn: Warn | None = None
+) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
+    warn: called before the first cycle with a text if the time-step may be unstable.
     Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
     """
-    if n < 0:
-        raise UdecError(28, f"the number of cycles must not be negative, it is {n}")
+    n = whole(n=n)
+    not_negative(array, n=n)
     prepare(array)
+    if warn is not None and (text := instability(array)):
+        warn(text)
     keep_spare(array)
     array.h.ci[NCYC] = n
     done, piece = 0, every or FIRST_PIECE

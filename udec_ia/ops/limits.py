@@ -1,40 +1,72 @@
-"""What numbers may be: the array limits of Appendix III-2 and the widths of the word scheme."""
+"""What numbers may be: the array limits of Appendix III-2 and the widths of the word scheme.
+
+The numbers to be looked at are given by the names that they have in HELP and in Python, so that an error
+names the number, and its caret in a deck stands at it.
+"""
 
 from __future__ import annotations
 
-import math
+import operator
+from typing import SupportsIndex
+
+import numpy as np
 
 from offsets import read_table
 from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
 
 NMAT = next(field.count for field in read_table().common if field.name == "AKN")
 NCONS = 5
+LARGEST = 2**63 - 1  # integer of the common block
 
 
 def material_number(n: int) -> int:
     """`n` if it is a material number, else error 4."""
-    if not 1 <= n <= NMAT:
-        raise UdecError(4, f"{n}", f"material numbers run from 1 to {NMAT}")
+    if not 1 <= whole(material=n) <= NMAT:
+        raise UdecError(4, f"{n}", f"material numbers run from 1 to {NMAT}", parameter="material")
     return n
 
 
 def constitutive_number(n: int) -> int:
     """`n` if it is a constitutive number, else error 9."""
-    if not 1 <= n <= NCONS:
-        raise UdecError(9, f"{n}", f"constitutive numbers run from 1 to {NCONS}")
+    if not 1 <= whole(constitutive=n) <= NCONS:
+        raise UdecError(9, f"{n}", f"constitutive numbers run from 1 to {NCONS}", parameter="constitutive")
     return n
 
 
-def finite(*values: float) -> None:
-    """Error 28 unless all values are finite numbers."""
-    for value in values:
-        if not math.isfinite(value):
-            raise UdecError(28, f"{value} is not a finite number")
+def whole(**number: SupportsIndex) -> int:
+    """The only number given, if it is an integer, else error 10: a real is no integer, as in a deck."""
+    ((name, value),) = number.items()
+    try:
+        integer = operator.index(value)
+    except TypeError:
+        detail = f"{value!r} is not an integer"
+        raise UdecError(10, detail, f"{name} is a whole number", parameter=name) from None
+    if abs(integer) > LARGEST:
+        raise UdecError(28, f"{name} is {integer}", f"integers end at {LARGEST}", parameter=name)
+    return integer
 
 
-def not_negative(name: str, value: float) -> float:
-    """`value` if it is finite and not negative, else error 28."""
-    finite(value)
-    if value < 0:
-        raise UdecError(28, f"{name} must not be negative, it is {value:g}")
-    return value
+def finite(array: MainArray, **numbers: float) -> None:
+    """Error 28 unless the reals of the word scheme can hold all numbers."""
+    largest = float(np.finfo(array.scheme.real_type).max)
+    for name, value in numbers.items():
+        if not abs(value) <= largest:
+            advice = f"{array.scheme.real_bits}-bit reals end at {largest:.2g}"
+            raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
+
+
+def not_negative(array: MainArray, **numbers: float) -> None:
+    """Error 28 unless all numbers are finite and not negative."""
+    finite(array, **numbers)
+    for name, value in numbers.items():
+        if value < 0:
+            raise UdecError(28, f"{name} is {value:g}", f"{name} must not be negative", parameter=name)
+
+
+def positive(array: MainArray, **numbers: float) -> None:
+    """Error 28 unless all numbers are finite and positive."""
+    finite(array, **numbers)
+    for name, value in numbers.items():
+        if value <= 0:
+            raise UdecError(28, f"{name} is {value:g}", f"{name} must be positive", parameter=name)

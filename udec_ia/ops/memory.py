@@ -1,6 +1,9 @@
-"""Running a kernel that may ask for memory."""
+"""Running a kernel that may ask for memory, and going back when something is refused half-way."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from offsets.generated import MFREE, MTOP, NCON, NERR, NSPARE, NVCN, NVDO, NWANT
 from udec_ia.errors import UdecError
@@ -24,7 +27,7 @@ def find_room(array: MainArray) -> None:
         if s.top_address >= need and s.real_bits == array.scheme.real_bits
     ]
     if array.fixed and need <= array.scheme.top_address:
-        advice = f"run with --mtop of more than {need} words, or without --mtop to let the array grow"
+        advice = f"this line needs --mtop {need} at least: leave --mtop out to let the array grow"
     else:
         advice = f"run with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
     raise UdecError(1, f"{need} words are needed, the main array has {int(ci[MTOP])}", advice)
@@ -55,3 +58,14 @@ def require(array: MainArray, words: int) -> None:
     if ci[MFREE] + words - 1 > ci[MTOP]:
         ci[NWANT] = words
         find_room(array)
+
+
+@contextmanager
+def all_or_nothing(array: MainArray) -> Iterator[None]:
+    """Let an error leave the array as it was before the block."""
+    before = array.copy()
+    try:
+        yield
+    except UdecError:
+        array.h = before.h
+        raise

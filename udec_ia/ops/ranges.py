@@ -11,5 +11,6 @@ Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 
 def blocks_in(array: MainArray, where: Range) -> list[int]:
     """Addresses of the blocks in the range, in list order."""
-    finite(*where)
-    return [int(ib) for ib in blocks_between(array.h, *where)]
+    x1, x2, y1, y2 = map(float, where)
+    finite(array, x1=x1, x2=x2, y1=y1, y2=y2)
+    return [int(ib) for ib in blocks_between(array.h, x1, x2, y1, y2)]

@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
-from offsets.generated import DTOL, IBPNT, KXP, KYP, LROUND, MCTOT
+from offsets.generated import (
+    DTOL,
+    DTOL2,
+    IBPNT,
+    ICPNT,
+    KB1,
+    KB2,
+    KC,
+    KCCOD,
+    KCN,
+    KXC,
+    KXP,
+    KYC,
+    KYP,
+    LROUND,
+    MCTOT,
+)
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr
+from udec_ia.heap.accessors import getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.ford import settle_all
 from udec_ia.kernels.tolerances import default_rounding, edges, set_rounding
+from udec_ia.kernels.touch import VIRTUAL
 from udec_ia.kernels.update import update_all
-from udec_ia.ops.limits import finite
-from udec_ia.ops.memory import find_room, keep_spare
+from udec_ia.ops.limits import positive
+from udec_ia.ops.memory import all_or_nothing, find_room, keep_spare
 
 
 def check_rounding(d: float, least: float, x: float, y: float) -> None:
@@ -21,6 +38,7 @@ def check_rounding(d: float, least: float, x: float, y: float) -> None:
             14,
             f"{d:g}, but the edge that ends at ({x:g}, {y:g}) is only {least:g} long",
             f"the rounding length must not exceed half the shortest edge, {least / 2:g}",
+            parameter="d",
         )
 
 
@@ -30,6 +48,22 @@ def check_all_edges(array: MainArray, d: float) -> None:
     if h.ci[IBPNT] != 0:
         _, least, ip = edges(h)
         check_rounding(d, float(least), float(getr(h, ip, KXP)), float(getr(h, ip, KYP)))
+
+
+def check_overlaps(array: MainArray) -> None:
+    """Error 14 if two blocks overlap by more than the rounding length, just set, allows."""
+    h = array.h
+    ic = int(h.ci[ICPNT])
+    while ic != 0:
+        overlap = getr(h, ic, KCN)
+        if overlap > h.cr[DTOL2] and iget(h, ic, KCCOD) != VIRTUAL:
+            place = f"at ({getr(h, ic, KXC):g}, {getr(h, ic, KYC):g})"
+            detail = (
+                f"{h.cr[DTOL]:g} allows overlaps up to {h.cr[DTOL2]:g}, but block@{iget(h, ic, KB1)} and "
+                f"block@{iget(h, ic, KB2)} overlap by {overlap:g} {place}"
+            )
+            raise UdecError(14, detail, "give a greater rounding length, or stiffer joints", parameter="d")
+        ic = iget(h, ic, KC)
 
 
 def refresh(array: MainArray) -> None:
@@ -47,15 +81,17 @@ def update_flagged(array: MainArray) -> None:
 
 
 def round_corners(array: MainArray, d: float) -> None:
-    """ROUND d. Error 28 if `d` is not positive, error 14 if an edge is too short for it."""
-    finite(d)
-    if d <= 0:
-        raise UdecError(28, f"the rounding length must be positive, it is {d:g}")
+    """ROUND d. Error 28 if `d` is not positive; error 14, and nothing is changed, if an edge is too short for
+    it or if an overlap would be more than half of it.
+    """
+    positive(array, d=d)
     check_all_edges(array, d)
-    h = array.h
-    h.ci[LROUND] = 1
-    set_rounding(h, h.cr.dtype.type(d))
-    refresh(array)
+    with all_or_nothing(array):
+        h = array.h
+        h.ci[LROUND] = 1
+        set_rounding(h, h.cr.dtype.type(d))
+        refresh(array)
+        check_overlaps(array)
 
 
 def settle_default(array: MainArray) -> None:
@@ -65,5 +101,6 @@ def settle_default(array: MainArray) -> None:
         return
     d = default_rounding(h)
     if d != h.cr[DTOL]:
-        set_rounding(h, d)
-        refresh(array)
+        with all_or_nothing(array):
+            set_rounding(h, d)
+            refresh(array)

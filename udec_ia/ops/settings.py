@@ -33,7 +33,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.lists import is_corner
-from udec_ia.ops.limits import finite, material_number, not_negative
+from udec_ia.ops.limits import finite, material_number, not_negative, positive, whole
 from udec_ia.ops.lists import items
 from udec_ia.ops.ranges import Range, blocks_in
 
@@ -52,17 +52,20 @@ PROPERTIES = {  # keyword of the PROPERTY command: array of the common block
 def set_property(array: MainArray, material: int, **values: float | None) -> None:
     """PROPERTY: set properties of a material; those not given stay. Error 4, or 28 for a negative value."""
     i = material_number(material) - 1
-    given = {name: not_negative(name, value) for name, value in values.items() if value is not None}
+    given = {name: value for name, value in values.items() if value is not None}
+    not_negative(array, **given)
     cr = array.h.cr
+    k, g = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
+    lame = {"K + 4G/3": k + 4 * g / 3, "K - 2G/3": k - 2 * g / 3}  # constants of plane strain
+    finite(array, **lame)
     for name, value in given.items():
         cr[PROPERTIES[name] + i] = value
-    cr[ALAM1 + i] = cr[BULK + i] + 4 * cr[SHEAR + i] / 3  # Lame constants of plane strain:
-    cr[ALAM2 + i] = cr[BULK + i] - 2 * cr[SHEAR + i] / 3  # K + 4G/3 and K - 2G/3
+    cr[ALAM1 + i], cr[ALAM2 + i] = lame.values()
 
 
 def set_gravity(array: MainArray, gx: float, gy: float) -> None:
     """GRAVITY: accelerations in the x and y directions."""
-    finite(gx, gy)
+    finite(array, gx=gx, gy=gy)
     array.h.cr[GRAVX], array.h.cr[GRAVY] = gx, gy
 
 
@@ -73,32 +76,31 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
     internal degrees of freedom of simply-deformable blocks instead.
     """
-    not_negative("the fraction of critical damping", fcrit)
-    finite(freq)
-    if freq <= 0:
-        raise UdecError(28, f"the centre frequency must be positive, it is {freq:g}")
+    not_negative(array, fcrit=fcrit)
+    positive(array, freq=freq)
     if only not in (None, "mass", "stiffness", "internal"):
-        raise UdecError(10, f"{only}", "mass, stiffness or internal")
+        raise UdecError(10, f"{only}", "mass, stiffness or internal", parameter="only")
     omega = 2 * math.pi * freq
+    alpha, beta = fcrit * omega, fcrit / omega
+    finite(array, alpha=alpha, beta=beta)
     cr = array.h.cr
     if only == "internal":
-        cr[ALPB] = fcrit * omega
+        cr[ALPB] = alpha
         return
-    cr[ALPHA] = 0 if only == "stiffness" else fcrit * omega
-    cr[BETA] = 0 if only == "mass" else fcrit / omega
+    cr[ALPHA] = 0 if only == "stiffness" else alpha
+    cr[BETA] = 0 if only == "mass" else beta
 
 
 def set_fraction(array: MainArray, f: float) -> None:
     """FRACTION: fraction of the critical time-step to be used."""
-    finite(f)
-    if f <= 0:
-        raise UdecError(28, f"the fraction of the critical time-step must be positive, it is {f:g}")
+    positive(array, f=f)
     array.h.cr[FRAC] = f
 
 
 def set_scale(array: MainArray, s: float) -> None:
     """SCALE: plot scale; 0 lets the plot fill its frame."""
-    array.h.cr[PSCALE] = not_negative("the plot scale", s)
+    not_negative(array, s=s)
+    array.h.cr[PSCALE] = s
 
 
 def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
@@ -131,13 +133,14 @@ def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:
 
     Error 30 if the real would lie outside the groups in use, or if `ia` cannot be the address of a group.
     """
-    finite(v)
+    finite(array, v=v)
+    ia, ioff = whole(ia=ia), whole(ioff=ioff)
     h, ratio = array.h, array.scheme.ratio
     last = int(h.ci[MFREE]) - 1
     if ia < 1 or (ia - 1) % ratio:
-        raise UdecError(
-            30, f"{ia} is not the address of a group", f"addresses are 1 plus a multiple of {ratio}"
-        )
+        advice = f"addresses are 1 plus a multiple of {ratio}"
+        raise UdecError(30, f"{ia} is not the address of a group", advice, parameter="ia")
     if ioff < 1 or ia + ioff * ratio - 1 > last:
-        raise UdecError(30, f"offset {ioff} from address {ia}", f"the last word in use is {last}")
+        place = f"offset {ioff} from address {ia}"
+        raise UdecError(30, place, f"the last word in use is {last}", parameter="ia" if ia > last else "ioff")
     h.ra[(ia - 1) // ratio + ioff - 1] = v

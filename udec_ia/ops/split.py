@@ -51,12 +51,11 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
     A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
     runs too close to a corner or an edge; error 17 if it would split a block that has zones.
     """
-    finite(x1, y1, x2, y2)
+    finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
-    if not 0 < z < math.inf:
-        raise UdecError(
-            28, "the two ends of the line are the same point" if z == 0 else "the line is too long"
-        )
+    finite(array, length=z)
+    if z == 0:
+        raise UdecError(28, "the two ends of the line are the same point", "give two points", parameter="x2")
     before = int(array.h.ci[NBLK])
     if before == 0:
         return 0

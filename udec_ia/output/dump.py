@@ -42,7 +42,8 @@ def dump(h: Memory, n: int, m: int) -> str:
     unless 1 <= n <= m and m lies within the array.
     """
     if not 1 <= n <= m <= len(h.ia):
-        raise UdecError(30, f"DUMP {n} {m}", f"give two addresses in rising order, from 1 to {len(h.ia)}")
+        advice = f"give two addresses in rising order, from 1 to {len(h.ia)}"
+        raise UdecError(30, f"DUMP {n} {m}", advice, parameter="n")
     lines = ["  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in POINTERS)]
     for span in _spans(h, n, m):
         lines += _span_lines(h, span, n, m)
