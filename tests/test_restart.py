@@ -194,9 +194,9 @@ def test_the_file_explains_itself(name: str, tmp_path: Path) -> None:
     array = two_blocks(name)
     path = save(array, tmp_path / "two.h5")
     (program,) = re.findall(r"```python\n(.*?)```", DOC.read_text(), re.S)
-    assert "udec" not in program.replace("out/ball.h5", "")
+    assert "udec" not in program.replace("out/restart.h5", "")
     result: dict[str, Any] = {}
-    exec(program.replace("out/ball.h5", str(path)), result)
+    exec(program.replace("out/restart.h5", str(path)), result)
     assert result["blocks"] == [(0.5, 0.5), (0.5, 1.5)]
 
 

@@ -290,7 +290,7 @@ COMMANDS = (
     ),
     Command(
         "Restart",
-        "Go on from the restart file.",
+        "Go on from the restart file: restart.h5 in the folder for files (--out) if it is not named.",
         "RESTART slope.h5",
         text="path",
         opens=True,
@@ -304,13 +304,14 @@ COMMANDS = (
     ),
     Command(
         "Round",
-        "Round each corner with a circle tangential to its edges at the distance d.",
+        "Round each corner with a circle tangential to its edges at the distance d. Half the shortest edge is "
+        "the most, twice the greatest overlap the least.",
         "ROUND 0.5",
         numbers="d",
     ),
     Command(
         "SAve",
-        "Save the state on the restart file.",
+        "Save the state on the restart file: restart.h5 in the folder for files (--out) if it is not named.",
         "SAVE slope.h5",
         text="path",
         ours="the name of the file",
