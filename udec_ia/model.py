@@ -239,7 +239,8 @@ class Model:
                     26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
                 )
             near = NEAR * float(self.h.cr[DTOL])
-            generate(self.array, ib, gridpoints, zones, near, mixed)
+            for remark in generate(self.array, ib, gridpoints, zones, near, mixed):
+                self.tell(remark)
         else:
             raise UdecError(23, "automatic zones")
         return ib

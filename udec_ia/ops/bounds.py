@@ -72,7 +72,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.motion import FIXED
-from udec_ia.ops.limits import finite, not_negative
+from udec_ia.ops.limits import finite, not_negative, positive
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import require
 from udec_ia.ops.ranges import Range
@@ -123,7 +123,10 @@ def boundary(
     it lasts (s), or function: number of a FUNCTION; loads and velocities are multiplied by it. Errors 24, 26,
     28.
     """
-    finite(*where, xforce, yforce, *stress, *xgrad, *ygrad, *(v for v in (xvel, yvel) if v is not None))
+    finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
+    for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
+        for component in triple:
+            finite(array, **{name: component})
     if free:
         return _set_free(array.h, where)
     fix = (xvel is not None) + 2 * (yvel is not None)
@@ -136,6 +139,9 @@ def boundary(
             _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
     if not loads:
         raise UdecError(24, "nothing lies in the range x {:g} to {:g}, y {:g} to {:g}".format(*where))
+    if sine is not None:
+        positive(array, sine=sine[0])
+        not_negative(array, sine=sine[1])
     words = len(loads) * size_of(array.h, NVBN) + size_of(array.h, NVSG)
     signal = _find_function(array.h, function) if function is not None else 0
     require(array, words)
@@ -293,9 +299,6 @@ def _set_free(h: Memory, where: Range) -> int:
 
 def _make_sine(h: Memory, frequency: float, lasts: float) -> int:
     """A signal that is a sine of the given frequency for a time."""
-    not_negative("the time for which the sine lasts", lasts)
-    if not not_negative("the frequency", frequency) > 0:
-        raise UdecError(28, "the frequency must be positive")
     isg = _make_signal(h)
     putr(h, isg, KTFREQ, frequency)
     putr(h, isg, KTLAST, lasts)
@@ -326,7 +329,7 @@ def set_function(array: MainArray, number: int, points: Sequence[tuple[float, fl
     if not points:
         raise UdecError(26, "a function needs at least one point", "FUNCTION n t1 f1 t2 f2 ...")
     for t, f in points:
-        finite(t, f)
+        finite(array, t=t, f=f)
     for (one, _), (two, _) in pairwise(points):
         if two <= one:
             raise UdecError(28, f"the times must ascend, but {two:g} follows {one:g}")

@@ -24,7 +24,9 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
 
     Error 24 if no deformable block with zones lies in the range.
     """
-    finite(*stress, *xgrad, *ygrad)
+    for name, triple in (("s11", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
+        for component in triple:
+            finite(array, **{name: component})
     h = array.h
 
     def at(x: float, y: float) -> Triple:
