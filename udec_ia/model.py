@@ -242,7 +242,7 @@ class Model:
             for remark in generate(self.array, ib, gridpoints, zones, near, mixed):
                 self.tell(remark)
         else:
-            raise UdecError(23, "automatic zones")
+            raise UdecError(23, "automatic zones", parameter="mode")
         return ib
 
     def boundary(

@@ -25,7 +25,7 @@ ADVICE = {
     11: "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
     12: "give the density of every material in use: PROPERTY MAT=1 DENS=...",
     13: "take a smaller fcrit in DAMPING, or a smaller FRACTION",
-    14: "the shortest edge must hold two roundings, and no overlap may be more than half of one: change d in ROUND",
+    14: "the shortest edge must hold two roundings, no overlap may exceed half of one: change d in ROUND",
     15: "take a larger joint stiffness or a smaller FRACTION, or look for what drives the blocks together",
     16: "take a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
     17: "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",

@@ -304,8 +304,8 @@ COMMANDS = (
     ),
     Command(
         "Round",
-        "Round each corner with a circle tangential to its edges at the distance d. Half the shortest edge is "
-        "the most, twice the greatest overlap the least.",
+        "Round each corner with a circle tangential to its edges at the distance d. Half the shortest edge "
+        "is the most, twice the greatest overlap the least.",
         "ROUND 0.5",
         numbers="d",
     ),

@@ -179,7 +179,7 @@ def block_to_zone(array: MainArray, where: Range) -> int:
     """The first block in the range. Error 24 if there is none, 28 if it is divided into zones already."""
     blocks = blocks_in(array, where)
     if not blocks:
-        raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where))
+        raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where), parameter="x1")
     h, ib = array.h, blocks[0]
     if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
         advice = "give a range that holds another block only, or CHANGE it to RIGID first"
