@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "ba2813a7e2034a73dcb48252bbc7cd5c3f894aa3c40546e61c3e2bcd150918b0"
+DIGEST = "74ba86e38039a3ff9867f7eb0129a17038137d8610164e6ede4ccde96c3190da"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -241,4 +241,16 @@ BULK = 275  # bulk modulus, material I
 SHEAR = 325  # shear modulus, material I
 ALAM1 = 375  # Lame constant, material I
 ALAM2 = 425  # Lame constant, material I
-NCOMR = 475
+JDIL = 475  # joint dilation: tangent of the dilation angle, material I
+RMU = 525  # residual joint friction coefficient, material I
+RCOH = 575  # residual joint cohesion, material I
+UCRIT = 625  # slip at which a joint has reached its residual strength, material I
+BMU = 675  # internal friction coefficient of block material, material I
+BCOH = 725  # cohesion of block material, material I
+BTEN = 775  # tensile strength of block material, material I
+BDIL = 825  # dilation of block material: tangent of the dilation angle, material I
+PAR1 = 875  # a number for the user's own laws, material I
+PAR2 = 925  # a number for the user's own laws, material I
+PAR3 = 975  # a number for the user's own laws, material I
+PAR4 = 1025  # a number for the user's own laws, material I
+NCOMR = 1075

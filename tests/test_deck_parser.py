@@ -121,7 +121,8 @@ def test_the_message_points_at_the_word() -> None:
         "    PROP MAT=1 DENSITEE=2000",
         "               ^",
         "did you mean DENSITY? the form is: PROperty Material n [Bulk b | K b] [Cohesion c] [Density d] "
-        "[KN sn] [Friction f] [KS ss] [G g]",
+        "[KN sn] [Friction f] [KS ss] [G g] [DIlation a] [RFriction f] [RCohesion c] [CRitical u] "
+        "[BFriction f] [BCohesion c] [BTension t] [BDilation a] [P1 v] [P2 v] [P3 v] [P4 v]",
     ]
     assert caught.value.token == "DENSITEE"
 

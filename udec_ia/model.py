@@ -330,8 +330,23 @@ class Model:
         friction: float | None = None,
         ks: float | None = None,
         g: float | None = None,
+        dilation: float | None = None,
+        residual_friction: float | None = None,
+        residual_cohesion: float | None = None,
+        critical_slip: float | None = None,
+        block_friction: float | None = None,
+        block_cohesion: float | None = None,
+        block_tension: float | None = None,
+        block_dilation: float | None = None,
+        p1: float | None = None,
+        p2: float | None = None,
+        p3: float | None = None,
+        p4: float | None = None,
     ) -> None:
-        """PROPERTY: set properties of a material; those not given stay as they are."""
+        """PROPERTY: set properties of a material; those not given stay as they are.
+
+        From dilation on they are for the laws of constitutive numbers 2 to 5.
+        """
         self._ready(sound=False)
         settings.set_property(
             self.array,
@@ -343,6 +358,18 @@ class Model:
             friction=friction,
             ks=ks,
             g=g,
+            dilation=dilation,
+            residual_friction=residual_friction,
+            residual_cohesion=residual_cohesion,
+            critical_slip=critical_slip,
+            block_friction=block_friction,
+            block_cohesion=block_cohesion,
+            block_tension=block_tension,
+            block_dilation=block_dilation,
+            p1=p1,
+            p2=p2,
+            p3=p3,
+            p4=p4,
         )
 
     def gravity(self, gx: float, gy: float) -> None:

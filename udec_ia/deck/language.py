@@ -272,8 +272,11 @@ COMMANDS = (
     ),
     Command(
         "PROperty",
-        "Define properties of material n: bulk modulus (Bulk or K), cohesion, density, normal and shear "
-        "joint stiffness, friction coefficient, shear modulus (G).",
+        "Define properties of material n: bulk modulus (Bulk or K), joint cohesion, density, normal and "
+        "shear joint stiffness, joint friction coefficient, shear modulus (G). For constitutive numbers 2 to "
+        "5: dilation of joints, their residual friction and cohesion and the critical slip that leads to "
+        "these; friction, cohesion, tensile strength and dilation inside blocks; four numbers for laws of "
+        "your own. Frictions and dilations are tangents of angles.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
         words=(
             MATERIAL,
@@ -285,8 +288,21 @@ COMMANDS = (
             Word("Friction", "f"),
             Word("KS", "ss"),
             Word("G", "g"),
+            Word("DIlation", "a"),
+            Word("RFriction", "f", sets="residual_friction"),
+            Word("RCohesion", "c", sets="residual_cohesion"),
+            Word("CRitical", "u", sets="critical_slip"),
+            Word("BFriction", "f", sets="block_friction"),
+            Word("BCohesion", "c", sets="block_cohesion"),
+            Word("BTension", "t", sets="block_tension"),
+            Word("BDilation", "a", sets="block_dilation"),
+            Word("P1", "v"),
+            Word("P2", "v"),
+            Word("P3", "v"),
+            Word("P4", "v"),
         ),
         first="material",
+        ours="what stands behind G",
     ),
     Command(
         "Restart",

@@ -12,13 +12,18 @@ from offsets.generated import (
     ALPB,
     ALPHA,
     AMU,
+    BCOH,
+    BDIL,
     BETA,
+    BMU,
+    BTEN,
     BULK,
     COH,
     DENS,
     FRAC,
     GRAVX,
     GRAVY,
+    JDIL,
     KBFIX,
     KTD,
     KXD,
@@ -26,8 +31,15 @@ from offsets.generated import (
     KYD,
     KYDP,
     MFREE,
+    PAR1,
+    PAR2,
+    PAR3,
+    PAR4,
     PSCALE,
+    RCOH,
+    RMU,
     SHEAR,
+    UCRIT,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
@@ -46,14 +58,28 @@ PROPERTIES = {  # keyword of the PROPERTY command: array of the common block
     "friction": AMU,
     "ks": AKS,
     "g": SHEAR,
+    "dilation": JDIL,
+    "residual_friction": RMU,
+    "residual_cohesion": RCOH,
+    "critical_slip": UCRIT,
+    "block_friction": BMU,
+    "block_cohesion": BCOH,
+    "block_tension": BTEN,
+    "block_dilation": BDIL,
+    "p1": PAR1,
+    "p2": PAR2,
+    "p3": PAR3,
+    "p4": PAR4,
 }
+FREE = ("p1", "p2", "p3", "p4")  # may be negative: what they mean is the user's
 
 
 def set_property(array: MainArray, material: int, **values: float | None) -> None:
     """PROPERTY: set properties of a material; those not given stay. Error 4, or 28 for a negative value."""
     i = material_number(material) - 1
     given = {name: value for name, value in values.items() if value is not None}
-    not_negative(array, **given)
+    finite(array, **{name: value for name, value in given.items() if name in FREE})
+    not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
     cr = array.h.cr
     k, g = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
     lame = {"K + 4G/3": k + 4 * g / 3, "K - 2G/3": k - 2 * g / 3}  # constants of plane strain
