@@ -225,6 +225,8 @@ DAMAGES: list[tuple[str, Damage, int]] = [
     ("greatest corner distance", first("block", g.KBRO, 0.5), 7),
     ("material of a block", first_int("block", g.KMAT, 0), 2),
     ("material of a contact", first_int("contact", g.KCM, 51), 2),
+    ("law of a block", first_int("block", g.KCONS, 0), 2),
+    ("law of a contact", first_int("contact", g.KCC, 6), 2),
     ("corner moved", first("corner", g.KXP, -0.01), 7),
     ("circle moved", first("corner", g.KXCP, ROUNDING + 0.001), 7),
     ("radius", first("corner", g.KRAD, ROUNDING - 0.001), 7),

@@ -40,6 +40,12 @@ def arguments() -> argparse.ArgumentParser:
     )
     run.add_argument("--out", type=Path, default=Path("."), help="folder for plots and restart files")
     run.add_argument("--mtop", type=int, help="size of the main array in words; left off, it grows as needed")
+    run.add_argument(
+        "--constitutive",
+        action="append",
+        metavar="LAW",
+        help="laws of constitutive numbers 2 to 5: a Python file, joint-dilation or mohr-coulomb; repeatable",
+    )
     run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
     run.set_defaults(action=_run)
     check = commands.add_parser("check", help="prove that a restart file holds a sound block system")
@@ -53,7 +59,7 @@ def arguments() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     try:
-        model = Model(build=args.build, mtop=args.mtop, out=args.out)
+        model = Model(build=args.build, mtop=args.mtop, out=args.out, constitutive=args.constitutive)
     except (ValueError, MemoryError) as error:
         print(f"udec: --mtop {args.mtop}: {error}", file=sys.stderr)
         return MISUSE

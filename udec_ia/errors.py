@@ -40,6 +40,8 @@ MESSAGES = {
     31: "file cannot be written",
     32: "zone has turned inside out",
     33: "zones do not fill the block",
+    34: "constitutive law cannot be used",
+    35: "constitutive law returned no finite number",
 }
 
 

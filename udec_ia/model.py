@@ -12,7 +12,7 @@ from __future__ import annotations
 import io
 import logging
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
@@ -33,6 +33,8 @@ from udec_ia.ops.create import create
 from udec_ia.ops.cycle import cycle
 from udec_ia.ops.delete import delete
 from udec_ia.ops.insitu import insitu
+from udec_ia.ops.lawfile import Given
+from udec_ia.ops.laws import LawBook
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
@@ -55,13 +57,22 @@ class Model:
     mtop: size of IA() in words, fixed as in 1980; None lets the array grow as needed.
     out: folder for plots, and for restart files whose names are given in a deck or not at all; made when the
     first file is written.
+    constitutive: laws of constitutive numbers 2 to 5 (udec_ia.laws): a file, the name of a law that comes
+    with the program, a mapping from names to functions, or several of these; error 34 if one cannot be used.
     tell: takes what CYCLE has to warn of.
     """
 
-    def __init__(self, build: str = DEFAULT_SCHEME, mtop: int | None = None, out: str | Path = ".") -> None:
+    def __init__(
+        self,
+        build: str = DEFAULT_SCHEME,
+        mtop: int | None = None,
+        out: str | Path = ".",
+        constitutive: Given | Iterable[Given] | None = None,
+    ) -> None:
         self.mtop = None if mtop is None else _words(mtop)
         self.array = MainArray(scheme(build), self.mtop)
         self.out = Path(out)
+        self.laws = LawBook(constitutive)
         self.name = "udec"
         self.deck_log: list[str] = []
         self.progress: TextIO | None = None
@@ -88,6 +99,7 @@ class Model:
         """START: a cold start; whatever was there is gone."""
         self.array = MainArray(self.array.scheme, self.mtop)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        self.laws.note({})
         self._boxes.forget()
         self._touched = False
         self._warned = ""
@@ -100,7 +112,8 @@ class Model:
         """
         from udec_ia.restart import save
 
-        written = save(self.array, self.out / RESTART_FILE if path is None else path, self.deck_log)
+        target = self.out / RESTART_FILE if path is None else path
+        written = save(self.array, target, self.deck_log, self.laws.record())
         if written not in self._saved:
             self._saved.append(written)
         return written
@@ -112,15 +125,17 @@ class Model:
         """
         from udec_ia.restart import load
 
-        self.array, self.deck_log = load(self.out / RESTART_FILE if path is None else path)
+        self.array, self.deck_log, laws = load(self.out / RESTART_FILE if path is None else path)
+        for warning in self.laws.note(laws):
+            self.tell(warning)
         self._boxes.forget()
         self._touched = False
         self.started = True
 
     @classmethod
-    def restore(cls, path: str | Path) -> Self:
-        """A new model from a restart file, in the word scheme of the file."""
-        model = cls()
+    def restore(cls, path: str | Path, constitutive: Given | Iterable[Given] | None = None) -> Self:
+        """A new model from a restart file, in the word scheme of the file, with laws of the user's."""
+        model = cls(constitutive=constitutive)
         model.restart(path)
         return model
 
@@ -345,7 +360,7 @@ class Model:
     ) -> None:
         """PROPERTY: set properties of a material; those not given stay as they are.
 
-        From dilation on they are for the laws of constitutive numbers 2 to 5.
+        From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
         self._ready(sound=False)
         settings.set_property(

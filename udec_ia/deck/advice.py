@@ -20,7 +20,7 @@ ADVICE = {
     6: "give the corners in clockwise order, along an outline that does not cross itself",
     7: "HELP and the name of the command show its form",
     8: "x and y of a point must stand on one line",
-    9: "constitutive numbers run from 1 to 5",
+    9: "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
     10: "HELP and the name of the command list its parameters",
     11: "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
     12: "give the density of every material in use: PROPERTY MAT=1 DENS=...",
@@ -45,6 +45,8 @@ ADVICE = {
     31: "check that the folder exists and can be written to",
     32: "take stiffer zones, a smaller FRACTION or smaller loads",
     33: "the zones must cover the block side to side, each side between two grid-points once",
+    34: "correct the file that --constitutive names",
+    35: "look for what the law divides by or takes a root of, and at the properties of the material",
 }
 
 

@@ -16,12 +16,12 @@ import numpy as np
 from offsets import generated
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 from udec_ia.inspect.check_map import AHEAD
+from udec_ia.kernels.lawcall import LAST
 from udec_ia.kernels.shape import FLAT
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 NOT_NEGATIVE = ("KBM", "KBI")
-MATERIALS = ("KMAT", "KCM")
 ROUNDING_SLACK = 1e-6  # the part of an edge that error 14 lets its two roundings overlap
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
@@ -168,11 +168,12 @@ def check_numbers(state: State) -> None:
 
 
 def check_codes(state: State) -> None:
-    """Invariant 2: material numbers and contact codes are those that the compiled routines know."""
+    """Invariant 2: material and constitutive numbers and contact codes are those that routines know."""
     materials = next(field.count for field in TABLE.common if field.name == "AKN")
+    greatest = {"KMAT": materials, "KCM": materials, "KCONS": LAST, "KCC": LAST, "KCCOD": VIRTUAL}
     for kind, addresses in state.address.items():
-        for name in (field.name for field in TABLE.group(kind).fields if field.name in (*MATERIALS, "KCCOD")):
-            most = materials if name in MATERIALS else VIRTUAL
+        for name in (field.name for field in TABLE.group(kind).fields if field.name in greatest):
+            most = greatest[name]
             values = state.column(kind, name)
             for row in np.flatnonzero((values < 1) | (values > most)):
                 state.report(2, f"{name} of {kind}@{addresses[row]} is {values[row]}, not 1 to {most}")

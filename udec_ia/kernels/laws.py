@@ -1,27 +1,77 @@
-"""Constitutive laws of deformable blocks (CL1 to CL5; report 4.3, Appendix IV-4)."""
+"""Constitutive laws: number 1, and where the user's numbers 2 to 5 come in (CL1 to CL5, CLJ2 to CLJ5; IV-4).
+
+`laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
+`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws (kernels.lawcall).
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
-from offsets.generated import ALAM1, ALAM2
-from udec_ia.heap.accessors import Memory
-from udec_ia.heap.jit import inlined
+import numpy as np
+
+from offsets.generated import (
+    ALAM1,
+    ALAM2,
+    IBPNT,
+    ICPNT,
+    IERAD,
+    KB,
+    KC,
+    KCC,
+    KCM,
+    KCONS,
+    MRIG,
+    NERR,
+    SHEAR,
+)
+from udec_ia.heap.accessors import HEAD, Memory, iget, real
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.lawcall import FIRST, JOINTS, Laws, call, is_given
+
+LAW_FAILED = 35
+BLOCKS, CONTACTS = 0, 1  # rows of what numbers_in_use fills
+
+
+@kernel
+def numbers_in_use(h: Memory, first: Any) -> None:
+    """first[BLOCKS, n], first[CONTACTS, n]: a deformable block, a contact of constitutive number n, or 0."""
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        if iget(h, ib, HEAD) != MRIG:
+            first[BLOCKS, iget(h, ib, KCONS)] = ib
+        ib = iget(h, ib, KB)
+    ic = h.ci[ICPNT]
+    while ic != 0:
+        first[CONTACTS, iget(h, ic, KCC)] = ic
+        ic = iget(h, ic, KC)
+
+
+@inlined
+def failed(h: Memory, group: int, total: float) -> bool:
+    """True, and error 35, if `total` of what a law returned for `group` is not finite."""
+    if np.isfinite(total):
+        return False
+    if h.ci[NERR] == 0:
+        h.ci[NERR] = LAW_FAILED
+        h.ci[IERAD] = group
+    return True
 
 
 @inlined
 def cl1(h: Memory, mat: int, e11: float, e12: float, e22: float) -> tuple[float, float, float]:
     """Stress increments of isotropic elasticity in plane strain (CL1), of material `mat`."""
-    one, two = h.cr[ALAM1 + mat - 1], h.cr[ALAM2 + mat - 1]
-    return one * e11 + two * e22, (one - two) * e12, two * e11 + one * e22
+    one, two, shear = h.cr[ALAM1 + mat - 1], h.cr[ALAM2 + mat - 1], h.cr[SHEAR + mat - 1]
+    return one * e11 + two * e22, (shear + shear) * e12, two * e11 + one * e22
 
 
 @inlined
 def stress_increment(
     h: Memory,
-    soft: Any,
-    law: int,
+    laws: Laws | None,
+    number: int,
     mat: int,
+    group: int,
     s11: float,
     s12: float,
     s22: float,
@@ -29,5 +79,39 @@ def stress_increment(
     e12: float,
     e22: float,
 ) -> tuple[float, float, float]:
-    """Stress increments 11, 12, 22 for the strain increments, by the law of constitutive number `law`."""
+    """Stress increments 11, 12, 22 of material `mat` for strain increments, by constitutive number `number`.
+
+    s11, s12, s22: stress before the increment, tension positive. e11, e12, e22: components of the strain
+    tensor. group: what error 35 names if the law returns no finite numbers; the increments are then 0.
+    A number for which there is no block law is linear elasticity.
+    """
+    if laws is not None:
+        i = number - FIRST
+        if i >= 0 and is_given(laws, i):
+            d11, d12, d22 = call(laws, i, mat, (s11, s12, s22, e11, e12, e22))
+            if failed(h, group, real(h, d11) + real(h, d12) + real(h, d22)):
+                return real(h, 0.0), real(h, 0.0), real(h, 0.0)
+            return real(h, d11), real(h, d12), real(h, d22)
     return cl1(h, mat, e11, e12, e22)
+
+
+@inlined
+def has_law(h: Memory, laws: Laws, ic: int) -> bool:
+    """True if contact `ic` follows a law of the user's; else it has springs and Coulomb friction."""
+    i = iget(h, ic, KCC) - FIRST
+    return i >= 0 and is_given(laws, i + JOINTS)
+
+
+@inlined
+def force_increment(
+    h: Memory, laws: Laws, ic: int, fn: float, fs: float, dun: float, dus: float, un: float, us: float
+) -> tuple[float, float]:
+    """Increments of normal and shear force in contact `ic` by its law; (0, 0) and error 35 if not finite.
+
+    fn, fs, un, us: forces and displacements before the increments dun, dus; compression and closing positive.
+    """
+    i, mat = iget(h, ic, KCC) - FIRST + JOINTS, iget(h, ic, KCM)
+    d = call(laws, i, mat, (fn, fs, dun, dus, un, us))
+    if failed(h, ic, real(h, d[0]) + real(h, d[1])):
+        return real(h, 0.0), real(h, 0.0)
+    return real(h, d[0]), real(h, d[1])

@@ -15,6 +15,7 @@ from udec_ia.restart.reader import (
     opened,
     read_common,
     read_deck,
+    read_laws,
     read_scheme,
     shorten,
     string,
@@ -39,6 +40,7 @@ def info(path: str | Path) -> str:
         ]
         lines += [] if faults else _state(file, scheme)
         lines += [("deck", f"{len(read_deck(file))} command lines")]
+        lines += [("law", f"{name} of {origin}, sha256 {d}") for name, (origin, d) in read_laws(file).items()]
         lines += [("heap", f"sha256 {attribute(file, 'heap/IA', 'sha256')}")]
     return "\n".join(f"{name:10}{value}" for name, value in lines)
 

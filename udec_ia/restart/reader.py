@@ -11,7 +11,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -28,8 +28,20 @@ from udec_ia.restart.seal import read_sealed
 SHOWN = 3  # differences or violations that a refusal lists
 
 
-def load(path: str | Path) -> tuple[MainArray, list[str]]:
-    """The state in the restart file `path`, in the file's own word scheme, and the deck lines that led to it.
+class Restored(NamedTuple):
+    """What a restart file holds.
+
+    deck: the command lines that led to the state. laws: file and SHA-256 of each constitutive law of the
+    user's that it was calculated with.
+    """
+
+    array: MainArray
+    deck: list[str]
+    laws: dict[str, tuple[str, str]]
+
+
+def load(path: str | Path) -> Restored:
+    """The state in the restart file `path`, in the file's own word scheme.
 
     Raises UdecError 29, and nothing else, if the file is not exactly what `save` wrote or its heap is
     unsound.
@@ -38,9 +50,9 @@ def load(path: str | Path) -> tuple[MainArray, list[str]]:
     with refusing(path), opened(path) as file:
         check_layout(file)
         array = _read_state(file)
-        deck = read_deck(file)
+        restored = Restored(array, read_deck(file), read_laws(file))
         _check_heap(array)
-    return array, deck
+    return restored
 
 
 @contextmanager
@@ -76,6 +88,16 @@ def string(file: h5py.File, name: str) -> bytes:
 def read_deck(file: h5py.File) -> list[str]:
     """The executed command lines."""
     return string(file, "deck").decode("utf-8", "surrogatepass").split("\n")[:-1]
+
+
+def read_laws(file: h5py.File) -> dict[str, tuple[str, str]]:
+    """The constitutive laws of the user's: name, and name of its file and SHA-256 of that file's text."""
+    if "laws" not in file:  # format 1.0
+        return {}
+    return {
+        name: (bytes(law.attrs["file"]).decode("utf-8", "surrogatepass"), bytes(law.attrs["sha256"]).decode())
+        for name, law in file["laws"].items()
+    }
 
 
 def layout_faults(file: h5py.File) -> list[str]:

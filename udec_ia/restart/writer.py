@@ -13,7 +13,7 @@ import io
 import os
 import platform
 import secrets
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -33,15 +33,24 @@ CHUNK = 65536  # words
 HOST_LENGTH = 64
 
 
-def save(array: MainArray, path: str | Path, deck: Sequence[str] = ()) -> Path:
+NO_LAWS: Mapping[str, tuple[str, str]] = {}
+
+
+def save(
+    array: MainArray,
+    path: str | Path,
+    deck: Sequence[str] = (),
+    laws: Mapping[str, tuple[str, str]] = NO_LAWS,
+) -> Path:
     """Write `array`, and the command lines that led to it, to the restart file `path`.
 
+    laws: file and SHA-256 of each constitutive law of the user's that the state was calculated with.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
     checksum of the seal. Raises UdecError 29 if the file cannot be written; a file that stood there
     before is then untouched.
     """
     path = Path(path)
-    image = _image(array, deck)
+    image = _image(array, deck, laws)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _replace(path, image)
@@ -77,7 +86,7 @@ def _sync_folder(folder: Path) -> None:
         os.close(handle)
 
 
-def _image(array: MainArray, deck: Sequence[str]) -> memoryview:
+def _image(array: MainArray, deck: Sequence[str], laws: Mapping[str, tuple[str, str]]) -> memoryview:
     """The bytes of the whole file."""
     table = read_table()
     buffer = io.BytesIO()
@@ -89,6 +98,7 @@ def _image(array: MainArray, deck: Sequence[str]) -> memoryview:
         _write_common(file, array, table)
         _write_layout(file, table, array.scheme.ratio)
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
+        _write_laws(file, laws)
         _write_provenance(file)
         _write_volatile(file)
         file.attrs["complete"] = np.int8(1)
@@ -139,6 +149,15 @@ def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:
         for head in table.heads:
             if head.group == group.name:
                 attrs[head.name] = np.int32(head.value)
+
+
+def _write_laws(file: h5py.File, laws: Mapping[str, tuple[str, str]]) -> None:
+    """/laws: one group for each constitutive law of the user's."""
+    group = file.create_group("laws")
+    for name, (origin, digest) in laws.items():
+        attrs = group.create_group(name).attrs
+        attrs["file"] = text(origin.encode("utf-8", "surrogatepass"))
+        attrs["sha256"] = text(digest)
 
 
 def _write_provenance(file: h5py.File) -> None:

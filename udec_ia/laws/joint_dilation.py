@@ -1,0 +1,31 @@
+"""Joints that dilate and weaken as they slip: `--constitutive joint-dilation`, number 2.
+
+Springs KN and KS, and a shear force of at most  c + f Fn.  What part of the shear displacement u is slip, the
+forces tell: s = u - Fs/KS, which is 0 as long as the joint holds. With w = min(|s|/CRITICAL, 1)
+
+    strength   c, f fall from COHESION, FRICTION to RCOHESION, RFRICTION, in proportion to w
+    dilation   the joint opens by DILATION |s|, until |s| = CRITICAL and no farther
+
+so that peak strength and full dilation go together, and so do residual strength and none. A joint that opens
+against its normal spring gains the normal force KN DILATION |ds|; blocks that are free to move apart do.
+With CRITICAL = 0, which it is unless given, the joint neither weakens nor dilates: Coulomb's law, number 1.
+
+Strength is that of the normal force and the slip before the step, as steps are small. The slip is the net
+one: going back, a joint closes and regains its strength on the path that it came. A joint that has opened
+altogether begins anew when it closes, since an open contact forgets its slip.
+"""
+
+
+def clj2(fn, fs, dun, dus, un, us, m):
+    pressed, trial = fn + m.kn * dun, fs + m.ks * dus
+    if pressed <= 0:
+        return -fn, -fs
+    slip = abs(us - fs / m.ks)
+    weak = min(slip / m.critical_slip, 1) if m.critical_slip > 0 else 0
+    friction = m.friction + weak * (m.residual_friction - m.friction)
+    cohesion = m.cohesion + weak * (m.residual_cohesion - m.cohesion)
+    most = cohesion + friction * pressed
+    held = max(-most, min(trial, most))
+    slipped = abs(us + dus - held / m.ks)
+    opened = m.dilation * (min(slipped, m.critical_slip) - min(slip, m.critical_slip))
+    return pressed + m.kn * opened - fn, held - fs

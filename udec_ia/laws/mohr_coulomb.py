@@ -1,0 +1,64 @@
+"""Mohr-Coulomb plasticity with tension cut-off, in plane strain: `--constitutive mohr-coulomb`, number 2.
+
+The stress increment is elastic at first. Principal stresses s1 <= s3 (tension positive) that then break
+one of the limits are put back onto it:
+
+    shear    s1 = N s3 - 2 c sqrt(N)    N = (1 + sin phi)/(1 - sin phi), BFRICTION = tan phi, BCOHESION = c
+    tension  s3 = t                     t = BTENSION, and at most c/tan phi, the tip of the shear limit
+
+Plastic strain in shear follows the potential s1 - s3 M, with M for the dilation angle psi (BDILATION =
+tan psi) as N for phi: the area grows by sin psi for a unit of plastic shear strain, so with psi = phi the
+flow is associated and with psi = 0 it keeps the area. In tension the flow is associated. Where both limits
+are broken the stress goes to their corner. Directions of principal stress stay.
+
+A zone of the 1980 program keeps three stresses; there is none out of the plane. The law therefore takes it
+for the middle one of the principal stresses, as the solutions of limit analysis do: it never yields and,
+as all plastic strain is in the plane, it never influences the others. In places where the stress out of the
+plane is the greatest or the least, which takes a nearly hydrostatic state in the plane or an unlike initial
+stress, true yielding begins earlier.
+"""
+
+from math import sqrt
+
+
+def passive(tangent):
+    """(1 + sin a)/(1 - sin a), from the tangent of the angle a."""
+    root = tangent + sqrt(1 + tangent * tangent)
+    return root * root
+
+
+def principal(s1, s3, m):
+    """Principal stresses s1 <= s3 within the limits, for those that were reached elastically."""
+    n = passive(m.block_friction)
+    strength = 2 * m.block_cohesion * sqrt(n)
+    t = m.block_tension
+    if m.block_friction > 0:
+        t = min(t, m.block_cohesion / m.block_friction)
+    corner = n * t - strength
+    if s3 > t:  # tension, unless the way back ends outside the shear limit
+        back = min(t, s1 - (s3 - t) * m.alam2 / m.alam1)
+        if back >= corner:
+            return back, t
+    beyond = n * s3 - strength - s1
+    if beyond <= 0:
+        return s1, s3
+    flow = passive(m.block_dilation)
+    f1, f3 = m.alam1 - m.alam2 * flow, m.alam2 - m.alam1 * flow
+    step = beyond / (f1 - n * f3)
+    if s3 + step * f3 > t:
+        return corner, t
+    return s1 + step * f1, s3 + step * f3
+
+
+def cl2(s11, s12, s22, de11, de12, de22, m):
+    t11 = s11 + m.alam1 * de11 + m.alam2 * de22
+    t22 = s22 + m.alam2 * de11 + m.alam1 * de22
+    t12 = s12 + 2 * m.shear * de12
+    mean, half = (t11 + t22) / 2, (t11 - t22) / 2
+    radius = sqrt(half * half + t12 * t12)
+    s1, s3 = principal(mean - radius, mean + radius, m)
+    mean = (s1 + s3) / 2
+    if radius > 0:
+        share = (s3 - s1) / 2 / radius
+        half, t12 = half * share, t12 * share
+    return mean + half - s11, t12 - s12, mean - half - s22
