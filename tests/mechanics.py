@@ -26,16 +26,20 @@ def model(
     cohesion: float = 0.0,
     gravity: tuple[float, float] = (0.0, -G),
     build: str = "i32r64",
+    law: Any = None,
 ) -> Model:
-    """A model of one block with the given corners (clockwise) and rounding length `d`, no damping."""
-    m = Model(build=build)
+    """A model of one block with the given corners (clockwise) and rounding length `d`, no damping.
+
+    law: of constitutive number 2, which the block then has.
+    """
+    m = Model(build=build, constitutive=law)
     m.start()
     m.fraction(fraction)
     m.gravity(*gravity)
     kn, ks = stiffness
     m.property(1, density=density, kn=kn, ks=ks, friction=friction, cohesion=cohesion)
     m.round(d)
-    m.block(*chain.from_iterable(outline))
+    m.block(*chain.from_iterable(outline), constitutive=1 if law is None else 2)
     return m
 
 

@@ -60,7 +60,7 @@ def test_a_law_gets_state_and_material_and_its_increments_come_back(build: str) 
     a = array(build)
     settings.set_property(a, 3, p4=7.0)
     book = LawBook({"cl4": echo})
-    laws = book.bind(a)
+    laws = book.pack(a)
     found = stress_increment(a.h, laws, 4, 3, 1, *map(a.scheme.real_type.type, STATE))
     assert tuple(found) == (321.0, 654.0, 75.0)
     assert a.h.ci[g.NERR] == 0
@@ -72,7 +72,7 @@ def test_number_1_and_numbers_without_a_law_are_elastic(build: str) -> None:
     a = array(build)
     state = [a.scheme.real_type.type(x) for x in STATE]
     book = LawBook({"cl4": echo})
-    laws = book.bind(a)
+    laws = book.pack(a)
     for given, number in ((None, 1), (laws, 1), (laws, 3)):
         found = stress_increment(a.h, given, number, 3, 1, *state)
         assert tuple(found) == (9 * 4.0 + 3 * 6.0, 6 * 5.0, 3 * 4.0 + 9 * 6.0)
@@ -82,7 +82,7 @@ def test_number_1_and_numbers_without_a_law_are_elastic(build: str) -> None:
 def test_what_is_no_number_is_error_35(build: str) -> None:
     a = array(build)
     book = LawBook({"cl2": stop})
-    laws = book.bind(a)
+    laws = book.pack(a)
     assert tuple(stress_increment(a.h, laws, 2, 3, 88, *map(a.scheme.real_type.type, STATE))) == (0, 0, 0)
     assert (a.h.ci[g.NERR], a.h.ci[g.IERAD]) == (35, 88)
 
@@ -101,7 +101,7 @@ for build in ("i32r64", "i32r32"):
     a = MainArray(scheme(build))
     settings.set_property(a, 1, bulk=2e9, g=1e9, block_friction=0.6, block_cohesion=2e5, block_tension=1e5)
     book = LawBook(sys.argv[1])
-    laws = book.bind(a)
+    laws = book.pack(a)
     for state in states.astype(a.scheme.real_type):
         print(*(float(x).hex() for x in kernels.stress_increment(a.h, laws, 2, 1, 1, *state)))
 stats = getattr(kernels.stress_increment, "stats", None)
@@ -214,7 +214,7 @@ def test_functions_of_the_same_file_are_compiled_too(tmp_path: Path) -> None:
         + BLOCK + "    return sqrt(four), np.hypot(3.0, 4.0), outer(s11)\n"
     )  # fmt: skip
     a, book = array(), LawBook(path)
-    assert stress_increment(a.h, book.bind(a), 2, 3, 1, *STATE) == (2.0, 5.0, 9.0)
+    assert stress_increment(a.h, book.pack(a), 2, 3, 1, *STATE) == (2.0, 5.0, 9.0)
 
 
 def test_a_book_keeps_the_laws_of_a_restart_file(tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def turns(model: Model, s: Slab) -> tuple[float, float, float]:
     times = []
     for _ in range(TURNS):
         start = process_time()
-        done = run_cycles(model.h, n, None)
+        done = run_cycles(model.h, n, None, None, None)
         between = process_time()
         run_soa(s, n)
         times.append((between - start, process_time() - between))
@@ -112,7 +112,7 @@ def bench_cycles(sizes: list[int], skew: float) -> None:
         for name in ("at rest", "thrown"):
             if name == "thrown":
                 throw(model)
-            run_cycles(model.h, 2, None)
+            run_cycles(model.h, 2, None, None, None)
             skipped = model.h.cr[UPEND] > 0
             s = extract(model.array)
             run_soa(s, 0)

@@ -421,7 +421,8 @@ class Model:
             self._animation = Animation(self.name)
         report = Report(lambda: self.h, n, self.progress, self._animation)
         try:
-            done = cycle(self.array, n, report, max(1, n // PICTURES) if self.animate else None, self._warn)
+            every = max(1, n // PICTURES) if self.animate else None
+            done = cycle(self.array, n, report, every, self._warn, self.laws)
         finally:
             report.close()
         if done > 0:

@@ -17,51 +17,43 @@ from offsets.generated import (
     KBFY,
     KBM,
     KC,
-    KCC,
     KCM,
-    KCONS,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 
 
 @kernel
-def least_mass(h: Memory) -> tuple[float, int, int]:
-    """Least mass of a free block (of any block if none is free), a block without mass or 0, and a block
-    of another constitutive number than 1 or 0."""
+def least_mass(h: Memory) -> tuple[float, int]:
+    """Least mass of a free block (of any block if none is free), and a block without mass or 0."""
     free, least = real(h, np.inf), real(h, np.inf)
-    massless, foreign = int64(0), int64(0)
+    massless = int64(0)
     ib = h.ci[IBPNT]
     while ib != 0:
         mass = getr(h, ib, KBM)
         if not mass > 0:
             massless = ib
-        if iget(h, ib, KCONS) != 1:
-            foreign = ib
         least = min(least, mass)
         if iget(h, ib, KBFIX) == 0:
             free = min(free, mass)
         ib = iget(h, ib, KB)
-    return (free if free < np.inf else least), massless, foreign
+    return (free if free < np.inf else least), massless
 
 
 @kernel
-def greatest_stiffness(h: Memory) -> tuple[float, int, int]:
-    """Greatest joint stiffness of a contact, a contact without stiffness or 0, and a contact of another
-    constitutive number than 1 or 0."""
+def greatest_stiffness(h: Memory) -> tuple[float, int]:
+    """Greatest joint stiffness of a contact, and a contact without stiffness or 0."""
     most = real(h, 0.0)
-    undefined, foreign = int64(0), int64(0)
+    undefined = int64(0)
     ic = h.ci[ICPNT]
     while ic != 0:
         m = iget(h, ic, KCM) - 1
         kn, ks = h.cr[AKN + m], h.cr[AKS + m]
         if not min(kn, ks) > 0:
             undefined = ic
-        if iget(h, ic, KCC) != 1:
-            foreign = ic
         most = max(most, max(kn, ks))
         ic = iget(h, ic, KC)
-    return most, undefined, foreign
+    return most, undefined
 
 
 @kernel

@@ -1,8 +1,8 @@
 """The block pass: every block moves by the law of its type (report 2.6).
 
 `soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code,
-and such a scene neither compiles nor tests anything about deformable blocks. Otherwise it holds what the
-laws CL2 to CL5 need.
+and such a scene neither compiles nor tests anything about deformable blocks. `laws` is None unless one of
+these follows a law of the user's.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from udec_ia.kernels.sdef import move_sdef
 
 
 @kernel
-def move_all(h: Memory, soft: Any) -> float:
+def move_all(h: Memory, soft: Any, laws: Any) -> float:
     """Move every block; returns a bound on the velocity, in x or in y, of any point."""
     fastest = real(h, 0.0)
     ib = h.ci[IBPNT]
@@ -26,9 +26,9 @@ def move_all(h: Memory, soft: Any) -> float:
         if soft is not None:
             kind = iget(h, ib, HEAD)
             if kind == MFDEF:
-                fastest = max(fastest, move_fdef(h, ib, soft))
+                fastest = max(fastest, move_fdef(h, ib, laws))
             elif kind == MSDEF:
-                fastest = max(fastest, move_sdef(h, ib, soft))
+                fastest = max(fastest, move_sdef(h, ib, laws))
             else:
                 fastest = max(fastest, motion(h, ib))
         else:

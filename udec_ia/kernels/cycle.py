@@ -22,10 +22,11 @@ BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 
 
 @kernel
-def run_cycles(h: Memory, n: int, soft: Any) -> int:
+def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
-    soft: None if all blocks are rigid and free of boundary conditions, else what the laws CL2 to CL5 need.
+    soft: None if all blocks are rigid and free of boundary conditions, else True. laws, joints: None if no
+    deformable block, no contact follows a law of the user's, else the laws (kernels.lawcall).
     """
     done = 0
     while done < n:
@@ -34,7 +35,7 @@ def run_cycles(h: Memory, n: int, soft: Any) -> int:
                 return done  # IA() grows between two cycles, where growing changes nothing
             if soft is not None:
                 apply_bounds(h)
-            fastest = move_all(h, soft)
+            fastest = move_all(h, soft, laws)
             h.ci[JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
         if h.ci[JPHASE] == DOMAINS:
             if not update_all(h):
@@ -42,7 +43,7 @@ def run_cycles(h: Memory, n: int, soft: Any) -> int:
             h.ci[JPHASE] = CONTACTS
         if h.ci[JPHASE] == CONTACTS:
             broken = h.ci[NBROKE]
-            ford_all(h, soft)
+            ford_all(h, soft, joints)
             h.ci[JPHASE] = BLOCKS if h.ci[NBROKE] == broken else BROKEN
         if h.ci[JPHASE] == BROKEN:  # domains that merged are looked through at once
             if not update_all(h):

@@ -207,14 +207,14 @@ def strain_rates(h: Memory, iz: int) -> tuple[float, float, float, float, float]
 
 @inlined
 def zone_stress(
-    h: Memory, ib: int, iz: int, soft: Any, e11: float, e12: float, e22: float, spin: float
+    h: Memory, ib: int, iz: int, laws: Any, e11: float, e12: float, e22: float, spin: float
 ) -> tuple[float, float, float]:
     """New stress of zone `iz` of block `ib`; returns the stress increments by the law."""
     dt = h.cr[TDEL]
     c, s = cayley(h, spin * dt)
     s11, s12, s22 = turned(getr(h, iz, KZS11), getr(h, iz, KZS12), getr(h, iz, KZS22), c, s)
     law, mat = iget(h, ib, KCONS), iget(h, ib, KMAT)
-    d11, d12, d22 = stress_increment(h, soft, law, mat, s11, s12, s22, e11 * dt, e12 * dt, e22 * dt)
+    d11, d12, d22 = stress_increment(h, laws, law, mat, ib, s11, s12, s22, e11 * dt, e12 * dt, e22 * dt)
     putr(h, iz, KZS11, s11 + d11)
     putr(h, iz, KZS12, s12 + d12)
     putr(h, iz, KZS22, s22 + d22)
@@ -238,10 +238,10 @@ def zone_forces(h: Memory, iz: int, r11: float, r12: float, r22: float) -> None:
 
 
 @inlined
-def zstrs(h: Memory, ib: int, iz: int, soft: Any) -> None:
+def zstrs(h: Memory, ib: int, iz: int, laws: Any) -> None:
     """Strain rates, stress and grid-point forces of zone `iz` of block `ib` (ZSTRS)."""
     e11, e12, e22, spin, _ = strain_rates(h, iz)
-    d11, d12, d22 = zone_stress(h, ib, iz, soft, e11, e12, e22, spin)
+    d11, d12, d22 = zone_stress(h, ib, iz, laws, e11, e12, e22, spin)
     rate = h.cr[BETA] / h.cr[TDEL]
     zone_forces(h, iz, d11 * rate, d12 * rate, d22 * rate)
 
@@ -260,7 +260,7 @@ def add_pressure(h: Memory, iz: int, p: float) -> None:
 
 
 @kernel
-def zstrs_mixed(h: Memory, ib: int, iz: int, jz: int, soft: Any) -> None:
+def zstrs_mixed(h: Memory, ib: int, iz: int, jz: int, laws: Any) -> None:
     """As zstrs for the two zones `iz` and `jz` of a pair, with mixed discretisation (4.7)."""
     half = real(h, 0.5)
     a11, a12, a22, aspin, aarea = strain_rates(h, iz)
@@ -269,8 +269,8 @@ def zstrs_mixed(h: Memory, ib: int, iz: int, jz: int, soft: Any) -> None:
     rest = real(h, 1.0) - part
     mean = (a11 + a22) * part + (b11 + b22) * rest
     da, db = (mean - (a11 + a22)) * half, (mean - (b11 + b22)) * half
-    a11, a12, a22 = zone_stress(h, ib, iz, soft, a11 + da, a12, a22 + da, aspin)
-    b11, b12, b22 = zone_stress(h, ib, jz, soft, b11 + db, b12, b22 + db, bspin)
+    a11, a12, a22 = zone_stress(h, ib, iz, laws, a11 + da, a12, a22 + da, aspin)
+    b11, b12, b22 = zone_stress(h, ib, jz, laws, b11 + db, b12, b22 + db, bspin)
     pa, pb = pressure(h, iz), pressure(h, jz)
     mean = pa * part + pb * rest
     add_pressure(h, iz, mean - pa)
@@ -281,18 +281,18 @@ def zstrs_mixed(h: Memory, ib: int, iz: int, jz: int, soft: Any) -> None:
 
 
 @kernel
-def zone_pass(h: Memory, ib: int, soft: Any) -> None:
+def zone_pass(h: Memory, ib: int, laws: Any) -> None:
     """All zones of block `ib`."""
     ie = iget(h, ib, KBEX)
     iz = iget(h, ie, KFZ)
     if iget(h, ie, KFMIX) == 1:
         while iz != 0:
             jz = iget(h, iz, KZ)
-            zstrs_mixed(h, ib, iz, jz, soft)
+            zstrs_mixed(h, ib, iz, jz, laws)
             iz = iget(h, jz, KZ)
         return
     while iz != 0:
-        zstrs(h, ib, iz, soft)
+        zstrs(h, ib, iz, laws)
         iz = iget(h, iz, KZ)
 
 
@@ -308,7 +308,7 @@ def stand_still(h: Memory, ib: int) -> None:
 
 
 @kernel
-def move_fdef(h: Memory, ib: int, soft: Any) -> float:
+def move_fdef(h: Memory, ib: int, laws: Any) -> float:
     """One step of fully-deformable block `ib` (FDEF); returns a bound on the velocity of its points."""
     zero = real(h, 0.0)
     putr(h, ib, KBFX, zero)
@@ -325,5 +325,5 @@ def move_fdef(h: Memory, ib: int, soft: Any) -> float:
         ig = iget(h, ig, KG)
     sum_up(h, ib)
     pvelfd(h, ib)
-    zone_pass(h, ib, soft)
+    zone_pass(h, ib, laws)
     return fastest

@@ -54,6 +54,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.jointlaw import by_law, has_law, is_open
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
@@ -153,17 +154,40 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
 
 
 @inlined
-def ford(h: Memory, ic: int, soft: Any) -> None:
-    """Force and displacement calculation for contact `ic` (FORD), which may vanish in it."""
+def push(
+    h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
+) -> None:
+    """Let the blocks of contact `ic` feel its forces; error 15 if it overlaps by too much."""
+    fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
+    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+    putfce(h, iget(h, ic, KB1), ic, -fx, -fy, x, y, soft)
+    putfce(h, iget(h, ic, KB2), ic, fx, fy, x, y, soft)
+    if overlap > h.cr[DTOL2] and h.ci[NERR] == 0:
+        h.ci[NERR] = OVERLAP_TOO_GREAT
+        h.ci[IERAD] = ic
+
+
+@inlined
+def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
+    """Force and displacement calculation for contact `ic` (FORD), which may vanish in it.
+
+    soft: None if all blocks are rigid. joints: None if no contact follows a law of the user's, else the laws.
+    """
     before = getr(h, ic, KCN)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, KCN, overlap)
     zero = real(h, 0.0)
     idle = overlap <= zero or getr(h, ic, KCFN) == zero
+    if joints is not None and has_law(h, joints, ic):
+        idle = is_open(h, ic, overlap)
     still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, overlap):
         return  # an open contact looks at its neighbours only when the domain pass has run
     xd, yd = cvel(h, ic, soft)
+    if joints is not None and has_law(h, joints, ic):
+        normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
+        push(h, ic, nx, ny, normal, shear, overlap, soft)
+        return
     if overlap <= zero:
         no_force(h, ic)
         return
@@ -187,25 +211,17 @@ def ford(h: Memory, ic: int, soft: Any) -> None:
         dashpot = zero
     putr(h, ic, KCFN, fn)
     putr(h, ic, KCFS, fs)
-    normal = fn + h.cr[BETA] * kn * closing
-    shear = fs + dashpot
-    fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
-    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-    putfce(h, iget(h, ic, KB1), ic, -fx, -fy, x, y, soft)
-    putfce(h, iget(h, ic, KB2), ic, fx, fy, x, y, soft)
-    if overlap > h.cr[DTOL2] and h.ci[NERR] == 0:
-        h.ci[NERR] = OVERLAP_TOO_GREAT
-        h.ci[IERAD] = ic
+    push(h, ic, nx, ny, fn + h.cr[BETA] * kn * closing, fs + dashpot, overlap, soft)
 
 
 @kernel
-def ford_all(h: Memory, soft: Any) -> None:
+def ford_all(h: Memory, soft: Any, joints: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[ICPNT]
     while ic != 0:
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
-            ford(h, ic, soft)
+            ford(h, ic, soft, joints)
         ic = following
 
 

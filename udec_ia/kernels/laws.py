@@ -1,4 +1,4 @@
-"""Constitutive laws: number 1, and where the user's numbers 2 to 5 come in (CL1 to CL5, CLJ2 to CLJ5; IV-4).
+"""Constitutive laws of blocks: number 1, and where the user's numbers 2 to 5 come in (CL1 to CL5; IV-4).
 
 `laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
 `if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws (kernels.lawcall).
@@ -19,7 +19,6 @@ from offsets.generated import (
     KB,
     KC,
     KCC,
-    KCM,
     KCONS,
     MRIG,
     NERR,
@@ -27,29 +26,34 @@ from offsets.generated import (
 )
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.lawcall import FIRST, JOINTS, Laws, call, is_given
+from udec_ia.kernels.lawcall import FIRST, Laws, call, is_given
 
 LAW_FAILED = 35
-BLOCKS, CONTACTS = 0, 1  # rows of what numbers_in_use fills
+IN_BLOCKS, AT_JOINTS = 0, 1  # rows of what numbers_in_use fills
 
 
 @kernel
-def numbers_in_use(h: Memory, first: Any) -> None:
-    """first[BLOCKS, n], first[CONTACTS, n]: a deformable block, a contact of constitutive number n, or 0."""
+def numbers_in_use(h: Memory, user: Any) -> None:
+    """user[IN_BLOCKS, n]: a deformable block of constitutive number n; 0 if there is none.
+
+    user[AT_JOINTS, n]: a contact of number n, or a block, whose contacts to come will be of its number.
+    """
     ib = h.ci[IBPNT]
     while ib != 0:
+        n = iget(h, ib, KCONS)
         if iget(h, ib, HEAD) != MRIG:
-            first[BLOCKS, iget(h, ib, KCONS)] = ib
+            user[IN_BLOCKS, n] = ib
+        user[AT_JOINTS, n] = ib
         ib = iget(h, ib, KB)
     ic = h.ci[ICPNT]
     while ic != 0:
-        first[CONTACTS, iget(h, ic, KCC)] = ic
+        user[AT_JOINTS, iget(h, ic, KCC)] = ic
         ic = iget(h, ic, KC)
 
 
 @inlined
 def failed(h: Memory, group: int, total: float) -> bool:
-    """True, and error 35, if `total` of what a law returned for `group` is not finite."""
+    """True, and error 35, if the sum of what a law returned for block or contact `group` is not finite."""
     if np.isfinite(total):
         return False
     if h.ci[NERR] == 0:
@@ -82,7 +86,8 @@ def stress_increment(
     """Stress increments 11, 12, 22 of material `mat` for strain increments, by constitutive number `number`.
 
     s11, s12, s22: stress before the increment, tension positive. e11, e12, e22: components of the strain
-    tensor. group: what error 35 names if the law returns no finite numbers; the increments are then 0.
+    tensor. group: the block, which error 35 names if the law returns no finite numbers; the increments are 0
+    then.
     A number for which there is no block law is linear elasticity.
     """
     if laws is not None:
@@ -93,25 +98,3 @@ def stress_increment(
                 return real(h, 0.0), real(h, 0.0), real(h, 0.0)
             return real(h, d11), real(h, d12), real(h, d22)
     return cl1(h, mat, e11, e12, e22)
-
-
-@inlined
-def has_law(h: Memory, laws: Laws, ic: int) -> bool:
-    """True if contact `ic` follows a law of the user's; else it has springs and Coulomb friction."""
-    i = iget(h, ic, KCC) - FIRST
-    return i >= 0 and is_given(laws, i + JOINTS)
-
-
-@inlined
-def force_increment(
-    h: Memory, laws: Laws, ic: int, fn: float, fs: float, dun: float, dus: float, un: float, us: float
-) -> tuple[float, float]:
-    """Increments of normal and shear force in contact `ic` by its law; (0, 0) and error 35 if not finite.
-
-    fn, fs, un, us: forces and displacements before the increments dun, dus; compression and closing positive.
-    """
-    i, mat = iget(h, ic, KCC) - FIRST + JOINTS, iget(h, ic, KCM)
-    d = call(laws, i, mat, (fn, fs, dun, dus, un, us))
-    if failed(h, ic, real(h, d[0]) + real(h, d[1])):
-        return real(h, 0.0), real(h, 0.0)
-    return real(h, d[0]), real(h, d[1])

@@ -124,13 +124,13 @@ def put_stress(h: Memory, ie: int, s11: float, s12: float, s22: float) -> None:
 
 
 @kernel
-def stress(h: Memory, ib: int, ie: int, c: float, s: float, soft: Any) -> None:
+def stress(h: Memory, ib: int, ie: int, c: float, s: float, laws: Any) -> None:
     """Internal stress: turned with the block, then increased by the law of the material (STRESS)."""
     dt = h.cr[TDEL]
     s11, s12, s22 = turned(getr(h, ie, KS111), getr(h, ie, KS112), getr(h, ie, KS122), c, s)
     e11, e12, e22 = getr(h, ie, KED11) * dt, getr(h, ie, KED12) * dt, getr(h, ie, KED22) * dt
     law, mat = iget(h, ib, KCONS), iget(h, ib, KMAT)
-    d11, d12, d22 = stress_increment(h, soft, law, mat, s11, s12, s22, e11, e12, e22)
+    d11, d12, d22 = stress_increment(h, laws, law, mat, ib, s11, s12, s22, e11, e12, e22)
     put_stress(h, ie, s11 + d11, s12 + d12, s22 + d22)
 
 
@@ -174,7 +174,7 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
 
 
 @kernel
-def move_sdef(h: Memory, ib: int, soft: Any) -> float:
+def move_sdef(h: Memory, ib: int, laws: Any) -> float:
     """One step of simply-deformable block `ib`; returns a bound on the velocity of any of its points."""
     ie = iget(h, ib, KBEX)
     if iget(h, ib, KBFIX) == FIXED:
@@ -193,7 +193,7 @@ def move_sdef(h: Memory, ib: int, soft: Any) -> float:
     crad(h, ib)
     put_strain_rate(h, ie, new[0], new[1], new[2])
     c, s = cayley(h, td * dt)
-    stress(h, ib, ie, c, s, soft)
+    stress(h, ib, ie, c, s, laws)
     e11, e12, e22 = turned(new[0], new[1], new[2], c, s)
     put_strain_rate(h, ie, e11, e12, e22)
     spread = max(abs(new[0]), abs(new[2])) + abs(new[1]) + abs(td)

@@ -59,9 +59,11 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
+from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
 from udec_ia.kernels.timestep import soft_step
 from udec_ia.ops.arrange import arrange
+from udec_ia.ops.laws import LawBook, failure
 from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
@@ -78,7 +80,7 @@ Warn = Callable[[str], None]
 def prepare(array: MainArray) -> None:
     """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
 
-    Errors 11, 12, 13, 14 and 16; 23 for a constitutive number that has no law yet.
+    Errors 11, 12, 13, 14 and 16.
     """
     h = array.h
     if h.ci[NBLK] == 0:
@@ -145,26 +147,22 @@ def critical_step(array: MainArray) -> float:
     It is only approximate (4.6): a block that rests on several contacts has a shorter one.
     """
     h = array.h
-    mass, massless, foreign = least_mass(h)
+    mass, massless = least_mass(h)
     if massless:
         m = iget(h, massless, KMAT)
         detail = f"block@{massless} has material {m}, whose density is not set"
         raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
     if h.ci[NCON] == 0:
         m = iget(h, int(h.ci[IBPNT]), KMAT)
-        stiffness, undefined, other = max(h.cr[AKN + m - 1], h.cr[AKS + m - 1]), 0, 0
+        stiffness, undefined = max(h.cr[AKN + m - 1], h.cr[AKS + m - 1]), 0
         if not stiffness > 0:
             raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
     else:
-        stiffness, undefined, other = greatest_stiffness(h)
+        stiffness, undefined = greatest_stiffness(h)
     if undefined:
         m = iget(h, undefined, KCM)
         detail = f"contact@{undefined} has material {m}"
         raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
-    if foreign or other:
-        raise UdecError(
-            23, "constitutive numbers 2 to 5", "use constitutive number 1", group=int(foreign or other)
-        )
     ratio = float(mass) / float(stiffness)
     if h.ci[NSOFT]:
         ratio = min(ratio, float(soft_step(h, np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype))[0]))
@@ -172,10 +170,16 @@ def critical_step(array: MainArray) -> float:
 
 
 def cycle(
-    array: MainArray, n: int, report: Report | None = None, every: int | None = None, warn: Warn | None = None
+    array: MainArray,
+    n: int,
+    report: Report | None = None,
+    every: int | None = None,
+    warn: Warn | None = None,
+    laws: LawBook | None = None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
+    laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
     warn: called before the first cycle with a text if the time-step may be unstable.
     Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
@@ -185,12 +189,15 @@ def cycle(
     prepare(array)
     if warn is not None and (text := instability(array)):
         warn(text)
+    laws = laws or LawBook()
+    bound = laws.bind(array)
     keep_spare(array)
     array.h.ci[NCYC] = n
     done, piece = 0, every or FIRST_PIECE
     while done < n:
         start = perf_counter()
-        done += int(run_cycles(array.h, min(piece, n - done), soft(array)))
+        piece_laws = (bound.blocks, bound.joints)
+        done += int(run_cycles(array.h, min(piece, n - done), soft(array), *piece_laws))
         _raise_error(array)
         if report is not None:
             report(done)
@@ -219,6 +226,8 @@ def _raise_error(array: MainArray) -> None:
     if number == ZONE_INSIDE_OUT:
         detail = f"zone@{group} in cycle {int(h.ci[MCTOT])}"
         raise UdecError(number, detail, "take stiffer zones, a smaller FRACTION or fewer loads", group=group)
+    if number == LAW_FAILED:
+        raise failure(array, group)
     if iget(h, group, HEAD) == MDOM:
         detail = (
             f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} in cycle "

@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import config
 
+from offsets.generated import KCC, KCM, KCONS, KMAT, MCON, MCTOT
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.lawcall import ARRAYS, Laws, Material
-from udec_ia.kernels.laws import BLOCKS, CONTACTS, numbers_in_use
+from udec_ia.kernels.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.ops.lawfile import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.ops.limits import NCONS, NMAT
 
 Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 of the text of the file
+
+
+class Bound(NamedTuple):
+    """The laws as kernels take them.
+
+    blocks: None if there is no deformable block. joints: None if no contact follows one of the laws.
+    """
+
+    blocks: Laws | None
+    joints: Laws | None
 
 
 class LawBook:
@@ -44,19 +56,24 @@ class LawBook:
             if name in self.given and self.given[name].digest != digest
         ]
 
-    def bind(self, array: MainArray) -> Laws:
-        """The laws as kernels take them, with the materials as they are now.
-
-        They are valid as long as this object lives, and until the next call.
+    def bind(self, array: MainArray) -> Bound:
+        """The laws and materials for a CYCLE of the model in `array`; see `pack`.
 
         Error 9 if a constitutive number is in use for which there is no law, or not the one it was used with.
         """
-        first = np.zeros((2, NCONS + 1), np.int64)
-        numbers_in_use(array.h, first)
+        user = np.zeros((2, NCONS + 1), np.int64)
+        numbers_in_use(array.h, user)
+        followed = [self._demand(array, n, f"clj{n}", int(user[AT_JOINTS, n])) for n in NUMBERS]
         for n in NUMBERS:
-            for row, kind, law in ((BLOCKS, "block", f"cl{n}"), (CONTACTS, "contact", f"clj{n}")):
-                if first[row, n]:
-                    self._demand(n, f"{kind}@{first[row, n]}", law, int(first[row, n]))
+            self._demand(array, n, f"cl{n}", int(user[IN_BLOCKS, n]))
+        laws = self.pack(array)
+        return Bound(laws if user[IN_BLOCKS].any() else None, laws if any(followed) else None)
+
+    def pack(self, array: MainArray) -> Laws:
+        """The laws as kernels take them, with the materials of `array` as they are now.
+
+        They are valid as long as this object lives, and until the next call.
+        """
         rows = np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)
         calls: list[Any] = [self.given[name].call if name in self.given else 0 for name in RESULTS]
         if config.DISABLE_JIT:
@@ -64,17 +81,28 @@ class LawBook:
         self._calls[:], self._materials[:] = calls, rows
         return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
 
-    def _demand(self, n: int, who: str, law: str, group: int) -> None:
-        """Error 9 unless `who` can follow constitutive number `n`: by `law`, or number 1 beside the other."""
-        if law in self.given:
-            return
+    def _demand(self, array: MainArray, n: int, law: str, group: int) -> bool:
+        """True if block or contact `group`, of number `n`, follows `law`; error 9 if it should and cannot."""
+        if group == 0 or law in self.given:
+            return group != 0
+        who = f"{'contact' if iget(array.h, group, HEAD) == MCON else 'block'}@{group}"
         if law in self.recorded:
             origin = self.recorded[law][0]
             detail = f"{who} follows {law} of {origin}, which is not given"
-            raise UdecError(
-                9, detail, f"run with --constitutive {origin}, in Python constitutive=", group=group
-            )
+            raise UdecError(9, detail, f"give it again: --constitutive {origin}", group=group)
         if not {f"cl{n}", f"clj{n}"} & self.given.keys():
             detail = f"{who} has number {n}, for which there is no law"
             advice = f"use number 1, or give a file with a function {law}: --constitutive law.py"
             raise UdecError(9, detail, advice, group=group)
+        return False
+
+
+def failure(array: MainArray, group: int) -> UdecError:
+    """Error 35 for the law of block or contact `group`."""
+    h = array.h
+    if iget(h, group, HEAD) == MCON:
+        who, law, material = f"contact@{group}", f"clj{iget(h, group, KCC)}", iget(h, group, KCM)
+    else:
+        who, law, material = f"block@{group}", f"cl{iget(h, group, KCONS)}", iget(h, group, KMAT)
+    detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[MCTOT])}"
+    return UdecError(35, detail, group=group)

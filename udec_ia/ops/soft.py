@@ -10,4 +10,4 @@ from udec_ia.heap.array import MainArray
 
 def soft(array: MainArray) -> Any:
     """None if all blocks are rigid and no condition acts on them: the rest is not compiled then."""
-    return (0, 0, 0, 0) if array.h.ci[NSOFT] or array.h.ci[IBNPNT] else None
+    return True if array.h.ci[NSOFT] or array.h.ci[IBNPNT] else None

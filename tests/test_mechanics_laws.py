@@ -1,0 +1,209 @@
+"""Contacts that follow laws of the user's, in whole models."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from math import cos, pi, radians, sin, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mechanics import G, at, block, no_damping, on_base, push, sound, step
+from test_mechanics_energy import cycle_and_energy
+
+from offsets.generated import NERR, WFRIC
+from udec_ia import Model
+from udec_ia.errors import UdecError
+
+ROOT = Path(__file__).parent.parent
+B, H, D = 2.0, 1.0, 0.1
+MASS = 1000.0 * B * H
+KN, KS = 1e9, 4e8
+
+
+def resting(law: Any, **numbers: Any) -> Model:
+    """A block settled on its two contacts on a long base."""
+    m = on_base(B, H, D, 12.0, stiffness=(KN, KS), law=law, **numbers)
+    m.damping(1.0, (2 * KN / MASS) ** 0.5 / (2 * pi), "mass")
+    m.cycle(400)
+    return m
+
+
+def coulomb(fn: Any, fs: Any, dun: Any, dus: Any, un: Any, us: Any, m: Any) -> Any:
+    """Constitutive number 1, as a user would write it."""
+    normal, shear = fn + m.kn * dun, fs + m.ks * dus
+    most = m.cohesion + m.friction * normal
+    return normal - fn, min(most, max(-most, shear)) - fs
+
+
+@pytest.mark.parametrize("law", [{"clj2": coulomb}, "joint-dilation"])
+def test_coulombs_law_of_the_user_is_number_1(law: Any) -> None:
+    """A block thrown along the base slides, rocks and stops: with a law of its own as with number 1.
+
+    A law returns differences, which round differently: each cycle may turn the last digit of a force F over,
+    which moves a block of mass M by F eps/M dt t in the rest of the time t.
+    """
+    rows = []
+    for given in (None, law):
+        m = resting(given, friction=0.4)
+        no_damping(m)
+        push(m, block(m, 0, H / 2)["address"], xd=1.0)
+        m.cycle(1000)
+        rows.append(block(m, 0.1, H / 2))
+    assert rows[0]["KX"] > 0.05
+    t, eps = 1000 * step(m), float(np.finfo(float).eps)
+    slack = 1000 * (10 * MASS * G * eps / MASS) * step(m) * t
+    for name in ("KX", "KY", "KTD"):
+        assert rows[1][name] == pytest.approx(rows[0][name], abs=slack)
+
+
+def test_a_block_rises_on_joints_that_dilate() -> None:
+    """Drawn by more than the critical slip it rises by DILATION CRITICAL, ten times what it had sunk in.
+
+    The contacts then bear the weight across a gap.
+    """
+    dilation, critical = 0.1, 1e-3
+    m = resting("joint-dilation", friction=0.5)
+    m.property(1, dilation=dilation, critical_slip=critical, residual_friction=0.5)
+    before = block(m, 0, H / 2)
+    assert m.table("contact")["KCN"].max() == pytest.approx(dilation * critical / 10, rel=1e-6)
+    m.gravity(8.0, -G)
+    m.cycle(4000)
+    m.gravity(0.0, -G)
+    m.cycle(1000)
+    after, contacts = at(m, "block", before["address"]), m.table("contact")
+    assert after["KX"] - before["KX"] > 2 * critical
+    assert after["KY"] - before["KY"] == pytest.approx(dilation * critical, rel=1e-6)
+    closed = contacts[contacts["KCFN"] > 0]
+    assert closed["KCFN"].sum() == pytest.approx(MASS * G, rel=1e-6)
+    assert closed["KCN"].max() < 0
+    sound(m)
+
+
+def test_peak_and_residual_strength_on_an_incline() -> None:
+    """Between its two friction angles a block rests, and once pushed over the critical slip slides away.
+
+    Its acceleration is then g (sin psi - RFRICTION cos psi), less the friction of what normal velocity the
+    forces had to change meanwhile.
+    """
+    psi, peak, residual = radians(25), tan(radians(30)), tan(radians(15))
+    m = resting("joint-dilation", friction=peak)
+    m.property(1, critical_slip=1e-3, residual_friction=residual)
+    address = block(m, 0, H / 2)["address"]
+    m.gravity(G * sin(psi), -G * cos(psi))
+    m.cycle(1000)
+    start = at(m, "block", address)
+    m.cycle(1000)
+    assert at(m, "block", address)["KX"] == pytest.approx(start["KX"], abs=1e-9)
+    no_damping(m)
+    push(m, address, xd=0.5)
+    m.cycle(1000)
+    one = at(m, "block", address)
+    assert one["KX"] - start["KX"] > 2e-3
+    m.cycle(1000)
+    two = at(m, "block", address)
+    t = 1000 * step(m)
+    fall = G * (sin(psi) - residual * cos(psi)) - residual * (two["KYD"] - one["KYD"]) / t
+    assert (two["KXD"] - one["KXD"]) / t == pytest.approx(fall, rel=1e-6)
+
+
+def test_energy_of_joints_that_dilate_and_weaken() -> None:
+    """Without damping, motion, height, springs and what slipping has taken add up, lifting included.
+
+    Gravity is great, so that the block does not leave the ground while the joints lift it.
+    """
+    gravity, v, dilation, critical = 1000.0, 10.0, 0.05, 0.02
+    m = resting("joint-dilation", friction=0.8, gravity=(0.0, -gravity), fraction=0.01)
+    m.property(1, dilation=dilation, critical_slip=critical, residual_friction=0.3)
+    no_damping(m)
+    push(m, block(m, 0, H / 2)["address"], xd=v)
+    m.cycle(1)
+    energies, taken = [], float(m.h.cr[WFRIC])
+    for _ in range(80):
+        energies.append(cycle_and_energy(m))
+        m.cycle(9)
+    assert m.h.cr[WFRIC] - taken > 0.5 * MASS * v**2 / 2
+    assert np.ptp(energies) < 0.01 * MASS * gravity * dilation * critical
+
+
+PROBE = """
+from mechanics import block
+from test_mechanics_laws import resting
+
+for build in ("i32r64", "i32r32"):
+    m = resting("joint-dilation", friction=0.5, build=build)
+    m.property(1, dilation=0.1, critical_slip=1e-4, residual_friction=0.3)
+    m.gravity(8.0, -10.0)
+    m.cycle(100)
+    print(*(float(block(m, 0, 0.5)[name]).hex() for name in ("KX", "KY", "KTD")))
+"""
+
+
+def test_uncompiled_it_is_the_same_bit_for_bit() -> None:
+    texts = [
+        subprocess.run(
+            [sys.executable, "-c", PROBE],
+            env=os.environ | {"PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}", "NUMBA_DISABLE_JIT": disabled},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=True,
+        ).stdout
+        for disabled in ("0", "1")
+    ]
+    assert texts[0] == texts[1]
+    assert len(texts[0].splitlines()) == 2
+
+
+def refusal(m: Model) -> UdecError:
+    with pytest.raises(UdecError) as caught:
+        m.cycle(10)
+    return caught.value
+
+
+def test_a_number_without_a_law_is_error_9() -> None:
+    m = on_base(B, H, D, 12.0)
+    m.change(-1, 1, 0, H, constitutive=3)
+    error = refusal(m)
+    assert error.number == 9
+    assert error.detail == f"contact@{error.group} has number 3, for which there is no law"
+    assert "function clj3: --constitutive" in error.advice
+    assert error.group in m.table("contact")["address"]
+
+
+def test_a_number_with_a_block_law_only_has_joints_of_number_1() -> None:
+    rows = []
+    for law in (None, "mohr-coulomb"):
+        m = resting(law, friction=0.3)
+        rows.append(m.table("contact"))
+    for name in ("KCFN", "KCFS", "KCN"):
+        assert np.array_equal(rows[0][name], rows[1][name])
+
+
+def test_a_run_goes_on_only_with_the_laws_it_began_with(tmp_path: Path) -> None:
+    m = resting("joint-dilation", friction=0.3)
+    saved = m.save(tmp_path / "one.h5")
+    with_another = Model.restore(saved, constitutive="mohr-coulomb")
+    for other in (Model.restore(saved), with_another):
+        error = refusal(other)
+        assert error.number == 9
+        assert "follows clj2 of joint_dilation.py, which is not given" in error.detail
+        assert error.advice == "give it again: --constitutive joint_dilation.py"
+    again = Model.restore(saved, constitutive="joint_dilation.py")
+    assert again.cycle(10) == m.cycle(10) == 10
+    assert np.array_equal(again.table("contact"), m.table("contact"))
+
+
+def test_a_law_that_returns_no_number_is_error_35() -> None:
+    def torn(fn: Any, fs: Any, dun: Any, dus: Any, un: Any, us: Any, m: Any) -> Any:
+        return m.kn * dun / (0.0 if fn > 100.0 else 1.0), 0.0
+
+    m = on_base(B, H, D, 12.0, law={"clj2": torn})
+    error = refusal(m)
+    assert error.number == 35
+    assert error.detail.startswith(f"clj2, for contact@{error.group} of material 1 in cycle ")
+    assert m.h.ci[NERR] == 0
+    sound(m)
