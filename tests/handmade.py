@@ -111,8 +111,9 @@ def two_blocks(scheme_name: str = "i32r64") -> MainArray:
 def set_common(h: Memory) -> None:
     """Rounding length and the tolerances that follow from it, gravity, and material 1."""
     d = ROUNDING
-    atol = 0.5 * d
-    reals = {g.DTOL: d, g.DTOL2: 0.5 * d, g.ATOL: atol, g.BTOL: 0.55 * d, g.ETOL: atol / sqrt(2)}
+    half = 0.5 * d
+    reals = {g.DTOL: d, g.DTOL2: half, g.ATOL: half, g.BTOL: 0.55 * d, g.CTOL: half, g.ETOL: half / sqrt(2)}
+    reals |= {g.FTOL: 0.05 * d, g.GTOL: 1e-4 * d, g.HTOL: 0.01 * half / sqrt(2)}
     reals |= {g.FRAC: 0.1, g.GRAVY: -10.0, g.AKN: 1e8, g.AKS: 1e8, g.AMU: 0.5, g.DENS: DENSITY}
     for index, value in reals.items():
         h.cr[index] = value

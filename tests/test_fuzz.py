@@ -1,4 +1,4 @@
-"""A few hundred cases of the fuzzer (tools/fuzz.py), in processes of their own."""
+"""A few hundred cases of the fuzzer (tools/fuzz.py), in processes of their own, and what it has found."""
 
 from __future__ import annotations
 
@@ -6,7 +6,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from mechanics import box, model
+
+from offsets import generated
+from offsets.table import Field, read_table
+from udec_ia import Model
+from udec_ia.errors import MESSAGES, UdecError
+from udec_ia.restart import save
 
 FUZZ = Path(__file__).parent.parent / "tools" / "fuzz.py"
 
@@ -27,3 +35,50 @@ def test_a_case_is_always_the_same() -> None:
         subprocess.run(show, capture_output=True, text=True, timeout=300, check=True) for _ in range(2)
     )
     assert one.stdout == two.stdout != ""
+
+
+@pytest.fixture(scope="module")
+def wall(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The restart file of six blocks, four of them on a fixed base."""
+    m = model(*box(0, 6, 0, 4), d=0.1, friction=0.5)
+    for y in (1, 2):
+        m.split(-1, y, 7, y)
+    for x in (2, 4):
+        m.split(x, 1, x, 4)
+    m.fix(0, 6, 0, 1)
+    m.cycle(30)
+    return m.save(tmp_path_factory.mktemp("wall") / "wall.h5")
+
+
+MAD = {False: (-1, 0, 7, 2**40), True: (-1.0, 1e300, np.inf, np.nan)}
+
+
+@pytest.mark.parametrize("field", read_table().common, ids=lambda field: field.name)
+def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Path) -> None:
+    """A file that holds it is refused, or the run goes on to its end or to a numbered error.
+
+    An array that cannot grow asks for the most of these numbers.
+    """
+    path = tmp_path / "mad.h5"
+    numbers = set()
+    for value in MAD[field.real]:
+        array = Model.restore(wall).array
+        array.fixed = True
+        (array.h.cr if field.real else array.h.ci)[getattr(generated, field.name)] = value
+        try:
+            save(array, path, [])
+            m = Model.restore(path)
+            assert m.cycle(3) == 3
+            m.split(-1, 3, 7, 3.1)
+        except UdecError as error:
+            numbers.add(error.number)
+    assert numbers <= MESSAGES.keys()
+
+
+def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: Path, tmp_path: Path) -> None:
+    """In any other, CYCLE would count cycles and do nothing."""
+    array = Model.restore(wall).array
+    array.h.ci[generated.JPHASE] = 7
+    path = save(array, tmp_path / "mad.h5", [])
+    with pytest.raises(UdecError, match="pass 7 of the cycle"):
+        Model.restore(path)

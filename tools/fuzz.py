@@ -2,10 +2,11 @@
 
     python tools/fuzz.py --decks 20000 --files 20000 --seconds 600 --seed 1
 
-Any other exception, a crash, a hang, or a heap whose links contradict each other is a failure; an RSET may
-of course damage a heap. Case k of seed s is always the same. Cases run in processes of their own, a few
-hundred to each, so that a crash costs one case; failures are printed with the case's number, and
-`--show decks 17 --seed 1` prints case 17. The exit status is 1 if anything failed.
+Any other exception, a crash, a hang, or an unsound heap is a failure. After a file with mad numbers in it
+only the links of the heap need to be sound; an RSET may of course damage all of it. Case k of seed s is
+always the same. Cases run in processes of their own, a few hundred to each, so that a crash costs one case;
+failures are printed with the case's number, and `--show decks 17 --seed 1` prints case 17. The exit status
+is 1 if anything failed.
 """
 
 from __future__ import annotations
@@ -29,16 +30,18 @@ from offsets.generated import MFREE
 from udec_ia.deck.language import COMMANDS, required
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import Statement, statements
-from udec_ia.errors import UdecError
+from udec_ia.errors import MESSAGES, UdecError
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.model import RESTART_FILE, Model
 from udec_ia.restart import save
+from udec_ia.restart.seal import SIZE, seal
 
 BATCH = 250  # cases to a process
 FIRST_CASE, NEXT_CASE = 600.0, 60.0  # seconds of silence after which a process hangs; the first case compiles
 MOST_CYCLES = 20
 MOST_COMMANDS = 40
-LINKS = 6  # invariants up to this number are about links
-ORDER = 3  # the one of them that overlaps too great may break
 UNTIDY = 15  # the error that leaves blocks deeper in each other than any contact can be
 Rng = np.random.Generator
 
@@ -65,6 +68,7 @@ NUMBERS = [
     *("1e308", "-1e308", "1e-320", "1e400", "nan", "inf", "-inf", "999999999999999999999", "1.2.3", "0x10"),
     *("2147483647", "-2147483648", "32768", "12abc", "\u00bd", "\u0663"),
 ]
+REALS = [0.0, 1.0, -1.0, 1e-30, 1e30, np.nan, np.inf, -np.inf]
 START = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
 PROP MAT=2 DENS=1000 KN=2E8 KS=1E8 F=0
@@ -196,19 +200,17 @@ def deck(rng: Rng) -> str:
     return "\n".join([*lines, "STOP", "END"])
 
 
-def unsound(model: Model, error: int) -> str:
-    """The first violation among the links of the map, or nothing."""
-    left_out = (ORDER,) if error == UNTIDY else ()
-    for violation in model.check():
-        if violation.invariant <= LINKS and violation.invariant not in left_out:
-            return str(violation)
-    return ""
+def unsound(model: Model, check: Callable[[MainArray], list[Violation]]) -> str:
+    """The first violation that `check` finds, or nothing."""
+    return next(map(str, check(model.array)), "")
 
 
 def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
     """Run one deck, most often past its errors: the number of the last one (0 for none), and what failed."""
-    model = Tame(out=folder)
+    (folder / RESTART_FILE).unlink(missing_ok=True)
     text = io.StringIO(deck(rng), newline=None)
+    build = str(rng.choice(list(ALL_SCHEMES))) if rng.random() < 0.5 else DEFAULT_SCHEME
+    model = Tame(build, int(rng.integers(1, 4000)) if rng.random() < 0.1 else None, out=folder)
     monitor = Monitor(model, io.StringIO())
     stubborn = rng.random() < 0.7
     end = 0
@@ -220,8 +222,10 @@ def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
             if end == UNTIDY or monitor.ended:
                 break
     except UdecError as error:
-        end = error.number
-    return end, "" if model.damaged or model.h.ci[MFREE] == 1 else unsound(model, end)
+        end = numbered(error)
+    if model.damaged or model.h.ci[MFREE] == 1:
+        return end, ""
+    return end, unsound(model, check_links if end == UNTIDY else check)
 
 
 def obey(monitor: Monitor, statement: Statement) -> int:
@@ -229,8 +233,14 @@ def obey(monitor: Monitor, statement: Statement) -> int:
     try:
         monitor.obey(statement)
     except UdecError as error:
-        return error.number if str(error) else -1
+        return numbered(error)
     return 0
+
+
+def numbered(error: UdecError) -> int:
+    """Its number, which must be a known one, or the message could not be printed."""
+    assert error.number in MESSAGES, error.number
+    return error.number
 
 
 # ---- restart files
@@ -267,27 +277,38 @@ def mutated(rng: Rng, base: bytes) -> bytes:
     return bytes(data)
 
 
+def forged(rng: Rng, base: bytes) -> bytes:
+    """`base` mutated behind its seal, and sealed anew."""
+    body = mutated(rng, base[SIZE:])
+    return seal(memoryview(body)) + body
+
+
 def damaged(rng: Rng, path: Path, base: bytes) -> None:
     """Write a restart file at `path` that was written from a damaged main array: its seal is whole."""
     path.write_bytes(base)
     array = Model.restore(path).array
-    h = array.h
+    h, used = array.h, int(array.h.ci[MFREE]) - 1
     for _ in range(int(rng.integers(1, 4))):
-        words = h.ci if rng.random() < 0.2 else h.ia[: int(h.ci[MFREE])]
-        words[int(rng.integers(len(words)))] = rng.choice([0, 1, -1, int(rng.integers(h.ci[MFREE])), 32767])
+        if rng.random() < 0.3:
+            reals = h.cr if rng.random() < 0.3 else h.ra[: used // array.scheme.ratio]
+            reals[int(rng.integers(len(reals)))] = rng.choice(REALS)
+        else:
+            words = h.ci if rng.random() < 0.2 else h.ia[:used]
+            words[int(rng.integers(len(words)))] = rng.choice([0, 1, -1, int(rng.integers(used)), 32767])
     save(array, path, [])
 
 
 def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
     """Restart from one mutated file: the number of the error (0 for none), and what failed."""
     path = folder / RESTART_FILE
-    if rng.random() < 0.5:
-        path.write_bytes(mutated(rng, base))
+    kind = rng.random()
+    if kind < 0.5:
+        path.write_bytes(mutated(rng, base) if kind < 0.25 else forged(rng, base))
     else:
         try:
             damaged(rng, path, base)
         except UdecError as error:
-            return error.number, ""
+            return numbered(error), ""
     model = Tame(out=folder)
     end = 0
     try:
@@ -295,8 +316,8 @@ def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
         model.cycle(3)
         model.split(-1, 3, 7, 3.1)
     except UdecError as error:
-        end = error.number
-    return end, unsound(model, end) if model.started else ""
+        end = numbered(error)
+    return end, unsound(model, check_links) if model.started else ""
 
 
 # ---- processes

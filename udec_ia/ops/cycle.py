@@ -193,6 +193,7 @@ def cycle(
     bound = laws.bind(array)
     keep_spare(array)
     array.h.ci[NCYC] = n
+    array.h.ci[NERR] = array.h.ci[IERAD] = 0  # a run that was interrupted may have left an error behind
     done, piece = 0, every or FIRST_PIECE
     while done < n:
         start = perf_counter()

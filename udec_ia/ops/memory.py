@@ -40,9 +40,10 @@ def keep_spare(array: MainArray) -> None:
     sums is the last bit of a force. So the array grows before: when and how often it does changes nothing.
     An array of fixed size, or one that has reached its limit, uses its last word instead.
     """
-    if array.fixed:
-        return
     ci = array.h.ci
+    if array.fixed:
+        ci[NSPARE] = 0
+        return
     pair = size_of(array.h, NVCN) + size_of(array.h, NVDO)
     words = pair * (SPARE_CONTACTS + int(ci[NCON]) // 4)
     ci[NSPARE] = words

@@ -16,11 +16,13 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from offsets.generated import MFREE, MTOP
+from offsets.generated import DTOL, JPHASE, MFREE, MTOP
 from offsets.table import Table, TableError, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
+from udec_ia.kernels.cycle import BLOCKS, BROKEN
+from udec_ia.kernels.tolerances import tolset
 from udec_ia.restart.layout import common_places, differences
 from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
@@ -191,11 +193,26 @@ def _read_state(file: h5py.File) -> MainArray:
 
 
 def _check_heap(array: MainArray) -> None:
-    """Refuse a heap whose links are broken or whose materials do not exist.
+    """Refuse a heap whose links are broken, whose materials do not exist or that stopped in no known pass.
 
-    Compiled routines follow both without a further test. Forces and overlaps that have run away are
+    Compiled routines follow these without a further test. Forces and overlaps that have run away are
     taken: such a state is there to be looked at.
     """
     faults = [violation.message for violation in check_links(array)]
     if faults:
         raise RefusedError(f"holds an unsound heap: {shorten(faults)}")
+    phase = int(array.h.ci[JPHASE])
+    if not BLOCKS <= phase <= BROKEN:
+        raise RefusedError(f"is to be resumed in pass {phase} of the cycle, and there is none")
+    _check_tolerances(array)
+
+
+def _check_tolerances(array: MainArray) -> None:
+    """Refuse tolerances that are not those of the rounding length: updates would not come to an end."""
+    reals = array.h.cr
+    written, d = reals.copy(), reals[DTOL]
+    tolset(array.h, d)
+    alike = np.allclose(written, reals, rtol=4 * np.finfo(reals.dtype).eps, atol=0, equal_nan=True)
+    reals[:] = written
+    if not (0 <= d < np.inf and alike):
+        raise RefusedError(f"holds tolerances that are not those of its rounding length, {d:g}")
