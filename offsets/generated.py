@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "74ba86e38039a3ff9867f7eb0129a17038137d8610164e6ede4ccde96c3190da"
+DIGEST = "3ed881cc4f3c1e0bcbb7db8ace4d04f90e3201e50f4734cc880234b87bc4a04a"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -198,13 +198,14 @@ NSOFT = 16  # number of deformable blocks
 NMADE = 17  # contacts made so far
 NBROKE = 18  # contacts broken so far
 NSHORT = 19  # edges that hold little more than their two roundings
-LROUND = 20  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 21  # address of the group that raised error NERR; 0 when there is none
-NWANT = 22  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 23  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 24  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 25  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 26
+LSAFE = 20  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LROUND = 21  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 22  # address of the group that raised error NERR; 0 when there is none
+NWANT = 23  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 24  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 25  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 26  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 27
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -397,10 +397,10 @@ class Model:
         self._ready(sound=False)
         settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
-    def fraction(self, f: float) -> None:
-        """FRACTION: fraction of the critical time-step to be used."""
+    def fraction(self, f: float, safe: bool = False) -> None:
+        """FRACTION: fraction of the critical time-step to be used; safe: of the bound that is always safe."""
         self._ready(sound=False)
-        settings.set_fraction(self.array, f)
+        settings.set_fraction(self.array, f, safe)
 
     def scale(self, s: float) -> None:
         """SCALE: plot scale."""

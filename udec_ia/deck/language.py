@@ -189,7 +189,15 @@ COMMANDS = (
         list="t f",
         ours="the command",
     ),
-    Command("FRaction", "Use the fraction f of the critical time-step.", "FRAC 0.1", numbers="f"),
+    Command(
+        "FRaction",
+        "Use the fraction f of the critical time-step: of the estimate of 1980, which is only approximate, "
+        "or of the bound that is always safe.",
+        "FRAC 0.1",
+        numbers="f",
+        words=(Word("Safe"),),
+        ours="Safe",
+    ),
     Command("Fix", "Fix the blocks with centroids in x1<x<x2, y1<y<y2.", "FIX 0 60 0 10", numbers=RANGE),
     Command(
         "FRee", "Set free the blocks with centroids in x1<x<x2, y1<y<y2.", "FREE 0 60 0 10", numbers=RANGE

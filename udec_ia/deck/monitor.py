@@ -21,6 +21,7 @@ from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.deck.reference import explain, summary
 from udec_ia.errors import UdecError
+from udec_ia.ops.timestep import describe
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
@@ -83,6 +84,8 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if name in COUNTED and isinstance(result, int):
             self._write(counted(name, result, self.model))
+        if name == "cycle":
+            self._write(f" CYCLE: {describe(self.model.array)}")
         self._show(result)
         self.model.deck_log += [
             line.shown for line in dict.fromkeys(token.line for token in statement.tokens)

@@ -24,20 +24,23 @@ from udec_ia.heap.jit import kernel
 
 
 @kernel
-def least_mass(h: Memory) -> tuple[float, int]:
-    """Least mass of a free block (of any block if none is free), and a block without mass or 0."""
+def least_mass(h: Memory) -> tuple[float, int, int]:
+    """Least mass of a free block (of any if none is free), that block, and a block without mass or 0."""
     free, least = real(h, np.inf), real(h, np.inf)
-    massless = int64(0)
+    at_free, at_least, massless = int64(0), int64(0), int64(0)
     ib = h.ci[IBPNT]
     while ib != 0:
         mass = getr(h, ib, KBM)
         if not mass > 0:
             massless = ib
-        least = min(least, mass)
-        if iget(h, ib, KBFIX) == 0:
-            free = min(free, mass)
+        if mass < least:
+            least, at_least = mass, ib
+        if iget(h, ib, KBFIX) == 0 and mass < free:
+            free, at_free = mass, ib
         ib = iget(h, ib, KB)
-    return (free if free < np.inf else least), massless
+    if at_free == 0:
+        return least, at_least, massless
+    return free, at_free, massless
 
 
 @kernel

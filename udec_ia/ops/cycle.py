@@ -10,11 +10,8 @@ import math
 from collections.abc import Callable
 from time import perf_counter
 
-import numpy as np
-
 from offsets.generated import (
     AKN,
-    AKS,
     ALPB,
     ALPHA,
     BETA,
@@ -36,7 +33,6 @@ from offsets.generated import (
     KCM,
     KCN,
     KFZ,
-    KMAT,
     KX,
     KXC,
     KY,
@@ -45,9 +41,7 @@ from offsets.generated import (
     MCTOT,
     MDOM,
     MFDEF,
-    MFREE,
     NBLK,
-    NCON,
     NCYC,
     NERR,
     NSOFT,
@@ -56,12 +50,10 @@ from offsets.generated import (
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.balance import greatest_stiffness, least_mass
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
-from udec_ia.kernels.timestep import soft_step
 from udec_ia.ops.arrange import arrange
 from udec_ia.ops.laws import LawBook, failure
 from udec_ia.ops.limits import not_negative, whole
@@ -69,6 +61,7 @@ from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
 from udec_ia.ops.soft import soft
+from udec_ia.ops.timestep import time_step
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -113,15 +106,6 @@ def _check_zones(array: MainArray) -> None:
             raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
 
 
-def time_step(array: MainArray) -> float:
-    """FRAC times the estimate of the critical time-step; error 28 if the reals cannot hold it."""
-    step = float(array.h.cr[FRAC]) * critical_step(array)
-    reals = np.finfo(array.scheme.real_type)
-    if not reals.smallest_normal < step < reals.max:
-        raise UdecError(28, f"the time-step is {step:g} s", "look at DENSITY, KN, KS and FRACTION")
-    return step
-
-
 def instability(array: MainArray) -> str:
     """A warning if stiffness damping may make the time-step unstable, else "".
 
@@ -139,34 +123,6 @@ def instability(array: MainArray) -> str:
         f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: "
         f"take FRACTION {fraction * critical / step:.2g} or less, a smaller fcrit, or MASS damping alone"
     )
-
-
-def critical_step(array: MainArray) -> float:
-    """The 1980 estimate of the critical time-step, 2 sqrt(M/K): least mass, greatest joint stiffness.
-
-    It is only approximate (4.6): a block that rests on several contacts has a shorter one.
-    """
-    h = array.h
-    mass, massless = least_mass(h)
-    if massless:
-        m = iget(h, massless, KMAT)
-        detail = f"block@{massless} has material {m}, whose density is not set"
-        raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
-    if h.ci[NCON] == 0:
-        m = iget(h, int(h.ci[IBPNT]), KMAT)
-        stiffness, undefined = max(h.cr[AKN + m - 1], h.cr[AKS + m - 1]), 0
-        if not stiffness > 0:
-            raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
-    else:
-        stiffness, undefined = greatest_stiffness(h)
-    if undefined:
-        m = iget(h, undefined, KCM)
-        detail = f"contact@{undefined} has material {m}"
-        raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
-    ratio = float(mass) / float(stiffness)
-    if h.ci[NSOFT]:
-        ratio = min(ratio, float(soft_step(h, np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype))[0]))
-    return 2 * math.sqrt(ratio)
 
 
 def cycle(

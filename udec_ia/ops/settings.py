@@ -30,6 +30,7 @@ from offsets.generated import (
     KXDP,
     KYD,
     KYDP,
+    LSAFE,
     MFREE,
     PAR1,
     PAR2,
@@ -117,10 +118,11 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     cr[BETA] = 0 if only == "mass" else beta
 
 
-def set_fraction(array: MainArray, f: float) -> None:
-    """FRACTION: fraction of the critical time-step to be used."""
+def set_fraction(array: MainArray, f: float, safe: bool = False) -> None:
+    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound."""
     positive(array, f=f)
     array.h.cr[FRAC] = f
+    array.h.ci[LSAFE] = int(safe)
 
 
 def set_scale(array: MainArray, s: float) -> None:

@@ -1,0 +1,289 @@
+"""The critical time-step: the 1980 estimate, and a bound that is always safe (report 4.6).
+
+Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stiffness), the internal modes of
+simply-deformable blocks and the grid-points (kernels.timestep). It is only approximate: a mass on several
+springs has a shorter period than on one.
+
+Bound: 2 min sqrt(m_i / sum_j |K_ij|), the row sums of the whole stiffness matrix over all degrees of freedom
+(Gershgorin). No mode is faster. A contact's stiffness is the greater of KN and KS in every direction.
+Degrees of freedom are x and y of blocks and grid-points, the rotation of a block and the three strains of a
+simply-deformable one times its radius of gyration. What is fixed has none.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import (
+    AKN,
+    AKS,
+    ALAM1,
+    ALAM2,
+    FRAC,
+    IBPNT,
+    ICPNT,
+    KB,
+    KB1,
+    KB2,
+    KBEX,
+    KBFIX,
+    KBI,
+    KBM,
+    KC,
+    KCCOD,
+    KCM,
+    KCP1,
+    KCP2,
+    KFG,
+    KFZ,
+    KG,
+    KGFIX,
+    KGP,
+    KGPM,
+    KMAT,
+    KR,
+    KSAREA,
+    KSJ11,
+    KSJ12,
+    KSJ22,
+    KX,
+    KXC,
+    KXG,
+    KXP,
+    KY,
+    KYC,
+    KYG,
+    KYP,
+    KZ,
+    KZG,
+    LSAFE,
+    MFDEF,
+    MFREE,
+    MSDEF,
+    NCON,
+    NSOFT,
+    TDEL,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.balance import greatest_stiffness, least_mass
+from udec_ia.kernels.timestep import soft_step
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.ops.lists import chain
+
+Array = Any  # of addresses, or of the reals found there
+DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12; a grid-point has the first two
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A critical time-step (s) and the address of the block, contact or grid-point that sets it."""
+
+    step: float
+    address: int
+
+
+class _Rows:
+    """Row sums of the stiffness matrix, one row for each address of a block or grid-point."""
+
+    def __init__(self, h: Memory) -> None:
+        self.h = h
+        words = int(h.ci[MFREE]) + 1
+        self.sum = np.zeros((words, DOFS))
+        self.mass = np.full((words, DOFS), np.inf)
+        self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
+        self.length = np.ones(words)  # radius of gyration of a block
+        blocks = _addresses(h, int(h.ci[IBPNT]), KB)
+        self.kind = np.zeros(words, np.int64)
+        self.kind[blocks] = _ints(h, blocks, HEAD)
+        self._enter_blocks(blocks[self.kind[blocks] != MFDEF])
+        for ib in blocks[self.kind[blocks] == MFDEF]:
+            self._enter_zones(int(ib))
+
+    def _enter_blocks(self, blocks: Array) -> None:
+        """Masses of rigid and simply-deformable blocks, and the inner stiffness of the latter."""
+        h = self.h
+        mass = _reals(h, blocks, KBM)
+        self.length[blocks] = np.sqrt(_reals(h, blocks, KBI) / mass)
+        self.mass[blocks] = mass[:, None]
+        fix = _ints(h, blocks, KBFIX)
+        self.free[blocks, 0] = fix & 3 == 0
+        self.free[blocks, 1] = fix & 5 == 0
+        self.free[blocks, 2] = (fix != 1) & (fix != 6)
+        soft = blocks[(self.kind[blocks] == MSDEF) & (fix != 1)]
+        if not len(soft):
+            return
+        ext, mat = _ints(h, soft, KBEX), _ints(h, soft, KMAT) - 1
+        j11, j12, j22, area = (_reals(h, ext, k) for k in (KSJ11, KSJ12, KSJ22, KSAREA))
+        zero = np.zeros_like(j11)
+        tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
+        square = self.length[soft] ** 2
+        self.mass[soft, 3:] = (np.linalg.eigvalsh(tensor)[:, 0] / square)[:, None]
+        self.free[soft, 3:] = 1
+        one, two = h.cr[ALAM1 + mat], h.cr[ALAM2 + mat]
+        self.sum[soft, 3] = self.sum[soft, 4] = area * (one + np.abs(two)) / square
+        self.sum[soft, 5] = area * 2 * (one - two) / square
+
+    def _enter_zones(self, ib: int) -> None:
+        """Masses of the grid-points of block `ib`, and the stiffness of its zones."""
+        h, ie = self.h, iget(self.h, ib, KBEX)
+        points, zones = _addresses(h, iget(h, ie, KFG), KG), _addresses(h, iget(h, ie, KFZ), KZ)
+        self.mass[points] = _reals(h, points, KGPM)[:, None]
+        fix = _ints(h, points, KGFIX)
+        held = iget(h, ib, KBFIX) == 1
+        self.free[points, 0] = (fix & 1 == 0) & (not held)
+        self.free[points, 1] = (fix & 2 == 0) & (not held)
+        corner = np.stack([_ints(h, zones, KZG, i) for i in (2, 1, 0)], axis=1)
+        x, y = (_reals(h, corner, k) for k in (KXG, KYG))
+        b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
+        twice = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
+        one, two = (float(h.cr[k + iget(h, ib, KMAT) - 1]) for k in (ALAM1, ALAM2))
+        shear = (one - two) / 2
+        free = self.free[corner, :2]
+        for i in range(3):
+            for j in range(3):
+                bb, cc = b[:, i] * b[:, j], c[:, i] * c[:, j]
+                bc, cb = b[:, i] * c[:, j], c[:, i] * b[:, j]
+                fx, fy = free[:, j].T
+                row_x = np.abs(one * bb + shear * cc) * fx + np.abs(two * bc + shear * cb) * fy
+                row_y = np.abs(two * cb + shear * bc) * fx + np.abs(one * cc + shear * bb) * fy
+                np.add.at(self.sum[:, 0], corner[:, i], row_x / (2 * twice))
+                np.add.at(self.sum[:, 1], corner[:, i], row_y / (2 * twice))
+
+    def add_contacts(self) -> None:
+        """The stiffness of all contacts that are not virtual."""
+        h = self.h
+        contacts = _addresses(h, int(h.ci[ICPNT]), KC)
+        contacts = contacts[_ints(h, contacts, KCCOD) != VIRTUAL]
+        if not len(contacts):
+            return
+        mat = _ints(h, contacts, KCM) - 1
+        stiffness = np.maximum(h.cr[AKN + mat], h.cr[AKS + mat]).astype(float)
+        shares = [
+            *self._shares(contacts, KB1, KCP1, CORNER_EDGE),
+            *self._shares(contacts, KB2, KCP2, EDGE_CORNER),
+        ]
+        for axis in (0, 1):
+            total = sum((share[axis] * self.free[at]).sum(axis=1) for at, share in shares)
+            for at, share in shares:
+                rows = share[axis] * (stiffness * total)[:, None]
+                np.add.at(self.sum, at, rows)
+
+    def _shares(self, contacts: Array, kb: Offset, kp: Offset, on_corner: int) -> list[tuple[Array, Array]]:
+        """What moves with one side of the contacts: addresses, and how far a unit of each degree of freedom
+        moves the contact point in x and in y, shape (2, contacts, DOFS)."""
+        h = self.h
+        blocks, corners = _ints(h, contacts, kb), _ints(h, contacts, kp)
+        x, y = _reals(h, contacts, KXC), _reals(h, contacts, KYC)
+        meshed = self.kind[blocks] == MFDEF
+        rx, ry = (np.abs(p - _reals(h, blocks, k)) / self.length[blocks] for p, k in ((x, KX), (y, KY)))
+        one, zero = np.ones_like(rx), np.zeros_like(rx)
+        body = np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
+        before = _ints(h, corners, KR)
+        xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
+        dx, dy = _reals(h, corners, KXP) - xa, _reals(h, corners, KYP) - ya
+        part = np.clip(((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy), 0, 1)
+        part = np.where(np.isin(_ints(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
+        point = np.zeros_like(body)
+        point[0, :, 0] = point[1, :, 1] = 1
+        here = np.where(meshed, _ints(h, corners, KGP), blocks)
+        there = np.where(meshed, _ints(h, before, KGP), 0)
+        first = np.where(meshed[:, None], point * part[:, None], body)
+        second = np.where(meshed[:, None], point * (1 - part)[:, None], 0.0)
+        return [(here, first), (there, second)]
+
+    def limit(self) -> Limit:
+        """The bound, and who sets it."""
+        ratio = np.where((self.free > 0) & (self.sum > 0), self.mass / np.maximum(self.sum, 1e-300), np.inf)
+        at = int(ratio.min(axis=1).argmin())
+        return Limit(2 * math.sqrt(float(ratio[at].min())), at)
+
+
+def bound(array: MainArray) -> Limit:
+    """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
+    rows = _Rows(array.h)
+    rows.add_contacts()
+    return rows.limit()
+
+
+def estimate(array: MainArray) -> Limit:
+    """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
+    h = array.h
+    mass, at, massless = least_mass(h)
+    if massless:
+        m = iget(h, massless, KMAT)
+        detail = f"block@{massless} has material {m}, whose density is not set"
+        raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
+    ratio = float(mass) / _stiffness(h)
+    if h.ci[NSOFT]:
+        least, soft = soft_step(h, np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype))
+        if float(least) < ratio:
+            ratio, at = float(least), soft
+    return Limit(2 * math.sqrt(ratio), int(at))
+
+
+def _stiffness(h: Memory) -> float:
+    """Greatest joint stiffness of any contact; of a lone block the one that its contacts would have."""
+    if h.ci[NCON] == 0:
+        m = iget(h, int(h.ci[IBPNT]), KMAT)
+        stiffness = float(max(h.cr[AKN + m - 1], h.cr[AKS + m - 1]))
+        if not stiffness > 0 and not h.ci[NSOFT]:
+            raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
+        return max(stiffness, 1e-300)
+    stiffness, undefined = greatest_stiffness(h)
+    if undefined:
+        m = iget(h, undefined, KCM)
+        detail = f"contact@{undefined} has material {m}"
+        raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
+    return float(stiffness)
+
+
+def time_step(array: MainArray) -> float:
+    """FRAC times the estimate, or times the safe bound if asked for; error 28 if reals cannot hold it."""
+    critical = estimate(array).step
+    if array.h.ci[LSAFE]:
+        critical = min(bound(array).step, critical)
+    step = float(array.h.cr[FRAC]) * critical
+    reals = np.finfo(array.scheme.real_type)
+    if not reals.smallest_normal < step < reals.max:
+        raise UdecError(28, f"the time-step is {step:g} s", "look at DENSITY, KN, KS and FRACTION")
+    return step
+
+
+def describe(array: MainArray) -> str:
+    """One line: the time-step, its shares of estimate and bound, and which groups set these."""
+    step = float(array.h.cr[TDEL])
+    parts = [
+        f"{step / limit.step:.3g} of the {name} {limit.step:.4g} s ({kind_of(array.h, limit.address)})"
+        for name, limit in (("estimate", estimate(array)), ("safe bound", bound(array)))
+        if math.isfinite(limit.step)
+    ]
+    return f"time-step {step:.4g} s, {', '.join(parts)}"
+
+
+def kind_of(h: Memory, address: int) -> str:
+    """What sets a limit: `block@163`, or `grid-point@5917 of block@163`."""
+    for ib in chain(h, int(h.ci[IBPNT]), KB):
+        if ib == address:
+            return f"block@{ib}"
+        if iget(h, ib, HEAD) == MFDEF and address in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
+            return f"grid-point@{address} of block@{ib}"
+    return f"@{address}"
+
+
+def _addresses(h: Memory, first: int, link: Offset) -> Array:
+    return np.fromiter(chain(h, first, link), np.int64)
+
+
+def _ints(h: Memory, at: Array, k: Offset, i: int = 0) -> Array:
+    which = h.ra.itemsize // h.ia.itemsize >> 1
+    return h.ia[at + k[which] + i - 1].astype(np.int64)
+
+
+def _reals(h: Memory, at: Array, k: Offset) -> Array:
+    return np.asarray(getr(h, at, k), np.float64)
