@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
-from itertools import chain, pairwise
+from itertools import chain, count, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -115,11 +115,10 @@ def momentum(model: Model) -> tuple[Any, Any]:
 def test_momentum_changes_by_gravity_alone(seed: int) -> None:
     """Without damping and with all blocks free: contact forces cancel, whatever is made and broken.
 
-    Each cycle rounds each block's velocity a few times, and the force sums once for each contact.
+    Each cycle rounds each block's velocity a few times, and the force sums once for each contact. A scene
+    that error 15 has ended before gives way to the next one, 20 seeds later.
     """
-    scene = play(seed, cycles=SHORT)
-    if scene.ended:
-        pytest.skip("the scene ended by itself")
+    scene = next(found for k in count(seed, 20) if not (found := play(k, cycles=SHORT)).ended)
     model = scene.model
     model.free(-1e9, 1e9, -1e9, 1e9)
     model.damping(0, 1)
@@ -129,6 +128,7 @@ def test_momentum_changes_by_gravity_alone(seed: int) -> None:
     for done in range(1, 21):
         scene.cycle(1)
         if scene.ended:
+            assert done > 1
             return
         h = model.h
         after, size = momentum(model)
