@@ -104,8 +104,9 @@ for build in ("i32r64", "i32r32"):
     laws = book.pack(a)
     for state in states.astype(a.scheme.real_type):
         print(*(float(x).hex() for x in kernels.stress_increment(a.h, laws, 2, 1, 1, *state)))
-stats = getattr(kernels.stress_increment, "stats", None)
-print(*([sum(stats.cache_hits.values()), sum(stats.cache_misses.values())] if stats else []), file=sys.stderr)
+whole = getattr(kernels.stress_increment, "whole", None)
+hits = whole and [sum(whole.stats.cache_hits.values()), sum(whole.stats.cache_misses.values())]
+print(*(hits or []), file=sys.stderr)
 """
 
 

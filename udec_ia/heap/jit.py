@@ -18,6 +18,7 @@ import numba
 from numba.core import config
 
 from offsets.generated import DIGEST
+from udec_ia.heap.linking import Kernel
 
 F = TypeVar("F", bound=Callable[..., Any])
 PACKAGE = Path(__file__).parent.parent
@@ -49,10 +50,12 @@ def kernel(function: F, inline: bool = False) -> F:
     No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
     follows IEEE 754 instead of raising.
     """
+    if config.DISABLE_JIT:
+        return function
     kept = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE)
     try:
-        return cast(F, numba.njit(cache=True, error_model="numpy", forceinline=inline)(function))
+        return cast(F, Kernel(function, error_model="numpy", forceinline=inline))
     finally:
         config.CACHE_DIR = kept
 

@@ -132,7 +132,10 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
                 return -1
             k = n
             while k > 0 and where[k - 1, T] > t:
-                where[k], which[k] = where[k - 1], which[k - 1]
+                for column in range(3):
+                    where[k, column] = where[k - 1, column]
+                for column in range(2):
+                    which[k, column] = which[k - 1, column]
                 k -= 1
             where[k, T], where[k, X], where[k, Y] = t, x, y
             which[k, CORNER], which[k, AT] = ip, 1 if at else 0

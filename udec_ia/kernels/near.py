@@ -44,6 +44,7 @@ from udec_ia.kernels.segments import (
     on_arc,
     same_segment,
 )
+from udec_ia.kernels.sort import stable_order
 from udec_ia.kernels.tips import blocked
 from udec_ia.kernels.touch import (
     CORNER_CORNER,
@@ -274,7 +275,7 @@ def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int
     m = _cells(h, seg, n, cell, nothing, nothing)
     key, row = np.empty(m, np.int64), np.empty(m, np.int64)
     _cells(h, seg, n, cell, key, row)
-    order = np.argsort(key, kind="mergesort")
+    order = stable_order(key)
     best, bi, bj = 0, 0, 0
     most = real(h, 0.0)
     first = 0

@@ -1,0 +1,102 @@
+"""Kernels that call kernels: how a hundred small ones become a few pieces of machine code.
+
+numba makes machine code of every function it compiles, and optimises it once more inside each of its
+callers, layer upon layer. Most kernels are only ever called by kernels. So a kernel has two compiled
+forms. Its *part* is what other kernels link in: code that is neither optimised nor translated. Its
+*whole*, made when Python calls the kernel, takes in the parts of all kernels below it, and is optimised,
+translated and kept on disk.
+
+A part is made once for the types of its arguments, not once more for every literal it is called with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import update_wrapper
+from typing import Any
+
+from numba import njit, types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.extending import models, register_model, typeof_impl
+
+
+class _NoEnvironment:
+    """Keeps no Python objects for a function: a part has no use for any."""
+
+    def set_env(self, name: str, env: Any) -> None:
+        pass
+
+
+class _Part(JITCodeLibrary):
+    """Code for others to link in. What it calls is noted, and linked in by them."""
+
+    codegen = _NoEnvironment()
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+
+class _Whole(JITCodeLibrary):
+    """Code with everything it calls in it."""
+
+    _linking_libraries: list[Any]
+
+    def finalize(self) -> None:
+        found: dict[Any, None] = {}
+        _add_called(self._linking_libraries, found)
+        self._linking_libraries = [*reversed(found)]  # callers first: LLVM takes in what has been asked for
+        super().finalize()
+
+
+def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
+    """Add `libraries` and what their parts call, each after all that it calls."""
+    for library in libraries:
+        if library not in found:
+            if isinstance(library, _Part):
+                _add_called(library._linking_libraries, found)
+            found[library] = None
+
+
+class _WholeCompiler(Compiler):
+    form: type[JITCodeLibrary] = _Whole
+
+    def define_pipelines(self) -> Any:
+        state = self.state
+        state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().define_pipelines()
+
+
+class _PartCompiler(_WholeCompiler):
+    form = _Part
+
+
+class Kernel:
+    """A compiled function in both its forms: called from Python it is whole, from a kernel a part."""
+
+    def __init__(self, function: Callable[..., Any], **flags: Any) -> None:
+        update_wrapper(self, function)
+        self.whole = njit(cache=True, no_cfunc_wrapper=True, pipeline_class=_WholeCompiler, **flags)(function)
+        self.part = njit(
+            no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
+        )(function)
+
+    def __call__(self, *args: Any) -> Any:
+        return self.whole(*args)
+
+
+class _KernelType(types.Dispatcher):
+    """What a kernel is to the kernels that call it."""
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Signature of a call, for which the part is compiled unless it has been."""
+        return super().get_call_type(context, tuple(types.unliteral(arg) for arg in args), kws)
+
+
+register_model(_KernelType)(models.OpaqueModel)
+
+
+@typeof_impl.register(Kernel)
+def _type_of(kernel: Kernel, _: Any) -> _KernelType:
+    return _KernelType(kernel.part)
