@@ -27,6 +27,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import is_cached, note_cached
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops import settings
+from udec_ia.ops.arrange import arrange
 from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
 from udec_ia.ops.change import change
 from udec_ia.ops.create import create
@@ -35,6 +36,7 @@ from udec_ia.ops.delete import delete
 from udec_ia.ops.insitu import insitu
 from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
+from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
@@ -414,7 +416,11 @@ class Model:
         from udec_ia.output.report import Report
 
         self._ready()
+        not_negative(self.array, n=whole(n=n))
         self._boxes.forget()
+        moved = arrange(self.array)
+        if moved is not None and self._plots is not None:
+            self._plots.renumber(moved)
         if self.animate and self._animation is None:
             from udec_ia.output.animate import Animation
 

@@ -14,8 +14,8 @@ from offsets.table import lay_out
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
 
-KINDS = ("block", "corner", "contact", "domain")
 TABLE = read_table()
+KINDS = [group.name for group in TABLE.groups]
 NO_STATE = {
     "JUNK",
     "MFREE",
@@ -43,8 +43,9 @@ def relocate(array: MainArray, rng: np.random.Generator) -> MainArray:
     for kind, iad in old:
         for field in TABLE.group(kind).fields:
             if field.target is not None:
-                word = new[iad] + lay_out(TABLE.group(kind), ratio).offset[field.name] - 1
-                moved.h.ia[word] = new[int(moved.h.ia[word])]
+                first = new[iad] + lay_out(TABLE.group(kind), ratio).offset[field.name] - 1
+                for word in range(first, first + field.count):
+                    moved.h.ia[word] = new[int(moved.h.ia[word])]
     for field in TABLE.common:
         if field.target is not None:
             at = getattr(generated, field.name)
@@ -67,7 +68,7 @@ def essence(array: MainArray) -> dict[str, Any]:
         for field in TABLE.group(kind).fields:
             values = rows[kind][field.name]
             if field.target is not None:
-                values = np.array([number[iad] for iad in values.tolist()], np.int64)
+                values = np.array([number[iad] for iad in values.ravel().tolist()], np.int64)
             found[f"{field.name} of {kind}"] = values
     for field in TABLE.common:
         at = getattr(generated, field.name)

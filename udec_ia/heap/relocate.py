@@ -17,11 +17,12 @@ from offsets.table import Group, Layout, lay_out, read_table
 from udec_ia.heap.array import MainArray
 
 
-def relocate(array: MainArray, order: dict[str, Any]) -> None:
+def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     """Lay out all groups afresh from address 1: kind by kind, and within a kind in the given order.
 
     order: for every kind of group in use the addresses of all its groups. The main lists follow the new
-    order; the junk list is empty afterwards.
+    order; the junk list is empty afterwards. Returns the new address of the group at each old address, 0
+    where there was none.
     """
     h, table = array.h, read_table()
     kinds = {kind: (table.group(kind), lay_out(table.group(kind), array.scheme.ratio)) for kind in order}
@@ -46,6 +47,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> None:
         if group.list_head is not None:
             h.ci[getattr(generated, group.list_head)] = moved[order[kind][0]]
     h.ci[JUNK], h.ci[MFREE] = 0, free
+    return moved
 
 
 def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:

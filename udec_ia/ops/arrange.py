@@ -3,38 +3,94 @@
 SPLIT makes blocks, corners, contacts and domains by turns, wherever the lines run. Every pass of the cycle
 goes through one kind of group and looks at its neighbours in the map: so each kind gets a stretch of IA() of
 its own, in the order of strips across the model, and all passes read memory in nearly straight runs.
+Deformable blocks have their extensions, grid-points and zones in the order of the blocks. What is outside the
+map, such as boundary conditions, keeps its order.
 Small models stay as they are: they fit the machine's caches, and their addresses are what a deck has seen.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from offsets.generated import MCTOT, MFREE, NBLK, NCON, NDOM, NVCR
-from udec_ia.heap.accessors import size_of
+from offsets.generated import (
+    IBNPNT,
+    ISGPNT,
+    KBEX,
+    KFG,
+    KFZ,
+    KG,
+    KT,
+    KTP,
+    KTPN,
+    KU,
+    KZ,
+    MCTOT,
+    MFDEF,
+    MFREE,
+    MSDEF,
+    NBLK,
+    NCON,
+    NDOM,
+    NSOFT,
+    NVCR,
+)
+from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.relocate import relocate
 from udec_ia.kernels.cut import enter_boxes
 from udec_ia.kernels.order import map_order
+from udec_ia.ops.lists import chain
 
 LARGE = 500  # blocks from which on it pays
 
 
-def arrange(array: MainArray) -> None:
-    """Put the groups of a large model that has not been cycled yet in the order of the map."""
+def arrange(array: MainArray) -> Any:
+    """Put the groups of a large model that has not been cycled yet in the order of the map.
+
+    Returns the new address of the group at each old one, 0 where there was none; None if nothing moved.
+    """
     h = array.h
+    if h.ci[NBLK] < LARGE or h.ci[MCTOT] > 0:
+        return None
+    blocks = in_strips(h)
+    order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks) | beside_the_map(h)
+    return relocate(array, {kind: np.array(addresses) for kind, addresses in order.items() if len(addresses)})
+
+
+def in_strips(h: Memory) -> Any:
+    """Blocks strip after strip across the model, as wide as a block."""
     n = int(h.ci[NBLK])
-    if n < LARGE or h.ci[MCTOT] > 0:
-        return
     boxes, blocks = np.empty((n, 4), h.cr.dtype), np.empty(n, np.int64)
     enter_boxes(h, boxes, blocks)
     across, along = sorted((boxes[:, :2] + boxes[:, 2:]).T / 2, key=np.ptp)
     strip = math.sqrt(np.ptp(across) * np.ptp(along) / n)
-    blocks = blocks[np.lexsort((across, np.floor((along - along.min()) / strip)))]
+    return blocks[np.lexsort((across, np.floor((along - along.min()) / strip)))]
+
+
+def of_the_map(h: Memory, blocks: Any) -> dict[str, Any]:
+    """Blocks, corners, contacts and domains, as a walk round block after block needs them."""
     top = int(h.ci[MFREE])
     corners = np.empty(top // size_of(h, NVCR), np.int64)
     contacts, domains = np.empty(int(h.ci[NCON]), np.int64), np.empty(int(h.ci[NDOM]), np.int64)
     count, _, _ = map_order(h, blocks, corners, contacts, domains, np.zeros(top + 1, np.bool_))
-    relocate(array, {"block": blocks, "corner": corners[:count], "contact": contacts, "domain": domains})
+    return {"block": blocks, "corner": corners[:count], "contact": contacts, "domain": domains}
+
+
+def of_deformable_blocks(h: Memory, blocks: Any) -> dict[str, Any]:
+    """Extensions, grid-points and zones, block after block."""
+    soft = blocks if h.ci[NSOFT] else ()
+    sdef = [iget(h, ib, KBEX) for ib in soft if iget(h, ib, HEAD) == MSDEF]
+    fdef = [iget(h, ib, KBEX) for ib in soft if iget(h, ib, HEAD) == MFDEF]
+    points = [ig for ie in fdef for ig in chain(h, iget(h, ie, KFG), KG)]
+    zones = [iz for ie in fdef for iz in chain(h, iget(h, ie, KFZ), KZ)]
+    return {"sdef": sdef, "fdef": fdef, "gridpoint": points, "zone": zones}
+
+
+def beside_the_map(h: Memory) -> dict[str, Any]:
+    """Boundary conditions and signals as they stand in their lists."""
+    signals = list(chain(h, int(h.ci[ISGPNT]), KT))
+    points = [it for signal in signals for it in chain(h, iget(h, signal, KTP), KTPN)]
+    return {"bound": list(chain(h, int(h.ci[IBNPNT]), KU)), "signal": signals, "tabpoint": points}

@@ -54,9 +54,7 @@ from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
-from udec_ia.ops.arrange import arrange
 from udec_ia.ops.laws import LawBook, failure
-from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
@@ -81,8 +79,6 @@ def prepare(array: MainArray) -> None:
     if h.ci[MCTOT] == 0:
         make_masses(h, soft(array))
     settle_default(array)
-    arrange(array)
-    h = array.h
     check_all_edges(array, float(h.cr[DTOL]))
     _check_zones(array)
     h.cr[TDEL] = time_step(array)
@@ -140,8 +136,6 @@ def cycle(
     warn: called before the first cycle with a text if the time-step may be unstable.
     Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
     """
-    n = whole(n=n)
-    not_negative(array, n=n)
     prepare(array)
     if warn is not None and (text := instability(array)):
         warn(text)

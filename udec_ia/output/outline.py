@@ -8,7 +8,7 @@ from them whenever they are needed.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,20 @@ class State:
     contacts: Contacts | None = None
     domains: tuple[Domain, ...] = ()
     field: Field | None = None
+
+    def renumbered(self, moved: Any) -> State:
+        """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
+
+        def new(one: Any) -> Any:
+            return replace(one, address=moved[one.address].astype(np.int64))
+
+        return replace(
+            self,
+            outlines=replace(new(self.outlines), corner_address=moved[self.outlines.corner_address]),
+            contacts=self.contacts and new(self.contacts),
+            domains=tuple(new(domain) for domain in self.domains),
+            field=self.field and new(self.field),
+        )
 
 
 def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False) -> State:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -86,6 +86,11 @@ class Plots:
             self.frame = Frame(self.name)
         inside = bool(h.ci[g.NSOFT]) or what.velocities or what.displacements
         self.frame.add(snapshot(h, what.contacts, what.domains, inside), what, float(h.cr[g.PSCALE]))
+
+    def renumber(self, moved: Any) -> None:
+        """Groups have moved (heap.relocate): the open frame goes on with their new addresses."""
+        if self.frame is not None:
+            self.frame.states = [state.renumbered(moved) for state in self.frame.states]
 
     def close(self) -> list[Path]:
         """Write the frame that is open, if any; returns the files written by now."""
