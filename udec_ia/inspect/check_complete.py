@@ -21,6 +21,7 @@ Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the ot
 
 CHUNK = 1_000_000  # pairs looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
+AWRY_POINT = 0.2  # the same for a point of an edge: a contact is formed up to an angle of 0.25
 
 
 def check_complete(state: State, o: Outlines, touch: Touches) -> None:
@@ -94,12 +95,12 @@ def _close_blocks(o: Outlines) -> Iterator[tuple[Numbers, Numbers]]:
 
 
 def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
-    """Pairs (corner i of block a, corner j of block b) where i is convex and near the box of block b."""
+    """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the box of block b."""
     low, high = np.minimum.reduceat(o.p, o.first), np.maximum.reduceat(o.p, o.first)
     pair, place = ragged(o.count[a])
     i, b = o.first[a[pair]] + place, b[pair]
     reach = o.d + o.slack[i]
-    inside = (o.r[i] > 0) & (o.p[i] >= low[b] - reach[:, None]).all(axis=1)
+    inside = o.arc[i] & (o.p[i] >= low[b] - reach[:, None]).all(axis=1)
     inside &= (o.p[i] <= high[b] + reach[:, None]).all(axis=1)
     i, b = i[inside], b[inside]
     pair, place = ragged(o.count[b])
@@ -109,22 +110,25 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Arcs of corners i whose point deepest under the edge of corner j is on the edge or in the block.
 
-    The deepest point of an arc that does not face the edge is one of its ends.
+    The deepest point of an arc that does not face the edge is one of its ends. A point of an edge that does
+    not face it has deeper ones beside it, where its own edge goes on.
     """
     along = dot(o.c[i] - o.p[o.before[j]], o.t[j])
     keep = (along >= o.start[j]) & (along <= o.end[j])
     i, j = i[keep], j[keep]
     inward = -o.e[j]
     early, late = dot(inward, o.t[i]), dot(inward, o.t[o.after[i]])
+    reach = np.where(o.pointed[i], 0.0, o.d)[:, None]
     deepest = np.select(
         [(early < 0)[:, None], (late > 0)[:, None]],
-        [o.p[i] - o.d * o.t[i], o.p[i] + o.d * o.t[o.after[i]]],
+        [o.p[i] - reach * o.t[i], o.p[i] + reach * o.t[o.after[i]]],
         o.c[i] + o.r[i][:, None] * inward,
     )
     depth = dot(deepest - o.p[j], inward)
     slack = 2 * np.maximum(o.slack[i], o.slack[j])
-    keep = (depth >= -slack) & (depth <= o.d) & (-early <= AWRY) & (late <= AWRY)
-    keep &= dot(inward, o.p[i] - o.c[i]) > 0
+    awry = np.where(o.pointed[i], AWRY_POINT, AWRY)
+    keep = (depth >= -slack) & (depth <= o.d) & (-early <= awry) & (late <= awry)
+    keep &= dot(inward, o.out[i]) > 0
     i, j, deepest, depth, slack = i[keep], j[keep], deepest[keep], depth[keep], slack[keep]
     keep = (depth <= slack) | _inside(o, deepest, o.owner[j])
     return i[keep], j[keep], deepest[keep], depth[keep]
@@ -132,7 +136,7 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
 
 def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Pairs of arcs that overlap along their line of centres, each facing the other."""
-    keep = (o.r[j] > 0) & (o.owner[i] < o.owner[j])
+    keep = o.arc[j] & (o.owner[i] < o.owner[j])
     i, j = i[keep], j[keep]
     between = o.c[j] - o.c[i]
     distance = np.hypot(*between.T)
@@ -140,6 +144,7 @@ def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     keep = (depth >= -2 * np.maximum(o.slack[i], o.slack[j])) & (distance > 0)
     for k, towards in ((i, between), (j, -between)):
         keep &= (dot(towards, o.t[k]) >= 0) & (dot(towards, o.t[o.after[k]]) <= 0)
+        keep &= dot(towards, o.out[k]) > 0
     i, j, depth = i[keep], j[keep], depth[keep]
     towards = between[keep] / distance[keep][:, None]
     return i, j, o.c[i] + (o.r[i] - depth / 2)[:, None] * towards, depth

@@ -4,6 +4,8 @@ Outlines are taken apart once, for all blocks whose lists are sound: clockwise c
 ends at p with its length z, its unit vector t (clockwise) and outward normal e = (-ty, tx), and the arc of
 p with centre c and radius r. All is computed in 64 bits; what the heap says may differ by as much as its
 own reals can.
+
+A point that GENERATE has put on an edge has an arc too: a circle of radius zero, however the edge is bent.
 """
 
 from __future__ import annotations
@@ -32,7 +34,8 @@ class Outlines:
 
     block: addresses of the blocks; first, count: where their corners stand; owner: index into `block`.
     corner: address; before, after: index of the neighbours. p, c: corner and circle centre (n x 2);
-    r: radius. d: the rounding length; step: relative rounding error of a coordinate of the heap.
+    r: radius; pointed: True for a point of an edge, by its grid-point. d: the rounding length; step: relative
+    rounding error of a coordinate of the heap.
     """
 
     block: Numbers
@@ -45,6 +48,7 @@ class Outlines:
     p: Numbers
     c: Numbers
     r: Numbers
+    pointed: Numbers
     d: float
     step: float
 
@@ -62,6 +66,16 @@ class Outlines:
     def e(self) -> Numbers:
         """Outward normal of the edge that ends at the corner."""
         return turned(self.t)
+
+    @cached_property
+    def arc(self) -> Numbers:
+        """True for a corner that may touch edges and arcs of others."""
+        return np.asarray((self.r > 0) | self.pointed)
+
+    @cached_property
+    def out(self) -> Numbers:
+        """A vector along the bisector of the corner's two edges, outwards."""
+        return np.asarray(self.e + self.e[self.after])
 
     @cached_property
     def turn(self) -> Numbers:
@@ -125,6 +139,8 @@ def outlines(state: State) -> Outlines | None:
     if not sound.any():
         return None
     kept = np.repeat(sound, count)
+    on_edge = np.append(state.column("gridpoint", "KGEDGE"), 0) == 1  # one more, for row -1
+    grid_point = state.rows("gridpoint", state.column("corner", "KGP")[rows])
     block, count = np.array(list(ring_of))[sound], count[sound]
     first = np.cumsum(count) - count
     owner = np.repeat(np.arange(len(block)), count)
@@ -143,6 +159,7 @@ def outlines(state: State) -> Outlines | None:
         p=p[kept],
         c=c[kept],
         r=r[kept],
+        pointed=on_edge[grid_point[kept]],
         d=state.tolerance("DTOL"),
         step=step,
     )
@@ -180,7 +197,7 @@ def check_codes(state: State) -> None:
 
 
 def check_outlines(state: State, o: Outlines) -> None:
-    """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their two roundings."""
+    """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings."""
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")
         return
@@ -188,11 +205,12 @@ def check_outlines(state: State, o: Outlines) -> None:
     area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
     for i in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
-    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= 2 * o.d - 2 * o.slack)):
+    room = o.d * (2.0 - o.pointed - o.pointed[o.before])
+    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= room - 2 * o.slack)):
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
-            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, less than two roundings of {o.d}",
+            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, less than the {room[i]} of its roundings",
         )
     _check_circles(state, o)
     rows = state.rows("block", o.block)
@@ -206,17 +224,18 @@ def check_outlines(state: State, o: Outlines) -> None:
 
 
 def _check_circles(state: State, o: Outlines) -> None:
-    """Centre and radius against D tan(theta/2).
+    """Centre and radius against D tan(theta/2); a flat corner and a point of an edge have no radius.
 
     An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
     (1 + (R/D)^2)/2 times as much.
     """
-    radius = np.where(np.abs(np.sin(o.turn)) >= FLAT, o.d / np.tan(o.turn / 2), 0.0)
+    bent = (np.abs(np.sin(o.turn)) >= FLAT) & ~o.pointed
+    radius = np.where(bent, o.d / np.tan(o.turn / 2), 0.0)
     reach = np.where(radius == 0, 0.0, o.d)
     centre = o.p - reach[:, None] * o.t - radius[:, None] * o.e
     slack = o.slack * (1 + (radius / o.d) ** 2)
     wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
-    border = np.abs(np.abs(np.sin(o.turn)) - FLAT) < o.slack / o.d
+    border = (np.abs(np.abs(np.sin(o.turn)) - FLAT) < o.slack / o.d) & ~o.pointed
     for i in np.flatnonzero(wrong & ~border):
         state.report(
             7,

@@ -38,23 +38,31 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     """The places of all contacts on side 0 (block KB1) or 1 (KB2).
 
     On an edge it is the other circle's centre that must stand between the roundings. Of two arcs each
-    must face the other's centre. An arc on an edge may face another way: its block has been tilted.
+    must face the other's centre. An arc on an edge may face another way: its block has been tilted. Two edges
+    that meet in a point without a radius part the ground between them at their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     on_edge = touch.code == (EDGE_CORNER if side == 0 else CORNER_EDGE)
     two_arcs = touch.code == CORNER_CORNER
     from_start = dot(o.c[other] - o.p[o.before[k]], o.t[k])
     to_other = o.c[other] - o.c[k]
+    under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
+    over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
     facing = np.where(two_arcs[:, None], to_other, -o.e[other])
     angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
     arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, np.maximum(o.turn[k], 0.0))
     return Place(
         corner=k,
         on_edge=on_edge,
-        under=np.select([on_edge, two_arcs], [o.start[k] - from_start, -dot(to_other, o.t[k])], -np.inf),
-        over=np.select([on_edge, two_arcs], [from_start - o.end[k], dot(to_other, o.t[o.after[k]])], -np.inf),
+        under=np.select([on_edge, two_arcs], [under, -dot(to_other, o.t[k])], -np.inf),
+        over=np.select([on_edge, two_arcs], [over, dot(to_other, o.t[o.after[k]])], -np.inf),
         along=np.where(on_edge, np.clip(from_start, o.start[k], np.maximum(o.end[k], o.start[k])), arc),
     )
+
+
+def _past(o: Outlines, k: Numbers, other: Numbers) -> Numbers:
+    """How far the circles of corners `other` have passed the bisectors at corners k, clockwise."""
+    return dot(o.c[other] - o.p[k], o.t[k] + o.t[o.after[k]]) / 2
 
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:
@@ -70,7 +78,7 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
 def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
-    for k in np.flatnonzero(~(o.r[here.corner] > 0) & ~here.on_edge):
+    for k in np.flatnonzero(~o.arc[here.corner] & ~here.on_edge):
         state.report(
             7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
         )
