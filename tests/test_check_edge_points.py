@@ -1,4 +1,4 @@
-"""The checker knows the points that GENERATE puts on edges: circles of radius zero that touch edges of others.
+"""The checker knows the points that GENERATE puts on edges: circles of radius zero that touch and are met.
 
 Two squares side by side. The right one is fully deformable with a grid-point in the middle of the edge at the
 joint; bent outwards there, it touches the left square with that point alone.
