@@ -44,11 +44,49 @@ MESSAGES = {
     35: "constitutive law returned no finite number",
 }
 
+ADVICE = {
+    1: "take a larger --mtop, or leave --mtop off and choose a --build with wider integers",
+    2: "HELP lists the commands",
+    3: "put START before this line, or RESTART to go on from a saved state",
+    4: "material numbers run from 1 to 50",
+    5: "give at least three corners, clockwise",
+    6: "give the corners in clockwise order, along an outline that does not cross itself",
+    7: "HELP and the name of the command show its form",
+    8: "x and y of a point must stand on one line",
+    9: "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
+    10: "HELP and the name of the command list its parameters",
+    11: "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
+    12: "give the density of every material in use: PROPERTY MAT=1 DENS=...",
+    13: "take a smaller fcrit in DAMPING, or a smaller FRACTION",
+    14: "the shortest edge must hold two roundings, no overlap may exceed half of one: change d in ROUND",
+    15: "take a larger joint stiffness or a smaller FRACTION, or look for what drives the blocks together",
+    16: "take a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
+    17: "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
+    18: "make the first block large enough, then SPLIT it and DELETE what is not needed",
+    19: "leave at least two blocks that touch",
+    20: "the main array is damaged: look at the last RSET, and go back to what was saved before it",
+    21: "delete blocks before they are made fully-deformable",
+    22: "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ..., or AUTOMATIC EDGE d",
+    23: "HELP lists what there is",
+    24: "a block counts by its centroid: PRINT BLOCKS shows the centroids",
+    25: "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
+    26: "a zone needs its three grid-points on one line",
+    27: "move the line: it may pass exactly through a corner, but not graze one",
+    28: "HELP and the name of the command show what it takes",
+    29: "check the name of the file and whether it is complete: udec info FILE",
+    30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
+    31: "check that the folder exists and can be written to",
+    32: "take stiffer zones, a smaller FRACTION or smaller loads",
+    33: "the zones must cover the block side to side, each side between two grid-points once",
+    34: "correct the file that --constitutive names",
+    35: "look for what the law divides by or takes a root of, and at the properties of the material",
+}
+
 
 class UdecError(Exception):
     """A numbered error.
 
-    number: key of MESSAGES. detail: what exactly is wrong. advice: what to do about it.
+    number: key of MESSAGES. detail: what exactly is wrong. advice: what to do about it, by default ADVICE.
     file, line, column, source, token: place in the deck (line and column count from 1), or None.
     group: address of the group concerned, or 0. parameter: name of the argument that is to blame, or "".
     saved: restart file written because of the error.
@@ -59,7 +97,7 @@ class UdecError(Exception):
     ) -> None:
         self.number = number
         self.detail = detail
-        self.advice = advice
+        self.advice = advice or ADVICE[number]
         self.group = group
         self.parameter = parameter
         self.file: str | None = None

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
 import numba
 import numpy as np
 
-from offsets.generated import DTOL, MCTOT, NBLK, NCON, TIME
+from offsets.generated import BETA, DTOL, MCTOT, NBLK, NCON, TDEL, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -39,6 +39,7 @@ from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
+from udec_ia.ops.timestep import instability
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class Model:
         self._animation: Animation | None = None
         self._boxes = Boxes()
         self._touched = False  # RSET has changed a word since the heap was last known to be sound
-        self._warned = ""  # the last warning, which is not repeated by every CYCLE
+        self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
 
@@ -104,7 +105,7 @@ class Model:
         self.laws.note({})
         self._boxes.forget()
         self._touched = False
-        self._warned = ""
+        self._judged = (0.0, 0.0)
         self.started = True
 
     def save(self, path: str | Path | None = None) -> Path:
@@ -302,7 +303,7 @@ class Model:
     def function(self, n: int, *tf: float) -> None:
         """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
         if len(tf) % 2:
-            raise UdecError(8, f"{len(tf)} numbers given")
+            raise UdecError(8, f"{len(tf)} numbers given", "give t1, f1, t2, f2, ...")
         self._ready(sound=False)
         set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 
@@ -428,17 +429,20 @@ class Model:
         report = Report(lambda: self.h, n, self.progress, self._animation)
         try:
             every = max(1, n // PICTURES) if self.animate else None
-            done = cycle(self.array, n, report, every, self._warn, self.laws)
+            done = cycle(self.array, n, report, every, self._judge_step, self.laws)
         finally:
             report.close()
         if done > 0:
             note_cached(self.array.scheme.name)
         return done
 
-    def _warn(self, text: str) -> None:
-        if text != self._warned:
-            self._warned = text
-            self.tell(text)
+    def _judge_step(self) -> None:
+        """Tell if stiffness damping may make the time-step unstable, once for each damping and step."""
+        judged = (float(self.h.cr[BETA]), float(self.h.cr[TDEL]))
+        if judged != self._judged:
+            self._judged = judged
+            if text := instability(self.array):
+                self.tell(text)
 
     def run(self, text_or_path: str | Path, stream: TextIO | None = None) -> str | None:
         """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned.

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from itertools import cycle
 from typing import Any
 
-from udec_ia.deck.advice import ADVICE, at, hint, quoted
+from udec_ia.deck.advice import at, hint, quoted
 from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word, match
 from udec_ia.deck.reader import Line, Statement, Token
-from udec_ia.errors import UdecError
+from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")

@@ -8,9 +8,9 @@ from __future__ import annotations
 import sys
 import textwrap
 
-from udec_ia.deck.advice import ADVICE, hint, quoted
+from udec_ia.deck.advice import hint, quoted
 from udec_ia.deck.language import COMMANDS, Command, match
-from udec_ia.errors import MESSAGES, UdecError
+from udec_ia.errors import ADVICE, MESSAGES, UdecError
 
 WIDTH = 96
 

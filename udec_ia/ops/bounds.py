@@ -72,10 +72,10 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.motion import FIXED
-from udec_ia.ops.limits import finite, not_negative, positive
+from udec_ia.ops.limits import finite, not_negative, positive, whole
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import require
-from udec_ia.ops.ranges import Range
+from udec_ia.ops.ranges import Range, check_range
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
 Target = tuple[int, int, int]  # block; grid-point or 0; corner that ends an edge, or 0
@@ -123,10 +123,14 @@ def boundary(
     it lasts (s), or function: number of a FUNCTION; loads and velocities are multiplied by it. Errors 24, 26,
     28.
     """
+    check_range(array, where)
     finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
     for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
         for component in triple:
             finite(array, **{name: component})
+    if sine is not None:
+        positive(array, sine=sine[0])
+        not_negative(array, sine=sine[1])
     if free:
         return _set_free(array.h, where)
     fix = (xvel is not None) + 2 * (yvel is not None)
@@ -138,10 +142,9 @@ def boundary(
         for ib, ip in _edges(array.h, where):
             _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
     if not loads:
-        raise UdecError(24, "nothing lies in the range x {:g} to {:g}, y {:g} to {:g}".format(*where))
-    if sine is not None:
-        positive(array, sine=sine[0])
-        not_negative(array, sine=sine[1])
+        place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
+        advice = "a range holds what lies inside it and not on its limits"
+        raise UdecError(24, f"nothing lies in the range {place}", advice, parameter="x1")
     words = len(loads) * size_of(array.h, NVBN) + size_of(array.h, NVSG)
     signal = _find_function(array.h, function) if function is not None else 0
     require(array, words)
@@ -328,11 +331,14 @@ def set_function(array: MainArray, number: int, points: Sequence[tuple[float, fl
     """
     if not points:
         raise UdecError(26, "a function needs at least one point", "FUNCTION n t1 f1 t2 f2 ...")
-    for t, f in points:
-        finite(array, t=t, f=f)
-    for (one, _), (two, _) in pairwise(points):
+    if not 1 <= whole(n=number) <= array.scheme.top_address:
+        advice = f"a function has a number from 1 to {array.scheme.top_address}"
+        raise UdecError(28, f"n is {number}", advice, parameter="n")
+    for k, (t, f) in enumerate(points, 1):
+        finite(array, **{f"t{k}": t, f"f{k}": f})
+    for k, ((one, _), (two, _)) in enumerate(pairwise(points), 2):
         if two <= one:
-            raise UdecError(28, f"the times must ascend, but {two:g} follows {one:g}")
+            raise UdecError(28, f"{two:g} follows {one:g}", "the times must ascend", parameter=f"t{k}")
     require(array, size_of(array.h, NVSG) + len(points) * size_of(array.h, NVTP))
     h = array.h
     isg = next(

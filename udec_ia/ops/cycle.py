@@ -6,7 +6,6 @@ a second and have no influence on the results.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from time import perf_counter
 
@@ -14,7 +13,6 @@ from offsets.generated import (
     AKN,
     ALPB,
     ALPHA,
-    BETA,
     C1B,
     C2B,
     CON1,
@@ -63,9 +61,8 @@ from udec_ia.ops.timestep import time_step
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
-GRID = 5.0  # highest frequency of a grid of equal square blocks, two contacts a face, in that of the estimate
 Report = Callable[[int], None]
-Warn = Callable[[str], None]
+Prepared = Callable[[], None]
 
 
 def prepare(array: MainArray) -> None:
@@ -102,43 +99,24 @@ def _check_zones(array: MainArray) -> None:
             raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
 
 
-def instability(array: MainArray) -> str:
-    """A warning if stiffness damping may make the time-step unstable, else "".
-
-    A dashpot lowers the critical time-step to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of
-    critical damping at the highest frequency w: here GRID times that of the estimate.
-    """
-    cr = array.h.cr
-    beta, step, fraction = float(cr[BETA]), float(cr[TDEL]), float(cr[FRAC])
-    w = GRID * 2 * fraction / step
-    damped = beta * w / 2
-    critical = 2 / w / (math.hypot(1, damped) + damped)
-    if beta == 0 or step <= critical:
-        return ""
-    return (
-        f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: "
-        f"take FRACTION {fraction * critical / step:.2g} or less, a smaller fcrit, or MASS damping alone"
-    )
-
-
 def cycle(
     array: MainArray,
     n: int,
     report: Report | None = None,
     every: int | None = None,
-    warn: Warn | None = None,
+    prepared: Prepared | None = None,
     laws: LawBook | None = None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
-    warn: called before the first cycle with a text if the time-step may be unstable.
+    prepared: called before the first cycle, when the time-step is known.
     Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
     """
     prepare(array)
-    if warn is not None and (text := instability(array)):
-        warn(text)
+    if prepared is not None:
+        prepared()
     laws = laws or LawBook()
     bound = laws.bind(array)
     keep_spare(array)

@@ -49,6 +49,7 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
             done += 1
     if not done:
         place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
-        raise UdecError(24, f"no deformable block with zones in {place}", "CHANGE and GENERATE make them")
+        advice = "CHANGE and GENERATE make them"
+        raise UdecError(24, f"no deformable block with zones in {place}", advice, parameter="x1")
     renew_forces(array)
     return done

@@ -9,8 +9,12 @@ from udec_ia.ops.limits import finite
 Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 
 
+def check_range(array: MainArray, where: Range) -> None:
+    """Error 28 unless the limits of the range are finite."""
+    finite(array, **dict(zip(("x1", "x2", "y1", "y2"), where, strict=True)))
+
+
 def blocks_in(array: MainArray, where: Range) -> list[int]:
     """Addresses of the blocks in the range, in list order."""
-    x1, x2, y1, y2 = map(float, where)
-    finite(array, x1=x1, x2=x2, y1=y1, y2=y2)
-    return [int(ib) for ib in blocks_between(array.h, x1, x2, y1, y2)]
+    check_range(array, where)
+    return [int(ib) for ib in blocks_between(array.h, *map(float, where))]

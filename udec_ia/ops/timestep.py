@@ -23,6 +23,7 @@ from offsets.generated import (
     AKS,
     ALAM1,
     ALAM2,
+    BETA,
     FRAC,
     IBPNT,
     ICPNT,
@@ -253,6 +254,27 @@ def time_step(array: MainArray) -> float:
     if not reals.smallest_normal < step < reals.max:
         raise UdecError(28, f"the time-step is {step:g} s", "look at DENSITY, KN, KS and FRACTION")
     return step
+
+
+def instability(array: MainArray) -> str:
+    """A warning if stiffness damping may make the time-step unstable, else "".
+
+    A dashpot lowers the critical time-step to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of
+    critical damping at the highest frequency w, here that of the safe bound.
+    """
+    cr = array.h.cr
+    beta, step, fraction = float(cr[BETA]), float(cr[TDEL]), float(cr[FRAC])
+    if beta == 0:
+        return ""
+    undamped = bound(array).step
+    damped = beta / undamped
+    critical = undamped / (math.hypot(1, damped) + damped)
+    if step <= critical:
+        return ""
+    return (
+        f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: FRACTION "
+        f"{fraction * critical / step:.2g} is safe, or a smaller fcrit, or MASS damping alone"
+    )
 
 
 def describe(array: MainArray) -> str:

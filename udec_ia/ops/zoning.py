@@ -231,9 +231,8 @@ def _clockwise(places: list[Place], triples: Sequence[Triple]) -> list[Triple]:
     for number, triple in enumerate(triples, 1):
         for n in triple:
             if not 1 <= n <= len(places):
-                raise UdecError(
-                    25, f"{n} in zone {number}", f"grid-points are numbered from 1 to {len(places)}"
-                )
+                advice = f"grid-points are numbered from 1 to {len(places)}"
+                raise UdecError(25, f"{n} in zone {number}", advice, parameter="zones")
         i, j, k = (n - 1 for n in triple)
         a, b, c = places[i], places[j], places[k]
         turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
