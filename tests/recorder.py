@@ -39,6 +39,10 @@ class Recorder:
 
         return method
 
+    def step_limits(self) -> str:
+        """What sets the time-step: nothing here."""
+        return "no time-step"
+
     def fails(self, name: str, number: int) -> None:
         """Let the method `name` raise the error `number`."""
         self.failures[name] = UdecError(number)

@@ -129,6 +129,66 @@ def test_energy_of_joints_that_dilate_and_weaken() -> None:
     assert np.ptp(energies) < 0.01 * MASS * gravity * dilation * critical
 
 
+def pressed(psi: float, mixed: bool) -> Model:
+    """A square of four zones between smooth plates, the upper one coming down slowly; its sides are free."""
+    m = Model(constitutive="mohr-coulomb")
+    m.start()
+    m.fraction(0.3)
+    elastic = {"bulk": 2e9, "g": 1e9, "density": 2000, "kn": 1e10, "ks": 1e10}
+    strength = {"block_friction": tan(radians(30)), "block_cohesion": 2e5, "block_tension": 1e9}
+    m.property(1, **elastic, **strength, block_dilation=tan(radians(psi)))
+    m.round(0.05)
+    m.block(0, 0, 0, 3, 1, 3, 1, 0, constitutive=2)
+    for y in (1, 2):
+        m.split(-1, y, 2, y)
+    m.delete(0, 1, 1, 2)
+    m.fix(0, 1, 0, 1)
+    m.change(0, 1, 2, 3, type="fdef")
+    points = [(0.5, 2.5), (0.0, 2.0), (0.0, 3.0), (1.0, 3.0), (1.0, 2.0)]  # numbered from the last one
+    m.generate(0, 1, 2, 3, "manual", points, [(5, 4, 3), (5, 3, 2), (5, 2, 1), (5, 1, 4)], mixed=mixed)
+    m.boundary(-0.1, 1.1, 2.9, 3.1, yvel=-0.002)
+    m.boundary(-0.1, 1.1, 1.9, 2.1, yvel=0.0)
+    m.damping(1.0, 200.0, "mass")
+    return m
+
+
+def size(m: Model) -> tuple[float, float]:
+    """Height and area of the square: its corners are the grid-points with a block corner, clockwise."""
+    points = m.table("gridpoint")
+    x, y = (points[points["KCOR"] > 0][name] for name in ("KXG", "KYG"))
+    return float(np.ptp(y)), abs(float(np.sum(x * np.roll(y, 1) - y * np.roll(x, 1)))) / 2
+
+
+@pytest.mark.parametrize("psi", [0.0, 15.0])
+@pytest.mark.parametrize("mixed", [False, True])
+def test_zones_yield_under_a_plate(psi: float, mixed: bool) -> None:
+    """Unconfined strength 2 c sqrt(N), zones on the shear limit (of a pair, the mean of two that share their
+    pressure), and an area that grows as sin psi tells:
+
+        dA/A = e11 + e22 = sin psi (e11 - e22), so that  ln A = -2 sin psi/(1 - sin psi) ln H
+
+    The sides are pushed outwards against mass damping: a little more is borne than by zones at rest.
+    """
+    m = pressed(psi, mixed)
+    n, unconfined = 3.0, 2 * 2e5 * 3.0**0.5
+    m.cycle(2500)
+    one = size(m)
+    m.cycle(2500)
+    two = size(m)
+    zones = m.table("zone")
+    mean, half = (zones["KZS11"] + zones["KZS22"]) / 2, (zones["KZS11"] - zones["KZS22"]) / 2
+    radius = np.hypot(half, zones["KZS12"])
+    beyond = n * (mean + radius) - unconfined - (mean - radius)
+    assert beyond[::2] + beyond[1::2] == pytest.approx(0, abs=1e-9 * unconfined)
+    assert mixed or beyond == pytest.approx(0, abs=1e-9 * unconfined)
+    assert -zones["KZS22"].mean() == pytest.approx(unconfined, rel=0.01)
+    shrunk, grown = np.log(two[0] / one[0]), np.log(two[1] / one[1])
+    s = sin(radians(psi))
+    assert shrunk < -1e-4
+    assert grown == pytest.approx(-2 * s / (1 - s) * shrunk, abs=0.01 * abs(shrunk))
+    sound(m)
+
+
 PROBE = """
 from mechanics import block
 from test_mechanics_laws import resting

@@ -35,6 +35,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.model import RESTART_FILE, Model
+from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal
 
@@ -42,7 +43,7 @@ BATCH = 250  # cases to a process
 FIRST_CASE, NEXT_CASE = 600.0, 60.0  # seconds of silence after which a process hangs; the first case compiles
 MOST_CYCLES = 20
 MOST_COMMANDS = 40
-UNTIDY = 15  # the error that leaves blocks deeper in each other than any contact can be
+UNTIDY = (15, 32)  # the errors that leave blocks deeper in each other than any contact can be
 Rng = np.random.Generator
 
 NUMBERS = [
@@ -70,8 +71,8 @@ NUMBERS = [
 ]
 REALS = [0.0, 1.0, -1.0, 1e-30, 1e30, np.nan, np.inf, -np.inf]
 START = """START
-PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
-PROP MAT=2 DENS=1000 KN=2E8 KS=1E8 F=0
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5 BULK=1E9 G=6E8
+PROP MAT=2 DENS=1000 KN=2E8 KS=1E8 F=0 BULK=2E8 G=1E8
 BLOCK 0,0 0,4 6,4 6,0
 SPLIT -1 1 7 1
 SPLIT -1 2 7 2
@@ -79,12 +80,20 @@ SPLIT 2 1 2 4
 SPLIT 4 1 4 4
 FIX 0 6 0 1
 GRAVITY 0 -10""".splitlines()
+SOFT = """CHANGE 0 6 2 4 SDEF
+CHANGE 0 2 1 2 FDEF
+GENERATE 0 2 1 2 MANUAL GRIDPOINTS 1,1.5 0,2 0,1 2,1 2,2 ZONES 1,2,5 2,3,5 3,4,5 4,1,5
+BOUNDARY -1 0.1 0 5 XVEL=0""".splitlines()
 
 
 class Tame(Model):
     """A model that cycles a little only, and keeps its files in its folder and its pictures to itself."""
 
     damaged = False  # an RSET was obeyed
+
+    def __init__(self, build: str, mtop: int | None, out: Path) -> None:
+        super().__init__(build, mtop, out)
+        self._plots = Unseen(self.out, self.name)
 
     def cycle(self, n: int) -> int:
         return super().cycle(min(n, MOST_CYCLES))
@@ -99,10 +108,13 @@ class Tame(Model):
         super().rset(v, ia, ioff)
         self.damaged = True
 
-    def plot(
-        self, n: int = 0, contacts: bool = False, domains: bool = False, addresses: bool = False
-    ) -> None:
-        self._ready()
+
+class Unseen(Plots):
+    """Pictures that are taken but not drawn."""
+
+    def close(self) -> list[Path]:
+        self.frame = None
+        return []
 
 
 # ---- decks
@@ -123,7 +135,8 @@ def command(rng: Rng) -> str:
     words += [number(rng) for _ in entry.optional.split() if rng.random() < 0.5]
     for word in entry.words:
         if rng.random() < 0.4:
-            words += [word.keyword, *(number(rng) for _ in word.form.split()[1:])]
+            values = word.values.split() * (int(rng.integers(1, 4)) if word.repeated else 1)
+            words += [word.keyword, *(number(rng) for _ in values)]
     for _ in range(int(rng.integers(0, 6)) if entry.list else 0):
         words += [number(rng) for _ in entry.list.split()]
     return " ".join([keyword, *words])
@@ -161,6 +174,32 @@ def likely(rng: Rng) -> str:
     )
 
 
+def soft(rng: Rng) -> str:
+    """A command for deformable blocks or boundaries that has a fair chance to be obeyed."""
+    a, b, c, d = (f"{x:.3g}" for x in rng.uniform(-1, 7, 4))
+    x, y, high = 2 * int(rng.integers(3)), *((1, 1) if rng.random() < 0.5 else (2, 2))
+    points = f"{x + 1},{y + high / 2} {x},{y + high} {x},{y} {x + 2},{y} {x + 2},{y + high}"
+    zones = "ZONES 1,2,5 2,3,5 3,4,5 4,1,5"
+    place = f"{x} {x + 2} {y} {y + high}"
+    return str(
+        rng.choice(
+            [
+                f"CHANGE {place} {rng.choice(['SDEF', 'FDEF', 'RIGID'])}",
+                f"CHANGE {place} FDEF\nGENERATE {place} MANUAL GRIDPOINTS {points} {zones}",
+                f"GENERATE {place} MANUAL GRIDPOINTS {points} {zones} MIXED",
+                f"GENERATE {place} AUTOMATIC EDGE {abs(float(a)) + 0.2:.3g}",
+                f"BOUNDARY {a} {c} {b} {d} {rng.choice(['XVEL', 'YVEL', 'XFORCE', 'YFORCE'])}={a}",
+                f"BOUNDARY -1 7 {a} {c} STRESS {b}E5 0 {d}E5 SINE 10 1",
+                f"BOUNDARY -1 {a} -1 5 {rng.choice(['VISCOUS', 'FREE', 'XVEL=1 FUNCTION 1'])}",
+                f"INSITU 0 6 0 4 {a}E5 {b}E4 {c}E5",
+                f"FUNCTION 1 0 0 {abs(float(a)):.3g} {b}",
+                "PRINT G Z BO",
+                "PLOT 0 STRESSES PRESSURE VELOCITIES",
+            ]
+        )
+    )
+
+
 def mangle(rng: Rng, line: str) -> str:
     """`line` with a token swapped, lost, doubled or replaced, cut short, or with a stray character."""
     tokens = line.split()
@@ -190,9 +229,11 @@ def deck(rng: Rng) -> str:
     if kind < 0.03:
         return rng.bytes(int(rng.integers(400))).decode("utf-8", errors="replace")
     lines = ["START"] if kind < 0.2 else list(START)
-    kinds: list[Callable[[Rng], str]] = [command] if kind < 0.3 else [likely, likely, likely, likely, command]
+    kinds: list[Callable[[Rng], str]] = [command] if kind < 0.3 else [*[likely] * 4, soft, command]
     if kind > 0.8:
         kinds.append(poke)
+    if kind > 0.3 and rng.random() < 0.3:
+        lines += SOFT
     lines += [kinds[int(rng.integers(len(kinds)))](rng) for _ in range(int(rng.integers(1, MOST_COMMANDS)))]
     if rng.random() < 0.4:
         for k in rng.integers(0, len(lines), int(rng.integers(1, 4))):
@@ -210,7 +251,7 @@ def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
     (folder / RESTART_FILE).unlink(missing_ok=True)
     text = io.StringIO(deck(rng), newline=None)
     build = str(rng.choice(list(ALL_SCHEMES))) if rng.random() < 0.5 else DEFAULT_SCHEME
-    model = Tame(build, int(rng.integers(1, 4000)) if rng.random() < 0.1 else None, out=folder)
+    model = Tame(build, int(rng.integers(1, 4000)) if rng.random() < 0.1 else None, folder)
     monitor = Monitor(model, io.StringIO())
     stubborn = rng.random() < 0.7
     end = 0
@@ -219,13 +260,13 @@ def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
             monitor.run(text, "fuzz")
         for statement in statements(text, "fuzz"):
             end = obey(monitor, statement) or end
-            if end == UNTIDY or monitor.ended:
+            if end in UNTIDY or monitor.ended:
                 break
     except UdecError as error:
         end = numbered(error)
     if model.damaged or model.h.ci[MFREE] == 1:
         return end, ""
-    return end, unsound(model, check_links if end == UNTIDY else check)
+    return end, unsound(model, check_links if end in UNTIDY else check)
 
 
 def obey(monitor: Monitor, statement: Statement) -> int:
@@ -247,11 +288,16 @@ def numbered(error: UdecError) -> int:
 
 
 def bases(folder: Path) -> list[bytes]:
-    """Restart files to be mutated: before and after some cycles, and in another word scheme."""
+    """Restart files to be mutated: before and after cycles, in another word scheme, with soft blocks."""
     found = []
-    for build, cycles in (("i32r64", 0), ("i32r64", 30), ("i16r32", 0)):
+    for build, lines, cycles in (
+        ("i32r64", START, 0),
+        ("i32r64", START, 30),
+        ("i16r32", START, 0),
+        ("i32r64", START + SOFT, 30),
+    ):
         model = Model(build, out=folder)
-        model.run("\n".join(START))
+        model.run("\n".join(lines))
         if cycles:
             model.cycle(cycles)
         found.append(model.save("base.h5").read_bytes())
@@ -309,7 +355,7 @@ def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
             damaged(rng, path, base)
         except UdecError as error:
             return numbered(error), ""
-    model = Tame(out=folder)
+    model = Tame(DEFAULT_SCHEME, None, folder)
     end = 0
     try:
         model.restart()

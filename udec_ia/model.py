@@ -39,7 +39,7 @@ from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.split import Boxes, split
-from udec_ia.ops.timestep import instability
+from udec_ia.ops.timestep import describe, instability
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
 
 if TYPE_CHECKING:
@@ -435,6 +435,10 @@ class Model:
         if done > 0:
             note_cached(self.array.scheme.name)
         return done
+
+    def step_limits(self) -> str:
+        """One line: the time-step of the last CYCLE, its shares of estimate and bound, what sets these."""
+        return describe(self.array)
 
     def _judge_step(self) -> None:
         """Tell if stiffness damping may make the time-step unstable, once for each damping and step."""

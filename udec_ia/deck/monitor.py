@@ -21,7 +21,6 @@ from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.deck.reference import explain, summary
 from udec_ia.errors import UdecError
-from udec_ia.ops.timestep import describe
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
@@ -85,7 +84,7 @@ class Monitor:
         if name in COUNTED and isinstance(result, int):
             self._write(counted(name, result, self.model))
         if name == "cycle":
-            self._write(f" CYCLE: {describe(self.model.array)}")
+            self._write(f" CYCLE: {self.model.step_limits()}")
         self._show(result)
         self.model.deck_log += [
             line.shown for line in dict.fromkeys(token.line for token in statement.tokens)

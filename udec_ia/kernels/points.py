@@ -88,6 +88,8 @@ def force_soft(h: Memory, ib: int, ic: int, fx: float, fy: float, x: float, y: f
         return
     ip = corner_of(h, ib, ic)
     ig = iget(h, ip, KGP)
+    if ig == 0:  # until GENERATE divides the block
+        return
     if on_arc(h, ib, ic):
         putfdf(h, ig, fx, fy)
         return

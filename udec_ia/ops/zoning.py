@@ -237,7 +237,7 @@ def _clockwise(places: list[Place], triples: Sequence[Triple]) -> list[Triple]:
         a, b, c = places[i], places[j], places[k]
         turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
         if abs(turn) <= 1e-6 * ((b.x - a.x) ** 2 + (b.y - a.y) ** 2 + (c.x - a.x) ** 2 + (c.y - a.y) ** 2):
-            raise UdecError(33, f"zone {number} ({triple[0]}, {triple[1]}, {triple[2]}) has no area")
+            raise _no_cover(f"zone {number} ({triple[0]}, {triple[1]}, {triple[2]}) has no area")
         zones.append((i, j, k) if turn < 0 else (i, k, j))
     return zones
 
@@ -249,22 +249,27 @@ def _check_cover(outline: Outline, places: list[Place], boundary: list[int], zon
         for side in ((i, j), (j, k), (k, i)):
             if side in sides:
                 what = f"zones {sides[side]} and {number} lie on the same side of grid-points"
-                raise UdecError(33, f"{what} {side[0] + 1} and {side[1] + 1}")
+                raise _no_cover(f"{what} {side[0] + 1} and {side[1] + 1}")
             sides[side] = number
     outer = set(zip(boundary, boundary[1:] + boundary[:1], strict=True))
     for i, j in outer:
         if (i, j) not in sides:
-            raise UdecError(33, f"no zone stands on the edge between grid-points {i + 1} and {j + 1}")
+            raise _no_cover(f"no zone stands on the edge between grid-points {i + 1} and {j + 1}")
     for (i, j), number in sides.items():
         if (j, i) not in sides and (i, j) not in outer:
-            raise UdecError(33, f"zone {number} has no neighbour over grid-points {i + 1} and {j + 1}")
+            raise _no_cover(f"zone {number} has no neighbour over grid-points {i + 1} and {j + 1}")
     used = {row for zone in zones for row in zone}
     for row in range(len(places)):
         if row not in used:
-            raise UdecError(33, f"grid-point {row + 1} belongs to no zone")
+            raise _no_cover(f"grid-point {row + 1} belongs to no zone")
     total = sum(_area(places, zone) for zone in zones)
     if abs(total - outline.area) > 1e-6 * outline.area:
-        raise UdecError(33, f"the zones have the area {total:g}, the block {outline.area:g}")
+        raise _no_cover(f"the zones have the area {total:g}, the block {outline.area:g}")
+
+
+def _no_cover(what: str) -> UdecError:
+    """The error of zones that do not fill their block."""
+    return UdecError(33, what, parameter="zones")
 
 
 def _area(places: list[Place], zone: Triple) -> float:
