@@ -4,10 +4,13 @@ Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stif
 simply-deformable blocks and the grid-points (kernels.timestep). It is only approximate: a mass on several
 springs has a shorter period than on one.
 
-Bound: 2 min sqrt(m_i / sum_j |K_ij|), the row sums of the whole stiffness matrix over all degrees of freedom
-(Gershgorin). No mode is faster. A contact's stiffness is the greater of KN and KS in every direction.
+Bound: 2 min sqrt(m_i / sum_j |K_ij|), with the row sums of the whole stiffness matrix over all degrees of
+freedom (Gershgorin). No mode is faster. A contact's stiffness is the greater of KN and KS in every direction.
 Degrees of freedom are x and y of blocks and grid-points, the rotation of a block and the three strains of a
 simply-deformable one times its radius of gyration. What is fixed has none.
+
+A viscous boundary takes the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
+negative eigenvalue, so that with w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from offsets.generated import (
     ALAM2,
     BETA,
     FRAC,
+    IBNPNT,
     IBPNT,
     ICPNT,
     KB,
@@ -51,6 +55,13 @@ from offsets.generated import (
     KSJ11,
     KSJ12,
     KSJ22,
+    KU,
+    KUB,
+    KUCXX,
+    KUCXY,
+    KUCYY,
+    KUG,
+    KUP,
     KX,
     KXC,
     KXG,
@@ -97,6 +108,7 @@ class _Rows:
         words = int(h.ci[MFREE]) + 1
         self.sum = np.zeros((words, DOFS))
         self.mass = np.full((words, DOFS), np.inf)
+        self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
         self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
         self.length = np.ones(words)  # radius of gyration of a block
         blocks = _addresses(h, int(h.ci[IBPNT]), KB)
@@ -182,33 +194,69 @@ class _Rows:
         blocks, corners = _ints(h, contacts, kb), _ints(h, contacts, kp)
         x, y = _reals(h, contacts, KXC), _reals(h, contacts, KYC)
         meshed = self.kind[blocks] == MFDEF
-        rx, ry = (np.abs(p - _reals(h, blocks, k)) / self.length[blocks] for p, k in ((x, KX), (y, KY)))
-        one, zero = np.ones_like(rx), np.zeros_like(rx)
-        body = np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
+        body = self._body(blocks, x, y)
         before = _ints(h, corners, KR)
         xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
         dx, dy = _reals(h, corners, KXP) - xa, _reals(h, corners, KYP) - ya
         part = np.clip(((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy), 0, 1)
         part = np.where(np.isin(_ints(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
-        point = np.zeros_like(body)
-        point[0, :, 0] = point[1, :, 1] = 1
+        point = _point(len(body[0]))
         here = np.where(meshed, _ints(h, corners, KGP), blocks)
         there = np.where(meshed, _ints(h, before, KGP), 0)
         first = np.where(meshed[:, None], point * part[:, None], body)
         second = np.where(meshed[:, None], point * (1 - part)[:, None], 0.0)
         return [(here, first), (there, second)]
 
+    def _body(self, blocks: Array, x: Array, y: Array) -> Array:
+        """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
+        rx, ry = (np.abs(p - _reals(self.h, blocks, k)) / self.length[blocks] for p, k in ((x, KX), (y, KY)))
+        one, zero = np.ones_like(rx), np.zeros_like(rx)
+        return np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
+
+    def add_dashpots(self) -> None:
+        """The dashpots of all viscous boundaries."""
+        h = self.h
+        bounds = _addresses(h, int(h.ci[IBNPNT]), KU)
+        cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
+        blocks, points, corners = (_ints(h, bounds, k) for k in (KUB, KUG, KUP))
+        before = _ints(h, corners, KR)
+        x, y = (
+            np.where(corners > 0, (_reals(h, corners, kp) + _reals(h, before, kp)) / 2, _reals(h, blocks, k))
+            for kp, k in ((KXP, KX), (KYP, KY))
+        )
+        at = np.where(points > 0, points, blocks)
+        share = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
+        total = (share * self.free[at]).sum(axis=2)
+        for axis, (along, across) in enumerate(((cxx, cxy), (cyy, cxy))):
+            rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
+            np.add.at(self.drag, at, rows)
+
     def limit(self) -> Limit:
         """The bound, and who sets it."""
-        ratio = np.where((self.free > 0) & (self.sum > 0), self.mass / np.maximum(self.sum, 1e-300), np.inf)
-        at = int(ratio.min(axis=1).argmin())
-        return Limit(2 * math.sqrt(float(ratio[at].min())), at)
+        rate = _rate(self.sum / self.mass, self.drag / self.mass) * (self.free > 0)
+        at = int(rate.max(axis=1).argmax())
+        fastest = float(rate[at].max())
+        return Limit(2 / fastest if fastest else math.inf, at)
+
+
+def _point(n: int) -> Array:
+    """How far a unit of each degree of freedom of a grid-point moves it, shape (2, n, DOFS)."""
+    moves = np.zeros((2, n, DOFS))
+    moves[0, :, 0] = moves[1, :, 1] = 1
+    return moves
+
+
+def _rate(stiffness: Array, drag: Array) -> Array:
+    """2 over the greatest stable step (1/s), of stiffness over mass and drag over mass."""
+    return np.sqrt(stiffness + drag * drag / 4) + drag / 2
 
 
 def bound(array: MainArray) -> Limit:
     """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
     rows = _Rows(array.h)
     rows.add_contacts()
+    if array.h.ci[IBNPNT]:
+        rows.add_dashpots()
     return rows.limit()
 
 
@@ -220,12 +268,31 @@ def estimate(array: MainArray) -> Limit:
         m = iget(h, massless, KMAT)
         detail = f"block@{massless} has material {m}, whose density is not set"
         raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
-    ratio = float(mass) / _stiffness(h)
+    stiffness = np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype)
+    joints = _stiffness(h)
+    ratio = float(mass) / joints
     if h.ci[NSOFT]:
-        least, soft = soft_step(h, np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype))
+        least, soft = soft_step(h, stiffness)
         if float(least) < ratio:
             ratio, at = float(least), soft
-    return Limit(2 * math.sqrt(ratio), int(at))
+    limit = Limit(2 * math.sqrt(ratio), int(at))
+    return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
+
+
+def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
+    """The least step of what viscous boundaries hold; stiffness: of the grid-points, by address."""
+    bounds = _addresses(h, int(h.ci[IBNPNT]), KU)
+    if not len(bounds):
+        return Limit(math.inf, 0)
+    blocks, points = _ints(h, bounds, KUB), _ints(h, bounds, KUG)
+    at = np.where(points > 0, points, blocks)
+    drag = np.zeros_like(stiffness, dtype=float)
+    cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
+    np.add.at(drag, at, np.maximum(cxx, cyy) + cxy)
+    mass = np.where(points > 0, _reals(h, points, KGPM), _reals(h, blocks, KBM))
+    rate = _rate(np.where(points > 0, stiffness[at], joints) / mass, drag[at] / mass) * (drag[at] > 0)
+    fastest = int(rate.argmax())
+    return Limit(2 / float(rate[fastest]) if rate[fastest] else math.inf, int(at[fastest]))
 
 
 def _stiffness(h: Memory) -> float:

@@ -1,0 +1,47 @@
+"""Meshes of fully-deformable blocks for the tests: structured grids of quadrilaterals, each cut in two."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia import Model
+
+
+def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
+    """Nodes of a rectangle, shape (ny + 1, nx + 1, 2)."""
+    return np.stack(np.meshgrid(np.linspace(x0, x1, nx + 1), np.linspace(y0, y1, ny + 1)), axis=-1)
+
+
+def quarter_ring(inner: float, outer: float, around: int, across: int) -> Any:
+    """Nodes of a quarter of a ring about the origin, x and y positive; rings grow geometrically."""
+    angle = np.linspace(np.pi / 2, 0.0, around + 1)
+    radius = np.geomspace(inner, outer, across + 1)
+    nodes = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)[None]
+    nodes[np.abs(nodes) < 1e-12 * outer] = 0.0
+    return nodes
+
+
+def outline(nodes: Any) -> list[float]:
+    """Corners of a block around the nodes: the four sides with all their nodes, clockwise: x, y, x, y ..."""
+    sides = [nodes[-1, :-1], nodes[::-1, -1][:-1], nodes[0, ::-1][:-1], nodes[:-1, 0]]
+    loop = np.concatenate(sides)
+    return [float(v) for v in loop.ravel()]
+
+
+def generate(model: Model, nodes: Any, mixed: bool = False) -> int:
+    """GENERATE for the block under the nodes; the diagonals of neighbouring quadrilaterals alternate."""
+    ny, nx = nodes.shape[0] - 1, nodes.shape[1] - 1
+    points = [(float(x), float(y)) for x, y in nodes.reshape(-1, 2)]
+
+    def number(i: int, j: int) -> int:  # grid-points are numbered from the last one
+        return len(points) - (j * (nx + 1) + i)
+
+    zones = []
+    for j in range(ny):
+        for i in range(nx):
+            a, b, c, d = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+            zones += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
+    low, high = nodes.reshape(-1, 2).min(axis=0), nodes.reshape(-1, 2).max(axis=0)
+    return model.generate(low[0], high[0], low[1], high[1], "manual", points, zones, mixed=mixed)
