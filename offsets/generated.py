@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "3ed881cc4f3c1e0bcbb7db8ace4d04f90e3201e50f4734cc880234b87bc4a04a"
+DIGEST = "e79fcf0ab0fe7afdafa7831cfe2fd67b27c525a80f8943b43d10fbeefde6e9c1"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -11,6 +11,7 @@ MFDEF = 3  # fully-deformable block
 MCOR = 4  # corner
 MCON = 5  # contact
 MDOM = 6  # domain
+MHIS = 7  # history
 MBND = 8  # boundary condition
 MSIG = 9  # signal
 
@@ -177,6 +178,15 @@ KTPT = (2, 2, 2)  # real: time
 KTPF = (3, 3, 3)  # real: factor
 NVTP = (3, 6, 12)
 
+# one history: a number that is recorded every so many cycles (page ours)
+KH = (1, 1, 1)  # int: next history in history list; 0 at the end of the list
+KHB = (2, 2, 2)  # int: previous history in history list; 0 at the head of the list
+KHG = (3, 3, 3)  # int: group whose field is recorded; 0 when it has gone, or for no group
+KHK = (4, 4, 4)  # int: kind of that group, as it comes in this table; 0 common block, -1 whole model
+KHF = (5, 5, 5)  # int: number of the field in its group, counted from 0
+KHN = (6, 6, 6)  # int: cycles from one recording to the next
+NVHI = (7, 8, 8)
+
 # Integers of the common block: index of the variable, or of its first element
 JUNK = 0  # list of spare memory groups; 0 when there are none
 MFREE = 1  # first unused memory address
@@ -190,22 +200,23 @@ IDPNT = 8  # list of domains; 0 when there are none
 IODPNT = 9  # outer domain; 0 when there are no blocks
 IBNPNT = 10  # list of boundary conditions; 0 when there are none
 ISGPNT = 11  # list of signals; 0 when there are none
-NBLK = 12  # number of blocks
-NCON = 13  # number of contacts
-NDOM = 14  # number of domains
-NVIRT = 15  # number of virtual contacts among them
-NSOFT = 16  # number of deformable blocks
-NMADE = 17  # contacts made so far
-NBROKE = 18  # contacts broken so far
-NSHORT = 19  # edges that hold little more than their two roundings
-LSAFE = 20  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LROUND = 21  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 22  # address of the group that raised error NERR; 0 when there is none
-NWANT = 23  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 24  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 25  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 26  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 27
+IHPNT = 12  # list of histories; 0 when there are none
+NBLK = 13  # number of blocks
+NCON = 14  # number of contacts
+NDOM = 15  # number of domains
+NVIRT = 16  # number of virtual contacts among them
+NSOFT = 17  # number of deformable blocks
+NMADE = 18  # contacts made so far
+NBROKE = 19  # contacts broken so far
+NSHORT = 20  # edges that hold little more than their two roundings
+LSAFE = 21  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LROUND = 22  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 23  # address of the group that raised error NERR; 0 when there is none
+NWANT = 24  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 25  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 26  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 27  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 28
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

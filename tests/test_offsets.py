@@ -112,7 +112,7 @@ def test_common_block_indices_do_not_overlap() -> None:
 
 
 def test_pointers_name_a_kind_of_group() -> None:
-    kinds = {group.name for group in TABLE.groups} | {"item", "soft"}
+    kinds = {group.name for group in TABLE.groups} | {"item", "soft", "any"}
     for fields in (*(group.fields for group in TABLE.groups), TABLE.common):
         for field in fields:
             assert field.target is None or field.target in kinds, field.name

@@ -96,7 +96,7 @@ def test_other_versions(good: Path) -> None:
     good.write_bytes(seal(memoryview(image), (2, 7)) + image)
     assert refusal(good) == "has format 2.7, and this program reads format 1"
     assert refusal(good, info) == "has format 2.7, and this program reads format 1"
-    good.write_bytes(seal(memoryview(image), (1, 2)) + image)
+    good.write_bytes(seal(memoryview(image), (1, 8)) + image)
     assert refusal(good) == "is damaged: its first lines name another format version than the rest"
 
 

@@ -12,7 +12,8 @@ from __future__ import annotations
 import io
 import logging
 import operator
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
@@ -20,12 +21,13 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
 import numba
 import numpy as np
 
-from offsets.generated import BETA, DTOL, MCTOT, NBLK, NCON, TDEL, TIME
+from offsets.generated import BETA, DTOL, IHPNT, MCTOT, NBLK, NCON, TDEL, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import is_cached, note_cached
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.kernels.rest import force_ratio
 from udec_ia.ops import settings
 from udec_ia.ops.arrange import arrange
 from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
@@ -38,9 +40,12 @@ from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.rounding import round_corners
+from udec_ia.ops.soft import soft
 from udec_ia.ops.split import Boxes, split
 from udec_ia.ops.timestep import describe, instability
+from udec_ia.ops.watch import Series, Solution, Watch
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
+from udec_ia.recorder import Recorder
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -50,6 +55,7 @@ log = logging.getLogger("udec_ia")
 announced: set[str] = set()  # word schemes whose compilation this process has announced
 
 RESTART_FILE = "restart.h5"
+SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 
@@ -58,8 +64,8 @@ class Model:
 
     build: word scheme, "i16r32", "i32r32", "i16r64", "i32r64" or "i64r64".
     mtop: size of IA() in words, fixed as in 1980; None lets the array grow as needed.
-    out: folder for plots, and for restart files whose names are given in a deck or not at all; made when the
-    first file is written.
+    out: folder for plots and histories, and for restart files whose names are given in a deck or not at all;
+    made when the first file is written.
     constitutive: laws of constitutive numbers 2 to 5 (udec_ia.laws): a file, the name of a law that comes
     with the program, a mapping from names to functions, or several of these; error 34 if one cannot be used.
     tell: takes what CYCLE has to warn of.
@@ -82,7 +88,8 @@ class Model:
         self.animate = False
         self.tell: Callable[[str], None] = log.warning
         self.started = False
-        self._saved: list[Path] = []
+        self._files: list[Path] = []
+        self._recorder = Recorder()
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
@@ -103,6 +110,7 @@ class Model:
         self.array = MainArray(self.array.scheme, self.mtop)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
         self.laws.note({})
+        self._recorder.series = []
         self._boxes.forget()
         self._touched = False
         self._judged = (0.0, 0.0)
@@ -116,9 +124,8 @@ class Model:
         from udec_ia.restart import save
 
         target = self.out / RESTART_FILE if path is None else path
-        written = save(self.array, target, self.deck_log, self.laws.record())
-        if written not in self._saved:
-            self._saved.append(written)
+        written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
+        self._note([written])
         return written
 
     def restart(self, path: str | Path | None = None) -> None:
@@ -126,9 +133,12 @@ class Model:
 
         Error 29 if it cannot be used; the model is then as it was.
         """
-        from udec_ia.restart import load
+        from udec_ia.restart import load, recall
 
-        self.array, self.deck_log, laws = load(self.out / RESTART_FILE if path is None else path)
+        source = self.out / RESTART_FILE if path is None else path
+        array, deck_log, laws = load(source)
+        self._recorder.series = recall(source, array) if array.h.ci[IHPNT] else []
+        self.array, self.deck_log = array, deck_log
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
@@ -148,7 +158,7 @@ class Model:
         from udec_ia.inspect.walk import Unsound
         from udec_ia.output.progress import summary
 
-        files = list(self._saved)
+        files = list(self._files)
         if self._plots is not None:
             files += self._plots.close()
         if self._animation is not None:
@@ -167,6 +177,7 @@ class Model:
             float(forces.max(initial=0)),
             files,
             perf_counter() - self._clock,
+            [one for one in self._recorder.solutions if not one],
         )
 
     def _ready(self, sound: bool = True) -> None:
@@ -414,10 +425,28 @@ class Model:
 
     def cycle(self, n: int) -> int:
         """CYCLE: n calculation cycles. Returns how many were completed."""
-        from udec_ia.output.report import Report
-
         self._ready()
         not_negative(self.array, n=whole(n=n))
+        return self._cycle(n, self._recorder.watch(self.array))
+
+    def solve(self, ratio: float, limit: int = SOLVE_LIMIT) -> Solution:
+        """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
+
+        The ratio: greatest unbalanced force over the mean of those that are carried (kernels.rest); it is
+        looked at every 10 cycles. What is returned is true if the ratio was reached.
+        """
+        self._ready()
+        not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
+        watch = Watch(self.array, self._recorder.series, ratio)
+        cycles = self._cycle(limit, watch)
+        solution = Solution(watch.reached, ratio, float(force_ratio(self.h, soft(self.array))), cycles)
+        self._recorder.solutions.append(solution)
+        return solution
+
+    def _cycle(self, n: int, watch: Watch | None) -> int:
+        """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were."""
+        from udec_ia.output.report import Report
+
         self._boxes.forget()
         moved = arrange(self.array)
         if moved is not None and self._plots is not None:
@@ -429,11 +458,16 @@ class Model:
         report = Report(lambda: self.h, n, self.progress, self._animation)
         try:
             every = max(1, n // PICTURES) if self.animate else None
-            done = cycle(self.array, n, report, every, self._judge_step, self.laws)
+            done = cycle(self.array, n, report, every, self._judge_step, self.laws, watch)
+        except BaseException:
+            with suppress(UdecError):  # of two errors the first one counts
+                self._keep(watch)
+            raise
         finally:
             report.close()
         if done > 0:
             note_cached(self.array.scheme.name)
+        self._keep(watch)
         return done
 
     def step_limits(self) -> str:
@@ -447,6 +481,33 @@ class Model:
             self._judged = judged
             if text := instability(self.array):
                 self.tell(text)
+
+    def _keep(self, watch: Watch | None) -> None:
+        self._note(self._recorder.keep(watch, self.out / f"{self.name}-history", self.tell))
+
+    def _note(self, files: Iterable[Path]) -> None:
+        """Have STOP name `files`, each once."""
+        self._files += [path for path in files if path not in self._files]
+
+    def history(
+        self,
+        n: int,
+        field: str,
+        address: int | None = None,
+        at: Sequence[tuple[float, float]] | Sequence[float] = (),
+    ) -> list[Series]:
+        """HISTORY: record the number called `field` every `n` cycles, at those that are multiples of `n`.
+
+        field: a name of the field table, of a group or the common block, or a quantity of the whole model. A
+        field of a group needs the address of a group of its kind, or at: a point (x, y) or several; the group
+        nearest to each is taken. Returns the histories; `numbers` of one are what it has recorded.
+        """
+        self._ready()
+        return self._recorder.add(self.array, n, field, address, at)
+
+    def histories(self) -> list[Series]:
+        """All histories, in the order of their numbers."""
+        return list(self._recorder.series)
 
     def run(self, text_or_path: str | Path, stream: TextIO | None = None) -> str | None:
         """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned.
@@ -474,10 +535,10 @@ class Model:
         return list(check(self.array))
 
     def print(self, *what: str) -> str:
-        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist"."""
+        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "histories"."""
         from udec_ia.output.printout import printout
 
-        return printout(self.h, *(word.lower() for word in what))
+        return printout(self.h, *(word.lower() for word in what), series=self._recorder.series)
 
     def dump(self, n: int, m: int) -> str:
         """DUMP: the words from address n to address m."""
@@ -487,7 +548,7 @@ class Model:
 
     def plot(
         self,
-        n: int = 0,
+        n: int | None = None,
         contacts: bool = False,
         domains: bool = False,
         addresses: bool = False,
@@ -495,15 +556,28 @@ class Model:
         velocities: bool = False,
         displacements: bool = False,
         contour: str = "",
-    ) -> None:
-        """PLOT: start a frame (0) or draw over the last one (1); contour: a key of field.CONTOURS."""
+        history: bool = False,
+    ) -> list[Path] | None:
+        """PLOT: start a frame (0, also if n is left off) or draw over the last one (1).
+
+        contour: a key of field.CONTOURS. With `history`, which stands alone, what was recorded is drawn
+        instead, and the files are returned.
+        """
         from udec_ia.output.plot import Plots, What
 
-        self._ready()
+        what = What(contacts, domains, addresses, stresses, velocities, displacements, contour.lower())
+        if history:
+            if n is not None or what != What():
+                advice = "give PLOT HISTORY for the one, PLOT 0 for the other"
+                raise UdecError(10, "histories are not plotted with blocks", advice, parameter="history")
+            files = self._recorder.plot(self.name, self.out)
+            self._note(files)
+            return files
+
         if self._plots is None:
             self._plots = Plots(self.out, self.name)
-        what = What(contacts, domains, addresses, stresses, velocities, displacements, contour.lower())
-        self._plots.draw(self.h, n, what)
+        self._plots.draw(self.h, n or 0, what)
+        return None
 
 
 def _words(mtop: SupportsIndex) -> int:

@@ -18,6 +18,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
+from udec_ia.ops.recordable import QUANTITIES, recordable
+
+MANY = 20  # choices that are told by the name of their argument, not one by one
 SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
 
 
@@ -99,7 +102,7 @@ class Command:
             if argument == SEVERAL:
                 parts += forms
             else:
-                choice = " | ".join(forms)
+                choice = " | ".join(forms) if len(forms) < MANY else argument
                 parts.append(choice if argument == self.first else f"[{choice}]")
         parts += [f"{self.list} ..."] if self.list else []
         parts += [f"[{self.text}]"] if self.text else []
@@ -109,6 +112,7 @@ class Command:
 MATERIAL = Word("Material", "n")
 CONSTITUTIVE = Word("Constitutive", "m")
 RANGE = "x1 x2 y1 y2"
+FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
     Command(
@@ -231,6 +235,23 @@ COMMANDS = (
         ours="the command",
     ),
     Command(
+        "HIStory",
+        "Record a number every n cycles: a field of a group, by its name in the table of data groups, of the "
+        "group at an address or of those nearest to points; a variable of the common block, such as TIME or "
+        "WFRIC; or a quantity of the whole model: " + ", ".join(QUANTITIES) + ". The numbers go to "
+        "NAME-history.csv and NAME-history.h5 after every CYCLE.",
+        "HISTORY 10 KXD AT 15,25 25,25",
+        numbers="n",
+        words=(
+            *FIELDS,
+            *(Word(keyword, sets="field") for keyword in QUANTITIES),
+            Word("Address", "ia"),
+            Word("AT", "x y", repeated=True),
+        ),
+        first="field",
+        ours="the command",
+    ),
+    Command(
         "INsitu",
         "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2, tension positive; "
         "they grow with x and y by XGrad and YGrad.",
@@ -243,7 +264,8 @@ COMMANDS = (
         "PLot",
         "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
         "contacts with their forces, domains, addresses, principal stresses, velocities, displacements since "
-        "the frame began, and zones coloured by a stress (11, 12, 22), pressure or shear stress.",
+        "the frame began, and zones coloured by a stress (11, 12, 22), pressure or shear stress. HISTORY "
+        "alone plots what was recorded instead.",
         "PLOT 0 CONTACTS",
         optional="n",
         words=(
@@ -254,13 +276,14 @@ COMMANDS = (
             Word("Velocities"),
             Word("DIsplacements"),
             *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
+            Word("HIStory"),
         ),
         ours="the words; n is used in both example runs",
     ),
     Command(
         "Print",
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones, or boundary conditions.",
+        "grid-points, zones, boundary conditions, or what histories have recorded.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(
             Word(keyword, sets=SEVERAL)
@@ -274,6 +297,7 @@ COMMANDS = (
                 "Gridpoints",
                 "Zones",
                 "BOundaries",
+                "HIStories",
             )
         ),
         first=SEVERAL,
@@ -341,6 +365,16 @@ COMMANDS = (
         ours="the name of the file",
     ),
     Command("SCale", "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
+    Command(
+        "SOLve",
+        "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
+        "over the mean of the forces that contacts and zones carry. LIMIT: cycles after which to give up, "
+        "100000 if it is left off.",
+        "SOLVE 1E-3 LIMIT 20000",
+        numbers="ratio",
+        words=(Word("Limit", "n"),),
+        ours="the command",
+    ),
     Command(
         "SPlit",
         "Split the blocks in the path of the line from (x1,y1) to (x2,y2).",

@@ -116,10 +116,14 @@ class Monitor:
             self.model.tell = tell
 
     def _show(self, result: object) -> None:
-        if isinstance(result, str):
-            self._write(result)
-        elif isinstance(result, Path):
+        """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
+        if isinstance(result, Path):
             self._write(f"written: {result}")
+        elif isinstance(result, list):
+            for one in result:
+                self._show(one)
+        elif result is not None and not isinstance(result, int):
+            self._write(str(result))
 
     def _write(self, text: str) -> None:
         self.out.write(text + "\n")

@@ -14,11 +14,14 @@ request never has to search through groups of other sizes:
 
 Word 0 of a junk group: next junk group of the same size, or 0. Word 1: its size. Word 2: first group
 of the next size, or 0; it has a meaning only in the first group of a chain.
+
+Its address may soon be that of another group. So whoever watches a group from outside the map, as a history
+does, is told when the group is given back.
 """
 
 from __future__ import annotations
 
-from offsets.generated import JUNK, MFREE, MTOP, NERR, NWANT
+from offsets.generated import IHPNT, JUNK, KH, KHG, MFREE, MTOP, NERR, NWANT
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.jit import kernel
 
@@ -75,8 +78,19 @@ def find(h: Memory, nv: Offset) -> int:
 
 
 @kernel
+def unwatch(h: Memory, group: int) -> None:
+    """Histories of the group at `group` lose sight of it."""
+    ih = int64(h.ci[IHPNT])
+    while ih != 0:
+        if iget(h, ih, KHG) == group:
+            puti(h, ih, KHG, 0)
+        ih = iget(h, ih, KH)
+
+
+@kernel
 def lose(h: Memory, group: int, nv: Offset) -> None:
     """Give the group of the size `nv` at `group` back to the junk list."""
+    unwatch(h, group)
     n = int64(size_of(h, nv))
     first, before = _chain(h, n)
     if first == 0:

@@ -29,6 +29,7 @@ from udec_ia.inspect.check_geometry import (
     touches,
 )
 from udec_ia.inspect.check_groups import State, Violation, check_pointers
+from udec_ia.inspect.check_history import check_histories
 from udec_ia.inspect.check_map import check_map
 from udec_ia.inspect.check_memory import check_memory
 from udec_ia.inspect.check_place import check_places
@@ -43,6 +44,7 @@ def check_links(array: MainArray) -> list[Violation]:
         check_memory(state)
         check_pointers(state)
         check_codes(state)
+        check_histories(state)
         check_map(state)
     return state.violations()
 
@@ -54,6 +56,7 @@ def check(array: MainArray) -> list[Violation]:
         check_memory(state)
         check_pointers(state)
         check_codes(state)
+        check_histories(state)
         check_map(state)
         check_numbers(state)
         shapes = outlines(state)

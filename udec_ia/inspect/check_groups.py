@@ -28,7 +28,8 @@ FIELDS = {field.name: field for group in TABLE.groups for field in group.fields}
 LISTED = [group.name for group in TABLE.groups if group.list_head]
 KIND_OF_HEAD = {code: kind for kind, codes in HEADS.items() for code in codes}
 KIND_CODE = {group.name: code for code, group in enumerate(TABLE.groups, 1)}
-TARGETS = {**{kind: (kind,) for kind in KIND_CODE}, "item": ("corner", "contact"), "soft": ("sdef", "fdef")}
+TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
+TARGETS |= {"item": ("corner", "contact"), "soft": ("sdef", "fdef"), "any": tuple(KIND_CODE)}
 
 
 def names(kind: str, role: str) -> tuple[str, ...]:

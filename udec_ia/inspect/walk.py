@@ -1,8 +1,8 @@
 """Following the lists of the heap from Python: the three walks that everything else is made of.
 
-The main lists (blocks, contacts, domains), the clockwise list around a block, and the anticlockwise
-loop around a domain. Every walk is bounded and every address is tested before it is used, so that a
-damaged heap ends in Unsound and never in a hang.
+The main lists (blocks, contacts, domains, histories), the clockwise list around a block, and the
+anticlockwise loop around a domain. Every walk is bounded and every address is tested before it is used,
+so that a damaged heap ends in Unsound and never in a hang.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from offsets.generated import (
     IBPNT,
     ICPNT,
     IDPNT,
+    IHPNT,
     ISGPNT,
     KB,
     KB1,
@@ -27,6 +28,7 @@ from offsets.generated import (
     KFG,
     KFZ,
     KG,
+    KH,
     KL,
     KL1,
     KL2,
@@ -41,6 +43,7 @@ from offsets.generated import (
     MDOM,
     MFDEF,
     MFREE,
+    MHIS,
     MRIG,
     MSDEF,
     MSIG,
@@ -50,6 +53,7 @@ from offsets.generated import (
     NVCR,
     NVDO,
     NVGP,
+    NVHI,
     NVSG,
     NVZO,
 )
@@ -62,6 +66,7 @@ LISTS: dict[str, tuple[int, Offset]] = {
     "domain": (IDPNT, KD),
     "bound": (IBNPNT, KU),
     "signal": (ISGPNT, KT),
+    "history": (IHPNT, KH),
 }
 HEADS: dict[str, tuple[int, ...]] = {
     "block": (MRIG, MSDEF, MFDEF),
@@ -70,6 +75,7 @@ HEADS: dict[str, tuple[int, ...]] = {
     "domain": (MDOM,),
     "bound": (MBND,),
     "signal": (MSIG,),
+    "history": (MHIS,),
 }
 SOFT = {MSDEF: "sdef", MFDEF: "fdef"}  # kind of the extension of a block with this head code
 SIZES: dict[str, Offset] = {
@@ -79,6 +85,7 @@ SIZES: dict[str, Offset] = {
     "domain": NVDO,
     "bound": NVBN,
     "signal": NVSG,
+    "history": NVHI,
 }
 
 
@@ -118,7 +125,7 @@ def _bounded(h: Memory, what: str, first: int, step: Callable[[int], int], stop:
 
 
 def groups(h: Memory, kind: str) -> Iterator[int]:
-    """Addresses of all blocks, contacts or domains, in list order."""
+    """Addresses of all blocks, contacts, domains or histories, in list order."""
     index, offset = LISTS[kind]
     first = int(h.ci[index])
     if first == 0:

@@ -1,4 +1,4 @@
-"""What the time-step and the progress line need to know of the whole model, in one walk each."""
+"""What the time-step needs to know of the whole model, in one walk each."""
 
 from __future__ import annotations
 
@@ -7,14 +7,10 @@ import numpy as np
 from offsets.generated import (
     AKN,
     AKS,
-    GRAVX,
-    GRAVY,
     IBPNT,
     ICPNT,
     KB,
     KBFIX,
-    KBFX,
-    KBFY,
     KBM,
     KC,
     KCM,
@@ -57,17 +53,3 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
         most = max(most, max(kn, ks))
         ic = iget(h, ic, KC)
     return most, undefined
-
-
-@kernel
-def unbalanced(h: Memory) -> float:
-    """Greatest resultant of contact forces and weight on a free block."""
-    most = real(h, 0.0)
-    ib = h.ci[IBPNT]
-    while ib != 0:
-        if iget(h, ib, KBFIX) == 0:
-            bm = getr(h, ib, KBM)
-            fx, fy = getr(h, ib, KBFX) + bm * h.cr[GRAVX], getr(h, ib, KBFY) + bm * h.cr[GRAVY]
-            most = max(most, fx * fx + fy * fy)
-        ib = iget(h, ib, KB)
-    return np.sqrt(most)

@@ -114,7 +114,7 @@ def _velocity(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
 
 
 @kernel
-def _push(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
+def push_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
     """Add a force to what condition `iu` acts on."""
     ig, ib = iget(h, iu, KUG), iget(h, iu, KUB)
     putr(h, ib, KBFX, getr(h, ib, KBFX) + fx)
@@ -151,27 +151,37 @@ def _give_velocity(h: Memory, iu: int, factor: float) -> None:
 
 
 @kernel
+def load(h: Memory, iu: int) -> tuple[float, float, float, float, float]:
+    """Force of condition `iu` at the velocities and the signal of now, where it acts, and its power."""
+    half, factor = real(h, 0.5), real(h, 1.0)
+    if iget(h, iu, KUS) != 0:
+        factor = getr(h, iget(h, iu, KUS), KTNOW)
+    ib, ip = iget(h, iu, KUB), iget(h, iu, KUP)
+    x, y = getr(h, ib, KX), getr(h, ib, KY)
+    if ip != 0:
+        ia = iget(h, ip, KR)
+        x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
+    vx, vy = _velocity(h, iu, x, y)
+    cxx, cxy, cyy = getr(h, iu, KUCXX), getr(h, iu, KUCXY), getr(h, iu, KUCYY)
+    fx = getr(h, iu, KUFX) * factor - cxx * vx - cxy * vy
+    fy = getr(h, iu, KUFY) * factor - cxy * vx - cyy * vy
+    return fx, fy, x, y, fx * vx + fy * vy
+
+
+@kernel
 def apply_bounds(h: Memory) -> None:
     """Apply all boundary conditions for the step that begins."""
-    zero, half = real(h, 0.0), real(h, 0.5)
+    zero = real(h, 0.0)
     set_signals(h)
     iu = h.ci[IBNPNT]
     while iu != 0:
-        factor = real(h, 1.0)
-        if iget(h, iu, KUS) != 0:
-            factor = getr(h, iget(h, iu, KUS), KTNOW)
         if iget(h, iu, KUFIX) != 0:
+            factor = real(h, 1.0)
+            if iget(h, iu, KUS) != 0:
+                factor = getr(h, iget(h, iu, KUS), KTNOW)
             _give_velocity(h, iu, factor)
-        ib, ip = iget(h, iu, KUB), iget(h, iu, KUP)
-        x, y = getr(h, ib, KX), getr(h, ib, KY)
-        if ip != 0:
-            ia = iget(h, ip, KR)
-            x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
-        vx, vy = _velocity(h, iu, x, y)
-        cxx, cxy, cyy = getr(h, iu, KUCXX), getr(h, iu, KUCXY), getr(h, iu, KUCYY)
-        fx = getr(h, iu, KUFX) * factor - cxx * vx - cxy * vy
-        fy = getr(h, iu, KUFY) * factor - cxy * vx - cyy * vy
+        fx, fy, x, y, power = load(h, iu)
         if fx != zero or fy != zero:
-            _push(h, iu, fx, fy, x, y)
-            h.cr[WBOUND] += (fx * vx + fy * vy) * h.cr[TDEL]
+            push_load(h, iu, fx, fy, x, y)
+            h.cr[WBOUND] += power * h.cr[TDEL]
         iu = iget(h, iu, KU)

@@ -17,11 +17,13 @@ import numpy as np
 
 from offsets.generated import (
     IBNPNT,
+    IHPNT,
     ISGPNT,
     KBEX,
     KFG,
     KFZ,
     KG,
+    KH,
     KT,
     KTP,
     KTPN,
@@ -90,7 +92,8 @@ def of_deformable_blocks(h: Memory, blocks: Any) -> dict[str, Any]:
 
 
 def beside_the_map(h: Memory) -> dict[str, Any]:
-    """Boundary conditions and signals as they stand in their lists."""
+    """Boundary conditions, signals and histories as they stand in their lists."""
     signals = list(chain(h, int(h.ci[ISGPNT]), KT))
     points = [it for signal in signals for it in chain(h, iget(h, signal, KTP), KTPN)]
-    return {"bound": list(chain(h, int(h.ci[IBNPNT]), KU)), "signal": signals, "tabpoint": points}
+    bounds, histories = list(chain(h, int(h.ci[IBNPNT]), KU)), list(chain(h, int(h.ci[IHPNT]), KH))
+    return {"bound": bounds, "signal": signals, "tabpoint": points, "history": histories}

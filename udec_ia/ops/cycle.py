@@ -58,6 +58,7 @@ from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
 from udec_ia.ops.soft import soft
 from udec_ia.ops.timestep import time_step
+from udec_ia.ops.watch import Watch
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -106,12 +107,14 @@ def cycle(
     every: int | None = None,
     prepared: Prepared | None = None,
     laws: LawBook | None = None,
+    watch: Watch | None = None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
     prepared: called before the first cycle, when the time-step is known.
+    watch: records on the way and may end the run before.
     Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
     """
     prepare(array)
@@ -122,11 +125,14 @@ def cycle(
     keep_spare(array)
     array.h.ci[NCYC] = n
     array.h.ci[NERR] = array.h.ci[IERAD] = 0  # a run that was interrupted may have left an error behind
+    if watch is not None:
+        watch.begin()
     done, piece = 0, every or FIRST_PIECE
-    while done < n:
+    while done < n and not (watch is not None and watch.reached):
         start = perf_counter()
-        piece_laws = (bound.blocks, bound.joints)
-        done += int(run_cycles(array.h, min(piece, n - done), soft(array), *piece_laws))
+        most = min(piece, n - done)
+        given = soft(array), bound.blocks, bound.joints
+        done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
         _raise_error(array)
         if report is not None:
             report(done)

@@ -5,9 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from offsets.generated import IBNPNT, NSOFT
+from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 
 
 def soft(array: MainArray) -> Any:
     """None if all blocks are rigid and no condition acts on them: the rest is not compiled then."""
-    return True if array.h.ci[NSOFT] or array.h.ci[IBNPNT] else None
+    return soft_in(array.h)
+
+
+def soft_in(h: Memory) -> Any:
+    """The same of a memory."""
+    return True if h.ci[NSOFT] or h.ci[IBNPNT] else None

@@ -90,6 +90,8 @@ def _pointers(h: Memory, addresses: Any, kind: str) -> list[tuple[Any, str]]:
     offset = lay_out(group, _ratio(h)).offset
     found: list[tuple[Any, str]] = []
     for field in group.fields:
+        if field.target == "any":
+            continue  # what may be of any kind is reached by its own lists
         for i in range(field.count if field.target else 0):
             values = h.ia[addresses + offset[field.name] + i - 1].astype(np.int64)
             if field.target == "soft":  # the owner's head code says what its extension is

@@ -10,15 +10,18 @@ A damaged heap is printed as far as it can be walked, with a line that says wher
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
+
+import numpy as np
 
 import offsets.generated as g
 from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, members, point
+from udec_ia.ops.watch import Series
 
 T = TypeVar("T")
 LINE = 120
@@ -36,6 +39,7 @@ TABLES = {
 }
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
+HISTORIES = "histories"
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
 
@@ -62,14 +66,16 @@ class Column:
         return [line.ljust(self.width) if self.left else line.rjust(self.width) for line in self.lines]
 
 
-def printout(h: Memory, *what: str) -> str:
+def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     """The tables and lists asked for, in the order asked for (PRINT, report I-1).
 
-    what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block) and
-    "dlist" (anticlockwise loop of every domain). Error 7 without any, error 10 for anything else.
+    what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
+    "dlist" (anticlockwise loop of every domain) and "histories" (what `series` have recorded). Error 7
+    without any, error 10 for anything else.
     """
+    known = ", ".join([*TABLES, *LISTS, HISTORIES])
     if not what:
-        raise UdecError(7, "PRINT of what?", f"give one or more of {', '.join([*TABLES, *LISTS])}")
+        raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
     for name in what:
         if name in TABLES:
@@ -78,8 +84,10 @@ def printout(h: Memory, *what: str) -> str:
                 parts += _group_tables(h, "sdef")
         elif name in LISTS:
             parts += _lists(h, LISTS[name])
+        elif name == HISTORIES:
+            parts += _histories(series)
         else:
-            raise UdecError(10, f"PRINT {name}", f"give one or more of {', '.join([*TABLES, *LISTS])}")
+            raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
 
 
@@ -90,6 +98,27 @@ def _state(h: Memory) -> str:
         f"cycle {h.ci[g.MCTOT]}, time {h.cr[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
         f"{h.ci[g.NCON]} contacts{virtual}, {h.ci[g.NDOM]} domains"
     )
+
+
+def _histories(series: Sequence[Series]) -> list[str]:
+    """PRINT HISTORIES: what is recorded, how many numbers there are, and between which they lie."""
+    if not series:
+        return ["No histories"]
+    heads = ("history", "of", "at", "every", "numbers", "least", "greatest", "last", "unit")
+    rows = []
+    for one in series:
+        values = one.numbers[:, 2]
+        known = values[~np.isnan(values)]
+        ends = [known.min(), known.max()] if len(known) else [np.nan, np.nan]
+        what = [f"{one.number}: {one.name}", one.group, one.place, str(one.every), str(len(values))]
+        last = values[-1] if len(values) else np.nan
+        rows.append([*what, *(f"{value:.6g}" for value in (*ends, last)), one.unit])
+    left = (*heads[:3], "unit")
+    columns = [
+        Column(head, "", list(cells), left=head in left)
+        for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
+    ]
+    return _stacked(f"Histories: {len(series)}", columns[0], columns[1:])
 
 
 def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from time import monotonic
 from typing import TextIO
@@ -11,6 +12,8 @@ from rich.live import Live
 from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
+
+from udec_ia.ops.watch import Solution
 
 LINES = 10  # plain lines for one CYCLE command, at most
 QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
@@ -82,16 +85,25 @@ class Progress:
 
 
 def summary(
-    cycles: int, time: float, blocks: int, contacts: int, force: float, files: list[Path], wall: float
+    cycles: int,
+    time: float,
+    blocks: int,
+    contacts: int,
+    force: float,
+    files: list[Path],
+    wall: float,
+    unsolved: Sequence[Solution] = (),
 ) -> str:
     """The line that ends every run.
 
-    cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s.
+    cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s;
+    unsolved: each SOLVE that came to its limit.
     """
     names = ", ".join(path.name for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
     written = f"wrote {names}{more}" if files else "no file written"
+    solve = "".join(f"; SOLVE {one.wanted:g} NOT REACHED ({one.ratio:.3g})" for one in unsolved)
     return (
         f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
-        f"largest normal force {force:.4g} N/m; {written}; {wall:.1f} s"
+        f"largest normal force {force:.4g} N/m{solve}; {written}; {wall:.1f} s"
     )

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, TextIO
 
 from offsets.generated import FRAC, NBROKE, NMADE, TDEL, TIME
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.balance import unbalanced
+from udec_ia.kernels.rest import unbalanced
+from udec_ia.ops.soft import soft_in
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -44,7 +45,7 @@ class Report:
             tdel, frac = float(h.cr[TDEL]), float(h.cr[FRAC])
             self.progress = Progress(self.stream, self.total, tdel, frac, self.started)
         made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
-        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h)), made, broken)
+        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h, soft_in(h))), made, broken)
 
     def close(self) -> None:
         """Take the progress off the screen."""

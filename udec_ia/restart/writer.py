@@ -7,12 +7,9 @@ whatever happens, the name stands for the old file or the new one, never for a p
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import io
-import os
 import platform
-import secrets
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -25,8 +22,11 @@ import udec_ia
 from offsets.generated import MFREE
 from offsets.table import TABLE, Table, lay_out, read_table
 from udec_ia.errors import UdecError
+from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
+from udec_ia.ops.watch import Series
 from udec_ia.restart.layout import common_places, field_rows, text
+from udec_ia.restart.recorded import RECORDED, store
 from udec_ia.restart.seal import SIZE, VERSION, seal
 
 CHUNK = 65536  # words
@@ -41,8 +41,10 @@ def save(
     path: str | Path,
     deck: Sequence[str] = (),
     laws: Mapping[str, tuple[str, str]] = NO_LAWS,
+    series: Sequence[Series] = (),
 ) -> Path:
-    """Write `array`, and the command lines that led to it, to the restart file `path`.
+    """Write `array`, the command lines that led to it and what was recorded to the restart file `path`.
+
 
     laws: file and SHA-256 of each constitutive law of the user's that the state was calculated with.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
@@ -50,43 +52,21 @@ def save(
     before is then untouched.
     """
     path = Path(path)
-    image = _image(array, deck, laws)
+    image = _image(array, deck, laws, series)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        _replace(path, image)
+        put_in_place(path, image)
     except OSError as error:
         detail = f"{path} cannot be written: {error.strerror or error}"
         raise UdecError(29, detail, "save under another name or in another folder") from error
     return path
 
 
-def _replace(path: Path, image: memoryview) -> None:
-    """Put `image` in the place of the file `path` in one step."""
-    target = path.resolve()
-    temporary = target.parent / f".udec-{secrets.token_hex(8)}.tmp"
-    try:
-        with temporary.open("xb") as file:
-            file.write(image)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(target)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-    with contextlib.suppress(OSError):  # not every file system can do it; the file itself is whole
-        _sync_folder(target.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Force the new name to the disk too."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
-def _image(array: MainArray, deck: Sequence[str], laws: Mapping[str, tuple[str, str]]) -> memoryview:
+def _image(
+    array: MainArray,
+    deck: Sequence[str],
+    laws: Mapping[str, tuple[str, str]],
+    series: Sequence[Series],
+) -> memoryview:
     """The bytes of the whole file."""
     table = read_table()
     buffer = io.BytesIO()
@@ -99,6 +79,8 @@ def _image(array: MainArray, deck: Sequence[str], laws: Mapping[str, tuple[str, 
         _write_layout(file, table, array.scheme.ratio)
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
         _write_laws(file, laws)
+        if series:
+            store(file.create_group(RECORDED), series)
         _write_provenance(file)
         _write_volatile(file)
         file.attrs["complete"] = np.int8(1)

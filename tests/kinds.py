@@ -1,0 +1,32 @@
+"""A model with groups of every kind."""
+
+from __future__ import annotations
+
+from mechanics import box, model
+
+from offsets.table import read_table
+from udec_ia import Model
+
+GROUPS = [group for group in read_table().groups if group.name != "jointext"]  # nothing makes joint data yet
+
+
+def every_kind(build: str = "i32r64") -> Model:
+    """Six blocks on a fixed base, two of each type, in a draught of boundary conditions of all kinds."""
+    m = model(*box(0, 6, -1, 1), d=0.05, stiffness=(1e8, 1e8), friction=0.3, build=build)
+    m.property(1, bulk=1e8, g=5e7)
+    m.split(-1, 0, 7, 0)
+    for x in (2, 5, 1, 4, 3):
+        m.split(x, -0.5, x, 2)
+    m.fix(0, 6, -1, 0)
+    m.change(1, 3, 0, 1, type="sdef")
+    m.change(3, 5, 0, 1, type="fdef")
+    for x in (4, 3):
+        corners = [(x, 0), (x, 1), (x + 1, 1), (x + 1, 0), (x + 0.5, 0.5)]
+        m.generate(x, x + 1, 0, 1, "manual", corners, [(1, 2, 3), (1, 3, 4), (1, 4, 5), (1, 5, 2)])
+    m.function(3, 0.0, 0.0, 0.001, 1.0, 0.002, -1.0)
+    m.boundary(2, 6, 0.9, 1.1, stress=(0.0, 0.0, -1e5), function=3)
+    m.boundary(0, 1, 0, 1, xvel=0.01, sine=(20.0, 1.0))
+    m.boundary(4.9, 6.1, -0.1, 1.1, viscous=True)
+    m.history(10, "kyd", at=[(0.5, 0.5), (5.5, 0.5)])
+    m.history(10, "kxdg", at=(4, 1))
+    return m

@@ -1,0 +1,243 @@
+"""SOLVE: cycling ends when the forces balance, and says so when they do not."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from kinds import every_kind
+from mechanics import block, on_base, push
+
+from offsets import generated as g
+from udec_ia import Model, UdecError
+from udec_ia.cli import main
+from udec_ia.kernels.rest import force_ratio
+
+CHECK = 10  # cycles between two looks, as docs/histories.md says
+
+
+def damped(out: Path) -> Model:
+    """Two blocks on a base, settling under mass damping."""
+    m = on_base(1.0, 1.0, 0.1, 4.0, friction=0.5)
+    m.split(-9, 0.5, 9, 0.5)
+    m.damping(0.5, 30, "mass")
+    m.out = out
+    return m
+
+
+def ratio(m: Model) -> float:
+    """Greatest unbalanced force over mean contact force, from the tables."""
+    blocks, contacts = m.table("block"), m.table("contact")
+    free = blocks[blocks["KBFIX"] == 0]
+    fx = free["KBFX"] + free["KBM"] * m.h.cr[g.GRAVX]
+    fy = free["KBFY"] + free["KBM"] * m.h.cr[g.GRAVY]
+    forces = [math.hypot(c["KCFN"], c["KCFS"]) for c in contacts if c["KCFN"] != 0]
+    greatest = max(map(math.hypot, fx, fy))
+    return greatest / (sum(forces) / len(forces)) if forces else math.inf
+
+
+def loads(m: Model) -> Any:
+    """(x, y) force of every boundary condition, from the tables: F f - C v."""
+    subjects = {
+        kind: {int(row["address"]): row for row in m.table(kind)}
+        for kind in ("block", "gridpoint", "corner", "signal", "sdef")
+    }
+    for row in m.table("bound"):
+        factor = subjects["signal"][row["KUS"]]["KTNOW"] if row["KUS"] else 1.0
+        owner = subjects["block"][row["KUB"]]
+        if row["KUG"]:
+            point = subjects["gridpoint"][row["KUG"]]
+            v = np.array([point["KXDG"], point["KYDG"]])
+        else:
+            assert owner["HEAD"] == g.MRIG
+            r = np.zeros(2)
+            if row["KUP"]:
+                ends = [
+                    subjects["corner"][row["KUP"]],
+                    subjects["corner"][subjects["corner"][row["KUP"]]["KR"]],
+                ]
+                r = np.mean([(e["KXP"], e["KYP"]) for e in ends], axis=0) - (owner["KX"], owner["KY"])
+            v = np.array([owner["KXD"] - owner["KTD"] * r[1], owner["KYD"] + owner["KTD"] * r[0]])
+        c = np.array([[row["KUCXX"], row["KUCXY"]], [row["KUCXY"], row["KUCYY"]]])
+        yield row, np.array([row["KUFX"], row["KUFY"]]) * factor - c @ v
+
+
+def deformable_ratio(m: Model) -> float:
+    """As `ratio` with all kinds of blocks, of which simply-deformable ones carry no load."""
+    blocks, points, sdef = m.table("block"), m.table("gridpoint"), m.table("sdef")
+    gravity = np.array([m.h.cr[g.GRAVX], m.h.cr[g.GRAVY]])
+    forces = {int(b["address"]): np.array([b["KBFX"], b["KBFY"]]) + b["KBM"] * gravity for b in blocks}
+    forces |= {int(p["address"]): np.array([p["KGFX"], p["KGFY"]]) + p["KGPM"] * gravity for p in points}
+    for row, force in loads(m):
+        forces[int(row["KUG"] or row["KUB"])] += force
+    given = {int(b["address"]): {0: 0, 1: 3, 2: 1, 4: 2, 6: 3}[int(b["KBFIX"])] for b in blocks}
+    given |= {int(p["address"]): int(p["KGFIX"]) for p in points}
+    most = 0.0
+    for address, (fx, fy) in forces.items():
+        if blocks["HEAD"][blocks["address"] == address].tolist() != [g.MFDEF]:
+            most = max(most, math.hypot(0 if given[address] & 1 else fx, 0 if given[address] & 2 else fy))
+    for e in sdef:
+        (reach,) = blocks["KBRO"][blocks["KBEX"] == e["address"]]
+        applied = np.array([[e["KSA11"], e["KSA12"]], [e["KSA21"], e["KSA22"]]])
+        most = max(most, np.abs((applied + applied.T) / 2 - stress(e) * e["KSAREA"]).max() / reach)
+    return float(most / np.mean(carried(m)))
+
+
+def stress(sdef: Any) -> Any:
+    return np.array([[sdef["KS111"], sdef["KS112"]], [sdef["KS121"], sdef["KS122"]]])
+
+
+def carried(m: Model) -> list[float]:
+    """Forces that contacts, simply-deformable blocks and zones carry."""
+    found = [math.hypot(c["KCFN"], c["KCFS"]) for c in m.table("contact") if c["KCFN"] != 0]
+    found += [float(np.linalg.norm(stress(e))) * math.sqrt(e["KSAREA"]) for e in m.table("sdef")]
+    where = {int(p["address"]): np.array([p["KXG"], p["KYG"]]) for p in m.table("gridpoint")}
+    for z in m.table("zone"):
+        a, b, c = (where[int(i)] for i in z["KZG"])
+        area = abs(np.linalg.det([b - a, c - a])) / 2
+        size = np.linalg.norm([z["KZS11"], z["KZS12"], z["KZS12"], z["KZS22"]])
+        found.append(float(size) * math.sqrt(area))
+    return found
+
+
+def test_the_ratio_of_deformable_blocks_under_loads() -> None:
+    """Against the tables, while loads, springs and zones are at work; and looking changes no bit."""
+    m = every_kind()
+    m.boundary(1, 3, 0, 1, free=True)  # simply-deformable blocks
+    seen = []
+    for _ in range(5):
+        m.cycle(40)
+        before = m.h.ia.tobytes(), m.h.cr.tobytes()
+        seen.append(float(force_ratio(m.h, True)))
+        assert (m.h.ia.tobytes(), m.h.cr.tobytes()) == before
+        assert seen[-1] == pytest.approx(deformable_ratio(m), rel=1e-9)
+    assert len(set(seen)) == 5
+
+
+@pytest.mark.parametrize("kind", ["sdef", "fdef"])
+def test_a_block_that_is_strained_is_not_in_balance(kind: str, tmp_path: Path) -> None:
+    """Nothing pushes it as a whole: only its own stress, which nothing holds."""
+    m = on_base(1.0, 1.0, 0.1, 4.0, gravity=(0.0, 0.0))
+    m.out = tmp_path
+    m.property(1, bulk=1e7, g=5e6)
+    m.change(-1, 1, 0, 1, type=kind)
+    if kind == "fdef":
+        corners = [(-0.5, 0), (-0.5, 1), (0.5, 1), (0.5, 0), (0, 0.5)]
+        m.generate(-1, 1, 0, 1, "manual", corners, [(1, 2, 3), (1, 3, 4), (1, 4, 5), (1, 5, 2)])
+    assert m.solve(1e-6).cycles == 0
+    m.insitu(-1, 1, 0, 1, 1e4, 0, 0)
+    m.damping(0.5, 30, None if kind == "fdef" else "internal")
+    solution = m.solve(1e-4, limit=20)
+    assert (solution.reached, solution.cycles) == (False, 20)
+
+
+def test_a_column_that_is_solved_hands_its_weight_on(tmp_path: Path) -> None:
+    """All unbalanced forces together, those of its grid-points, are what the base lacks of it."""
+    m = on_base(1.0, 1.0, 0.1, 4.0, density=2000, friction=0.5)
+    m.out = tmp_path
+    m.property(1, bulk=1e7, g=5e6)
+    m.change(-1, 1, 0, 1, type="fdef")
+    corners = [(-0.5, 0), (-0.5, 1), (0.5, 1), (0.5, 0), (0, 0.5)]
+    m.generate(-1, 1, 0, 1, "manual", corners, [(1, 2, 3), (1, 3, 4), (1, 4, 5), (1, 5, 2)])
+    m.damping(0.5, 10, "mass")
+    assert m.solve(1e-3)
+    lacking = abs(m.table("contact")["KCFN"].sum() - 2000 * 10)
+    assert 0 < lacking <= len(corners) * 1e-3 * np.mean(carried(m))
+
+
+@pytest.mark.parametrize("wanted", [0.3, 1e-2, 1e-5])
+def test_it_stops_at_the_first_look_that_finds_balance(wanted: float, tmp_path: Path) -> None:
+    """The same cycles as CYCLE, up to the first multiple of ten at which the ratio is there."""
+    m, twin = damped(tmp_path), damped(tmp_path)
+    twin.cycle(CHECK)
+    while ratio(twin) > wanted:
+        twin.cycle(CHECK)
+    solution = m.solve(wanted)
+    assert solution
+    assert solution.cycles == m.h.ci[g.MCTOT] == twin.h.ci[g.MCTOT]
+    assert solution.ratio == pytest.approx(ratio(twin), rel=1e-9)
+    for kind in ("block", "corner", "contact", "domain"):
+        assert np.array_equal(m.table(kind), twin.table(kind))
+    assert "reached: it is" in str(solution)
+
+
+def test_where_it_stops_depends_on_the_cycle_only(tmp_path: Path) -> None:
+    """After CYCLEs of any length, over a restart, with histories: the same cycle."""
+    plain, other = damped(tmp_path / "a"), damped(tmp_path / "b")
+    plain.cycle(33)
+    plain.solve(1e-3)
+    other.history(7, "ratio")
+    other.cycle(4)
+    other.cycle(29)
+    assert not other.solve(1e-3, limit=21)
+    other.save()
+    other.restart()
+    assert other.solve(1e-3)
+    assert other.h.ci[g.MCTOT] == plain.h.ci[g.MCTOT]
+    assert other.h.ci[g.MCTOT] % CHECK == 0
+    recorded = other.histories()[0].numbers
+    assert np.array_equal(recorded[:, 0], np.arange(0, int(plain.h.ci[g.MCTOT]) + 1, 7))
+
+
+def test_what_is_in_balance_is_left_alone(tmp_path: Path) -> None:
+    m = damped(tmp_path)
+    assert m.solve(1e-4)
+    before = m.h.ci[g.MCTOT]
+    solution = m.solve(1e-4)
+    assert (bool(solution), solution.cycles, m.h.ci[g.MCTOT]) == (True, 0, before)
+
+
+def test_blocks_without_weight_are_in_balance_at_once(tmp_path: Path) -> None:
+    m = on_base(1.0, 1.0, 0.1, 4.0, gravity=(0.0, 0.0))
+    m.out = tmp_path
+    assert m.solve(0) == (True, 0, 0.0, 0)
+
+
+def test_a_block_in_the_air_is_not_in_balance(tmp_path: Path) -> None:
+    """No contact carries anything: the ratio is infinite, and the limit ends it."""
+    m = damped(tmp_path)
+    push(m, int(block(m, 0, 0.75)["address"]), yd=3.0)
+    push(m, int(block(m, 0, 0.25)["address"]), yd=3.0)
+    m.cycle(1)
+    solution = m.solve(0.5, limit=25)
+    assert (solution.reached, solution.cycles, solution.ratio) == (False, 25, math.inf)
+    assert "NOT REACHED: it is inf after 25 cycles" in str(solution)
+
+
+def test_a_limit_that_is_met_is_no_error_but_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck = tmp_path / "fall.dat"
+    deck.write_text(
+        "START\nPROP MAT=1 DENS=1000 KN=1E8 KS=1E8\nBLOCK 0 0 0 2 1 2 1 0\nSPLIT -1 1 2 1\n"
+        "FIX 0 1 0 1\nGRAVITY 0 -10\nSOLVE 1E-6 LIMIT=30\nSOLVE 1E9\nSTOP\n"
+    )
+    assert main(["run", str(deck), "--out", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("force ratio 1e-06 NOT REACHED: it is") for line in lines)
+    assert any(line.startswith("force ratio 1e+09 reached: it is") for line in lines)
+    assert "; SOLVE 1e-06 NOT REACHED (" in lines[-1]
+    assert "1e+09" not in lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("numbers", "number", "parameter"),
+    [((-1.0,), 28, "ratio"), ((math.nan,), 28, "ratio"), ((0.1, -5), 28, "limit")],
+)
+def test_wrong_parameters(numbers: tuple[float, int], number: int, parameter: str, tmp_path: Path) -> None:
+    m = damped(tmp_path)
+    with pytest.raises(UdecError) as caught:
+        m.solve(*numbers)
+    assert (caught.value.number, caught.value.parameter) == (number, parameter)
+    assert m.h.ci[g.MCTOT] == 0
+
+
+def test_an_error_on_the_way_is_an_error(tmp_path: Path) -> None:
+    m = damped(tmp_path)
+    push(m, int(block(m, 0, 0.25)["address"]), yd=-60.0)
+    with pytest.raises(UdecError) as caught:
+        m.solve(1e-3)
+    assert caught.value.number == 15

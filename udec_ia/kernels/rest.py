@@ -1,0 +1,223 @@
+"""How far a model is from rest: its greatest unbalanced force, and that against the forces it carries.
+
+Unbalanced is what accelerates something free: a rigid block, a grid-point of a fully-deformable block, or the
+strains of a simply-deformable one, there as a force at the distance of its farthest corner. The weight
+counts, and so do the loads of boundary conditions: these are put on the force sums for a moment, whose old
+words are kept and put back, so that looking changes no bit.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import (
+    GRAVX,
+    GRAVY,
+    IBNPNT,
+    IBPNT,
+    ICPNT,
+    KB,
+    KBEX,
+    KBFIX,
+    KBFT,
+    KBFX,
+    KBFY,
+    KBM,
+    KBRO,
+    KC,
+    KCFN,
+    KCFS,
+    KFG,
+    KFZ,
+    KG,
+    KGFIX,
+    KGFX,
+    KGFY,
+    KGPM,
+    KS111,
+    KS112,
+    KS122,
+    KSA11,
+    KSA12,
+    KSA21,
+    KSA22,
+    KSAREA,
+    KU,
+    KUB,
+    KUG,
+    KZ,
+    KZS11,
+    KZS12,
+    KZS22,
+    MFDEF,
+    MSDEF,
+)
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.bounds import load, push_load
+from udec_ia.kernels.fdef import zone_area
+from udec_ia.kernels.motion import FIXED, GIVEN_X, GIVEN_Y
+
+BLOCK_SUMS = (KBFX, KBFY, KBFT)
+POINT_SUMS = (KGFX, KGFY)
+APPLIED = (KSA11, KSA12, KSA21, KSA22)
+SUMS = len(BLOCK_SUMS) + len(APPLIED)  # that a load can change; those of a grid-point are fewer
+
+
+@kernel
+def block_force(h: Memory, ib: int) -> float:
+    """Unbalanced force on block `ib` as a whole."""
+    fix, bm, zero = iget(h, ib, KBFIX), getr(h, ib, KBM), real(h, 0.0)
+    if fix == FIXED:
+        return zero
+    fx = zero if fix & GIVEN_X else getr(h, ib, KBFX) + bm * h.cr[GRAVX]
+    fy = zero if fix & GIVEN_Y else getr(h, ib, KBFY) + bm * h.cr[GRAVY]
+    return np.sqrt(fx * fx + fy * fy)
+
+
+@kernel
+def strain_force(h: Memory, ib: int) -> float:
+    """What strains simply-deformable block `ib`, as a force on its farthest corner."""
+    if iget(h, ib, KBFIX) == FIXED:
+        return real(h, 0.0)
+    ie = iget(h, ib, KBEX)
+    area, half = getr(h, ie, KSAREA), real(h, 0.5)
+    f11 = getr(h, ie, KSA11) - area * getr(h, ie, KS111)
+    f22 = getr(h, ie, KSA22) - area * getr(h, ie, KS122)
+    f12 = (getr(h, ie, KSA12) + getr(h, ie, KSA21)) * half - area * getr(h, ie, KS112)
+    return max(abs(f11), max(abs(f12), abs(f22))) / getr(h, ib, KBRO)
+
+
+@kernel
+def point_force(h: Memory, ib: int) -> float:
+    """Greatest unbalanced force on a grid-point of block `ib`."""
+    most = real(h, 0.0)
+    ig = int64(0) if iget(h, ib, KBFIX) == FIXED else iget(h, iget(h, ib, KBEX), KFG)
+    while ig != 0:
+        fix, m = iget(h, ig, KGFIX), getr(h, ig, KGPM)
+        fx = real(h, 0.0) if fix & 1 else getr(h, ig, KGFX) + m * h.cr[GRAVX]
+        fy = real(h, 0.0) if fix & 2 else getr(h, ig, KGFY) + m * h.cr[GRAVY]
+        most = max(most, np.sqrt(fx * fx + fy * fy))
+        ig = iget(h, ig, KG)
+    return most
+
+
+@kernel
+def greatest(h: Memory, soft: Any) -> float:
+    """Greatest unbalanced force in the model, of the force sums as they are."""
+    most = real(h, 0.0)
+    ib = int64(h.ci[IBPNT])
+    while ib != 0:
+        if soft is not None and iget(h, ib, HEAD) == MFDEF:
+            most = max(most, point_force(h, ib))
+        else:
+            most = max(most, block_force(h, ib))
+            if soft is not None and iget(h, ib, HEAD) == MSDEF:
+                most = max(most, strain_force(h, ib))
+        ib = iget(h, ib, KB)
+    return most
+
+
+@kernel
+def keep_sums(h: Memory, iu: int, words: Any) -> None:
+    """Copy to `words` the force sums that the load of condition `iu` changes."""
+    ib, ig = iget(h, iu, KUB), iget(h, iu, KUG)
+    for i in range(len(BLOCK_SUMS)):
+        words[i] = getr(h, ib, BLOCK_SUMS[i])
+    if ig != 0:
+        for i in range(len(POINT_SUMS)):
+            words[len(BLOCK_SUMS) + i] = getr(h, ig, POINT_SUMS[i])
+    elif iget(h, ib, HEAD) == MSDEF:
+        for i in range(len(APPLIED)):
+            words[len(BLOCK_SUMS) + i] = getr(h, iget(h, ib, KBEX), APPLIED[i])
+
+
+@kernel
+def put_sums_back(h: Memory, iu: int, words: Any) -> None:
+    """Put back from `words` what keep_sums has copied."""
+    ib, ig = iget(h, iu, KUB), iget(h, iu, KUG)
+    for i in range(len(BLOCK_SUMS)):
+        putr(h, ib, BLOCK_SUMS[i], real(h, words[i]))
+    if ig != 0:
+        for i in range(len(POINT_SUMS)):
+            putr(h, ig, POINT_SUMS[i], real(h, words[len(BLOCK_SUMS) + i]))
+    elif iget(h, ib, HEAD) == MSDEF:
+        for i in range(len(APPLIED)):
+            putr(h, iget(h, ib, KBEX), APPLIED[i], real(h, words[len(BLOCK_SUMS) + i]))
+
+
+@kernel
+def greatest_under_loads(h: Memory) -> float:
+    """Greatest unbalanced force with the loads of all boundary conditions."""
+    n = 0
+    iu = int64(h.ci[IBNPNT])
+    while iu != 0:
+        n += 1
+        iu = iget(h, iu, KU)
+    conditions, words = np.empty(n, np.int64), np.empty((n, SUMS), np.float64)
+    iu = int64(h.ci[IBNPNT])
+    for i in range(n):
+        conditions[i] = iu
+        keep_sums(h, iu, words[i])
+        fx, fy, x, y, _ = load(h, iu)
+        push_load(h, iu, fx, fy, x, y)
+        iu = iget(h, iu, KU)
+    most = greatest(h, True)
+    for i in range(n - 1, -1, -1):
+        put_sums_back(h, conditions[i], words[i])
+    return most
+
+
+@kernel
+def unbalanced(h: Memory, soft: Any) -> float:
+    """Greatest unbalanced force; soft as in run_cycles."""
+    if soft is not None:
+        return greatest_under_loads(h)
+    return greatest(h, soft)
+
+
+@kernel
+def inner_force(h: Memory, ib: int) -> tuple[float, float]:
+    """Sum of the forces that stresses of block `ib` carry, size of stress times length, and their number."""
+    total, count = real(h, 0.0), real(h, 0.0)
+    if iget(h, ib, HEAD) == MSDEF:
+        ie = iget(h, ib, KBEX)
+        s11, s12, s22 = getr(h, ie, KS111), getr(h, ie, KS112), getr(h, ie, KS122)
+        return np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * getr(h, ie, KSAREA)), real(h, 1.0)
+    iz = iget(h, iget(h, ib, KBEX), KFZ) if iget(h, ib, HEAD) == MFDEF else int64(0)
+    while iz != 0:
+        s11, s12, s22 = getr(h, iz, KZS11), getr(h, iz, KZS12), getr(h, iz, KZS22)
+        total += np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * abs(zone_area(h, iz)))
+        count += real(h, 1.0)
+        iz = iget(h, iz, KZ)
+    return total, count
+
+
+@kernel
+def force_ratio(h: Memory, soft: Any) -> float:
+    """Greatest unbalanced force over the mean of the forces that are carried.
+
+    What carries is a contact with a normal force, a zone, and a simply-deformable block.
+    0 if nothing is unbalanced, infinite if something is and no force is carried.
+    """
+    total, count = real(h, 0.0), real(h, 0.0)
+    ic = int64(h.ci[ICPNT])
+    while ic != 0:
+        fn, fs = getr(h, ic, KCFN), getr(h, ic, KCFS)
+        if fn != 0:
+            total += np.sqrt(fn * fn + fs * fs)
+            count += real(h, 1.0)
+        ic = iget(h, ic, KC)
+    if soft is not None:
+        ib = int64(h.ci[IBPNT])
+        while ib != 0:
+            inner, stressed = inner_force(h, ib)
+            total += inner
+            count += stressed
+            ib = iget(h, ib, KB)
+    most = unbalanced(h, soft)
+    if most == 0:
+        return most
+    return most * count / total if total > 0 else real(h, np.inf)

@@ -1,0 +1,60 @@
+"""What a Model records: its histories, and how its SOLVEs ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
+from udec_ia.ops.history import define, named
+from udec_ia.ops.watch import Series, Solution, Watch
+
+
+class Recorder:
+    """series: the numbers of all histories. solutions: of all SOLVEs, in order."""
+
+    def __init__(self) -> None:
+        self.series: list[Series] = []
+        self.solutions: list[Solution] = []
+        self.pictures = 0
+
+    def add(
+        self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
+    ) -> list[Series]:
+        """New histories of `field`, every `n` cycles, of the groups that an address or points mean."""
+        from udec_ia.inspect.choose import choose
+
+        what = named(field)
+        chosen = choose(array, what.group, field, address, at)
+        define(array, what, [one.address for one in chosen], n)
+        first = len(self.series)
+        Watch(array, self.series).look()
+        for series, one in zip(self.series[first:], chosen, strict=True):
+            series.place = one.place
+        return self.series[first:]
+
+    def watch(self, array: MainArray) -> Watch | None:
+        """What watches a CYCLE; None if nothing is recorded."""
+        return Watch(array, self.series) if self.series else None
+
+    def keep(self, watch: Watch | None, base: Path, tell: Callable[[str], None]) -> list[Path]:
+        """Write what was recorded to base.csv and base.h5, and tell which groups have gone."""
+        if watch is None or not self.series:
+            return []
+        from udec_ia.output.histories import write
+
+        watch.look()
+        for one in watch.lost:
+            tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
+        return write(self.series, base)
+
+    def plot(self, name: str, folder: Path) -> list[Path]:
+        """Draw all histories; returns the files. Error 26 if nothing was recorded yet."""
+        from udec_ia.output.graph import draw
+
+        if not any(one.last_cycle >= 0 for one in self.series):
+            raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")
+        self.pictures += 1
+        return draw(self.series, name, folder / f"{name}-history-{self.pictures}")
