@@ -300,7 +300,7 @@ def bases(folder: Path) -> list[bytes]:
         model.run("\n".join(lines))
         if cycles:
             model.cycle(cycles)
-        found.append(model.save("base.h5").read_bytes())
+        found.append(model.save(folder / "base.h5").read_bytes())
     return found
 
 

@@ -557,15 +557,18 @@ class Model:
         displacements: bool = False,
         contour: str = "",
         history: bool = False,
+        window: tuple[float, float, float, float] | None = None,
     ) -> list[Path] | None:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1).
 
-        contour: a key of field.CONTOURS. With `history`, which stands alone, what was recorded is drawn
-        instead, and the files are returned.
+        contour: a key of field.CONTOURS. window: range x1, x2, y1, y2 (m) that is shown, or all blocks. With
+        `history`, which stands alone, what was recorded is drawn instead, and the files are returned.
         """
         from udec_ia.output.plot import Plots, What
 
-        what = What(contacts, domains, addresses, stresses, velocities, displacements, contour.lower())
+        what = What(
+            contacts, domains, addresses, stresses, velocities, displacements, contour.lower(), window
+        )
         if history:
             if n is not None or what != What():
                 advice = "give PLOT HISTORY for the one, PLOT 0 for the other"

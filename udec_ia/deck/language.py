@@ -264,8 +264,8 @@ COMMANDS = (
         "PLot",
         "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
         "contacts with their forces, domains, addresses, principal stresses, velocities, displacements since "
-        "the frame began, and zones coloured by a stress (11, 12, 22), pressure or shear stress. HISTORY "
-        "alone plots what was recorded instead.",
+        "the frame began, and deformable blocks coloured by a stress (11, 12, 22), pressure or shear stress. "
+        "WINDOW is the range that the picture shows. HISTORY alone plots what was recorded instead.",
         "PLOT 0 CONTACTS",
         optional="n",
         words=(
@@ -277,6 +277,7 @@ COMMANDS = (
             Word("DIsplacements"),
             *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
             Word("HIStory"),
+            Word("Window", RANGE),
         ),
         ours="the words; n is used in both example runs",
     ),

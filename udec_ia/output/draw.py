@@ -222,7 +222,14 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...]) -> None:
     from matplotlib.patches import Polygon
 
     label = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 6, "zorder": 6, "bbox": label}
+    style: dict[str, Any] = {
+        "ha": "center",
+        "va": "center",
+        "fontsize": 6,
+        "zorder": 6,
+        "bbox": label,
+        "clip_on": True,
+    }
     for i, domain in enumerate(domains):
         if not domain.outer:
             tint = TINTS[i % len(TINTS)]
@@ -259,4 +266,6 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
         if room[i] > ROOMY:
             for j in range(o.first[i], o.first[i + 1]):
                 x, y = places[j]
-                axes.text(x, y, str(o.corner_address[j]), va="center", fontsize=6, alpha=0.7, **style)
+                axes.text(
+                    x, y, str(o.corner_address[j]), clip_on=True, va="center", fontsize=6, alpha=0.7, **style
+                )

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import offsets.generated as g
-from udec_ia.heap.accessors import Memory, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
 from udec_ia.output.field import Field, field
@@ -28,7 +28,7 @@ class Outlines:
     """All blocks: n corners clockwise, block after block; the corners of block i are first[i]:first[i + 1].
 
     corner, centre: (n, 2) in m; radius: (n,) in m, not positive where a corner is sharp; rounding: DTOL in m;
-    corner_address: (n,). centroid: (m, 2) in m; fixed, material, address: (m,).
+    corner_address: (n,). centroid: (m, 2) in m; fixed, material, address and kind (head code): (m,).
     """
 
     corner: Any
@@ -41,6 +41,7 @@ class Outlines:
     fixed: Any
     material: Any
     address: Any
+    kind: Any
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,7 @@ def outlines(h: Memory) -> Outlines:
         fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
         material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
         address=np.array(blocks, np.int64),
+        kind=np.array([iget(h, block, HEAD) for block in blocks], np.int64),
     )
 
 

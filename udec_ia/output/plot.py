@@ -27,7 +27,7 @@ from udec_ia.output.draw import (
     paper,
     scale_for,
 )
-from udec_ia.output.field import (
+from udec_ia.output.draw_field import (
     draw_contours,
     draw_displacements,
     draw_principal,
@@ -47,7 +47,10 @@ DPI = 150
 
 @dataclass(frozen=True)
 class What:
-    """What a picture shows beside blocks, centroids and zones; contour: a key of field.CONTOURS, or ""."""
+    """What a picture shows beside blocks, centroids and zones.
+
+    contour: a key of field.CONTOURS, or "". window: range x1, x2, y1, y2 in m, or what the blocks need.
+    """
 
     contacts: bool = False
     domains: bool = False
@@ -56,6 +59,7 @@ class What:
     velocities: bool = False
     displacements: bool = False
     contour: str = ""
+    window: tuple[float, float, float, float] | None = None
 
     @property
     def notes(self) -> int:
@@ -64,6 +68,15 @@ class What:
 
 
 BARE = What()
+
+
+def _check_window(window: tuple[float, float, float, float] | None) -> None:
+    """Error 28 unless there is something in the window."""
+    if window is not None:
+        x1, x2, y1, y2 = window
+        if not (0 < x2 - x1 < np.inf and 0 < y2 - y1 < np.inf):
+            advice = "WINDOW takes x1 x2 y1 y2 with x1 below x2 and y1 below y2, in m"
+            raise UdecError(28, "there is nothing in the window", advice, parameter="window")
 
 
 class Plots:
@@ -81,6 +94,7 @@ class Plots:
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
+        _check_window(what.window)
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
@@ -133,7 +147,7 @@ class Frame:
 
     def figure(self) -> Figure:
         """The picture of all states of the frame."""
-        box = limits(self.states)
+        box = self.what.window or limits(self.states)
         inches = scale_for(box, self.scale)
         notes = self._notes()
         key = KEY_WIDTH if len(self.states) > 1 or self.what.contour else 0.0
@@ -155,11 +169,12 @@ class Frame:
     def _draw_inside(self, axes: Axes, size: float) -> list[str]:
         """Zones, stresses, velocities and displacements of the last state; returns notes on their scales."""
         what, first, now = self.what, self.states[0].field, self.states[-1].field
+        shown = self.states[-1].outlines
         if now is None:
             return []
         if what.contour:
-            draw_contours(axes, now, what.contour)
-        draw_zones(axes, now)
+            draw_contours(axes, now, shown, what.contour)
+        draw_zones(axes, now, shown)
         notes = []
         if what.stresses:
             notes.append(draw_principal(axes, now, size))
