@@ -97,10 +97,14 @@ def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
 
 @kernel
 def arc_on_arc(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
-    """Can the arcs of corners `ip` and `iq` have a contact? And their overlap."""
+    """Can the arcs of corners `ip` and `iq` have a contact? And their overlap.
+
+    Two points of edges, both without a radius, cannot: each of them touches the edges at the other.
+    """
     dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
-    reach = getr(h, ip, KRAD) + getr(h, iq, KRAD) + h.cr[ATOL]
-    if dx * dx + dy * dy > reach * reach:
+    radii = getr(h, ip, KRAD) + getr(h, iq, KRAD)
+    reach = radii + h.cr[ATOL]
+    if radii == 0 or dx * dx + dy * dy > reach * reach:
         return False, -reach
     _, _, overlap = cc(h, ip, iq)
     if overlap > h.cr[CTOL]:
