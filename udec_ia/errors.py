@@ -67,7 +67,7 @@ ADVICE = {
     20: "the main array is damaged: look at the last RSET, and go back to what was saved before it",
     21: "delete blocks before they are made fully-deformable",
     22: "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ..., or AUTOMATIC EDGE d",
-    23: "HELP lists what there is",
+    23: 'AUTOMATIC zones need one package more: python -m pip install "pythoncdt>=2.0"',
     24: "a block counts by its centroid: PRINT BLOCKS shows the centroids",
     25: "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
     26: "a zone needs its three grid-points on one line",
