@@ -1,11 +1,12 @@
 """Decks that are wrong in one place each: the numbered errors, raised where the deck itself says.
 
 The first line of a deck says what to expect: `* expect LINE:COLUMN error NUMBER`, and `with mtop=N` where
-the size of the main array matters.
+the size of the main array matters, `without PACKAGE` where a package must be missing.
 """
 
 import io
 import re
+import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
 
 DECKS = sorted((Path(__file__).parent / "decks").glob("err*.dat"))
-EXPECT = re.compile(r"\* expect (\d+):(\d+) error (\d+)(?: with mtop=(\d+))?")
+EXPECT = re.compile(r"\* expect (\d+):(\d+) error (\d+)(?: with mtop=(\d+))?(?: without (\w+))?")
 NOTHING_TO_SAVE = {"err02-nothing-to-continue", "err03", "err20", "err29"}  # not started, or damaged
 OF_1980 = {*range(1, 27)} - {21}  # those of 1980; 21 is not raised, DELETE takes fully-deformable blocks
 
@@ -25,13 +26,14 @@ class Expected(NamedTuple):
     column: int
     number: int
     mtop: int | None
+    missing: str | None
 
 
 def expected(deck: Path) -> Expected:
     found = EXPECT.fullmatch(deck.read_text().split("\n", 1)[0])
     assert found is not None, f"{deck.name} does not say what to expect"
-    line, column, number, mtop = found.groups()
-    return Expected(int(line), int(column), int(number), int(mtop) if mtop else None)
+    line, column, number, mtop, missing = found.groups()
+    return Expected(int(line), int(column), int(number), int(mtop) if mtop else None, missing)
 
 
 def test_there_is_a_deck_for_every_error() -> None:
@@ -39,8 +41,10 @@ def test_there_is_a_deck_for_every_error() -> None:
 
 
 @pytest.mark.parametrize("deck", DECKS, ids=lambda deck: deck.stem)
-def test_a_wrong_deck_ends_in_its_error(deck: Path, tmp_path: Path) -> None:
+def test_a_wrong_deck_ends_in_its_error(deck: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = expected(deck)
+    if wanted.missing:
+        monkeypatch.setitem(sys.modules, wanted.missing, None)
     model = Model(mtop=wanted.mtop, out=tmp_path)
     with pytest.raises(UdecError) as caught:
         run_deck(model, deck, io.StringIO())

@@ -45,6 +45,8 @@ WRONG: list[tuple[str, int, Callable[[Model], object]]] = [
     ("no sine", 28, lambda m: m.boundary(0, 1, 0, 1, xforce=1.0, sine=(0.0, 1.0))),
     ("back in time", 28, lambda m: m.function(1, 0, 0, 0, 1)),
     ("function of no number", 28, lambda m: m.function(0, 0, 0)),
+    ("zones of no size", 7, lambda m: m.block(*SQUARE) and m.generate(0, 1, 0, 1, "automatic")),
+    ("zones of no kind", 22, lambda m: m.block(*SQUARE) and m.generate(0, 1, 0, 1, "somehow")),
     ("zones of no block", 24, lambda m: m.generate(0, 1, 0, 1, "automatic")),
     ("no blocks", 26, lambda m: m.cycle(1)),
     ("not a number", 28, lambda m: m.gravity(0, np.nan)),

@@ -30,6 +30,7 @@ from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.rest import force_ratio
 from udec_ia.ops import settings
 from udec_ia.ops.arrange import arrange
+from udec_ia.ops.automatic import generate_automatically
 from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
 from udec_ia.ops.change import change
 from udec_ia.ops.create import create
@@ -257,7 +258,11 @@ class Model:
         edge: float | None = None,
         mixed: bool = False,
     ) -> int:
-        """GENERATE: divide the first block in the range into zones. Returns its address."""
+        """GENERATE: divide the first block in the range into zones. Returns its address.
+
+        mode: "manual", with `gridpoints` and `zones`, or "automatic", with `edge` (m). mixed: zones 1 and 2,
+        3 and 4 ... are pairs for mixed discretisation.
+        """
         self._ready()
         self._boxes.forget()
         where = (x1, x2, y1, y2)
@@ -267,11 +272,22 @@ class Model:
                 raise UdecError(
                     26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
                 )
+            if edge is not None:
+                raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
             near = NEAR * float(self.h.cr[DTOL])
             for remark in generate(self.array, ib, gridpoints, zones, near, mixed):
                 self.tell(remark)
+        elif mode.lower() == "automatic":
+            if gridpoints or zones:
+                blamed = "gridpoints" if gridpoints else "zones"
+                raise UdecError(10, f"{blamed.upper()} are for MANUAL zones", parameter=blamed)
+            if edge is None:
+                raise UdecError(
+                    7, "EDGE d", "AUTOMATIC EDGE d makes zones with sides of about d", parameter="mode"
+                )
+            self.tell(generate_automatically(self.array, ib, edge, mixed))
         else:
-            raise UdecError(23, "automatic zones", parameter="mode")
+            raise UdecError(22, mode, "take manual or automatic", parameter="mode")
         return ib
 
     def boundary(

@@ -1,8 +1,10 @@
-"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1).
+"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1), here those of MANUAL.
 
 Grid-points within 0.9 D of a corner are placed on it, others within 0.9 D of an edge on the edge, where
 they become corners of the block; every corner must have one. What does not fit is refused before anything
 is changed, and a grid-point that does not stay where it was asked for is reported.
+
+What AUTOMATIC divides a block into is found in automatic.py and put into IA() here, by `divide`.
 """
 
 from __future__ import annotations
@@ -71,7 +73,7 @@ from udec_ia.kernels.touch import VIRTUAL
 from udec_ia.ops.change import change_types
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.lists import items
-from udec_ia.ops.memory import require
+from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
 from udec_ia.ops.rounding import update_flagged
 
@@ -152,27 +154,39 @@ def generate(
     boundary = _boundary(outline, places, float(h.cr[DTOL]))
     zones = _clockwise(places, triples)
     _check_cover(outline, places, boundary, zones)
-    new = sum(place.on_edge for place in places)
-    words = new * (size_of(h, NVCR) + 2 * size_of(h, NVCN) + 2 * size_of(h, NVDO)) + size_of(h, NVFD)
-    require(array, words + len(places) * size_of(h, NVGP) + len(zones) * size_of(h, NVZO))
-    change_types(array, [ib], MFDEF)
-    h = array.h
-    short = crad(h, ib)
-    _make_corners(h, ib, places)
-    addresses = _make_gridpoints(h, ib, places)
-    _make_zones(h, ib, addresses, zones, paired)
-    share_mass(h, ib)
-    h.ci[NSHORT] += crad(h, ib) - short
-    _flag_around(h, ib)
-    update_flagged(array)
-    if h.ci[MCTOT] > 0:
-        renew_forces(array)
+    if paired:
+        _check_pairs(zones)
+    divide(array, ib, places, zones, paired)
     moved = zip(range(1, len(places) + 1), reversed(points), places, strict=True)
     return [
         f"grid-point {number} ({x:g}, {y:g}) was placed on the block's outline at ({place.x:g}, {place.y:g})"
         for number, (x, y), place in moved
         if math.hypot(place.x - x, place.y - y) > 1e-3 * float(h.cr[DTOL])
     ]
+
+
+def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Triple], paired: bool) -> None:
+    """Put grid-points at `places` and zones, clockwise triples of their rows, into block `ib`.
+
+    Error 1, and nothing is changed, if there is no memory for all of it and for the contacts that arise.
+    """
+    h = array.h
+    new = sum(place.on_edge for place in places)
+    words = new * (size_of(h, NVCR) + 2 * size_of(h, NVCN) + 2 * size_of(h, NVDO)) + size_of(h, NVFD)
+    require(array, words + len(places) * size_of(h, NVGP) + len(zones) * size_of(h, NVZO))
+    with all_or_nothing(array):
+        change_types(array, [ib], MFDEF)
+        h = array.h
+        short = crad(h, ib)
+        _make_corners(h, ib, places)
+        addresses = _make_gridpoints(h, ib, places)
+        _make_zones(h, ib, addresses, zones, paired)
+        share_mass(h, ib)
+        h.ci[NSHORT] += crad(h, ib) - short
+        _flag_around(h, ib)
+        update_flagged(array)
+        if h.ci[MCTOT] > 0:
+            renew_forces(array)
 
 
 def block_to_zone(array: MainArray, where: Range) -> int:
@@ -272,6 +286,16 @@ def _no_cover(what: str) -> UdecError:
     return UdecError(33, what, parameter="zones")
 
 
+def _check_pairs(zones: list[Triple]) -> None:
+    """Error 33 unless zones 1 and 2, 3 and 4 ... have a common side."""
+    advice = "with MIXED, zones 1 and 2, 3 and 4 ... have a common side"
+    if len(zones) % 2:
+        raise UdecError(33, f"{len(zones)} zones cannot be made into pairs", advice, parameter="mixed")
+    for k in range(0, len(zones), 2):
+        if len({*zones[k], *zones[k + 1]}) != 4:
+            raise UdecError(33, f"zones {k + 1} and {k + 2} are no pair", advice, parameter="mixed")
+
+
 def _area(places: list[Place], zone: Triple) -> float:
     a, b, c = (places[row] for row in zone)
     return ((c.x - a.x) * (b.y - a.y) - (b.x - a.x) * (c.y - a.y)) / 2
@@ -318,7 +342,7 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
     return addresses[::-1]
 
 
-def _make_zones(h: Memory, ib: int, addresses: list[int], zones: list[Triple], paired: bool) -> None:
+def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:
     """Zones of block `ib`, in the order given, with the stress that the block has."""
     ie = iget(h, ib, KBEX)
     for triple in reversed(zones):
