@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from meshes import generate, outline, quarter_ring, rectangle
+from grids import generate, rectangle
 
 import offsets.generated as g
 from udec_ia import Model
@@ -98,28 +98,6 @@ def test_a_turn_by_360_degrees_strains_nothing() -> None:
     np.testing.assert_allclose(zones["KZS11"], 3e5, rtol=1e-6)
 
 
-def test_period_of_a_confined_column() -> None:
-    """Fixed below, free above, loaded by its weight at once: 4 H/Cp; 20 zones over the height, within 2 %."""
-    height = 10.0
-    model = slab(rectangle(0, 1, 0, height, 1, 20), 0.02)
-    model.boundary(-0.1, 1.1, -1, height + 1, xvel=0)
-    model.boundary(-0.1, 1.1, -0.1, 0.1, xvel=0, yvel=0)
-    model.gravity(0, -10)
-    model.fraction(0.5)
-    model.cycle(0)
-    period = 4 * height / CP
-    top, times = [], []
-    while model.h.cr[g.TIME] < 2.2 * period:
-        model.cycle(2)
-        points = model.table("gridpoint")
-        top.append(float(points["KYDG"][points["KYG"].argmax()]))
-        times.append(float(model.h.cr[g.TIME]))
-    v, t = np.array(top), np.array(times)
-    i = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1]))
-    zero = t[i] - v[i] * (t[i + 1] - t[i]) / (v[i + 1] - v[i])
-    assert 2 * np.diff(zero).mean() == pytest.approx(period, rel=0.02)
-
-
 def energies(model: Model) -> tuple[float, float]:
     """Kinetic energy of the grid-points and strain energy of the zones, J/m."""
     points, zones = model.table("gridpoint"), model.table("zone")
@@ -156,32 +134,6 @@ def test_a_pulse_leaves_through_a_viscous_edge() -> None:
     assert stress.min() == pytest.approx(-1e4, rel=2e-2)
     model.cycle(int(1.25 * length / CP / step))
     assert sum(energies(model)) < 0.01 * inside
-
-
-def test_hole_under_hydrostatic_pressure() -> None:
-    """Quarter model with rollers, 24 zones around: the wall moves by p a/(2G), hoop stress 2p."""
-    inner, outer, p, across = 1.0, 12.0, 1e6, 24
-    nodes = quarter_ring(inner, outer, 12, across)
-    model = Model()
-    model.round(0.02)
-    model.block(*outline(nodes))
-    model.property(1, density=RHO, kn=1e9, ks=1e9, bulk=1e9, g=6e8)
-    generate(model, nodes)
-    everywhere = (-0.001, outer + 0.001, -0.001, outer + 0.001)
-    model.insitu(*everywhere, -p, 0, -p)
-    model.boundary(-0.001, 0.001, -1, outer + 1, xvel=0)
-    model.boundary(-1, outer + 1, -0.001, 0.001, yvel=0)
-    model.boundary(*everywhere, stress=(-p, 0, -p))
-    model.boundary(-0.001, inner + 0.001, -0.001, inner + 0.001, stress=(p, 0, p))  # the wall is free
-    model.fraction(0.6)
-    model.damping(0.6, math.sqrt(1.8e9 / RHO) / outer / 4, "mass")
-    model.cycle(3000)
-    points = model.table("gridpoint")
-    radius = np.sort(np.hypot(points["KXG"], points["KYG"]))[:13]
-    moved = inner - radius
-    assert moved.mean() == pytest.approx(p * inner / (2 * 6e8), rel=0.03)
-    zones = model.table("zone")
-    assert zones["KZS11"].min() == pytest.approx(-2 * p, rel=0.1)  # in the middle of the innermost zones
 
 
 def test_momentum_of_a_meshed_block_that_is_hit() -> None:

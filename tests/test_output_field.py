@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from grids import generate, rectangle
 from matplotlib import colormaps
-from meshes import generate, rectangle
 
 import offsets.generated as g
 from udec_ia import Model, UdecError
