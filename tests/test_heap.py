@@ -14,7 +14,7 @@ from naive.memory import Memory as NaiveMemory
 from offsets import generated as g
 from offsets.table import read_table
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.array import LINE, MainArray
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import OVERFLOW, find, lose, room
 from udec_ia.heap.words import ALL_SCHEMES, scheme
@@ -133,6 +133,16 @@ def test_mtop_beyond_the_word_is_refused() -> None:
         MainArray(scheme("i16r32"), 32768)
     with pytest.raises(ValueError, match="between 1"):
         MainArray(scheme("i32r64"), 0)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_words_begin_where_a_line_of_memory_does(name: str) -> None:
+    array = MainArray(scheme(name))
+    copy = array.copy()
+    assert not room(array.h, 9000)
+    assert array.grow()
+    for one in (MainArray(scheme(name), 100), copy, array):
+        assert one.h.ia.ctypes.data % LINE == 0
 
 
 @pytest.mark.parametrize("name", SCHEMES)

@@ -21,7 +21,7 @@ from time import perf_counter, process_time
 import numpy as np
 from soa import EVENTS, Slab, extract, run_soa
 
-from offsets.generated import CON1, CON2, HTOL, KXD, NBLK, NCON, TDEL, UPEND
+from offsets.generated import CON1, CON2, DTOL, HTOL, KXD, KYD, NBLK, NCON, TDEL, UPEND
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.inspect.table import table
@@ -32,6 +32,7 @@ TURNS = 15
 TRIES = 5  # slabs cut; the first may pay for memory that the machine hands out for the first time
 WORK = 2_000_000  # contacts that one turn passes through
 SETTLE = 40  # cycles before a measurement
+OVERLAP = 0.001  # that a slab is squeezed to at every joint, in rounding lengths
 FAR = 1e9
 
 
@@ -50,6 +51,31 @@ def slab(blocks: int, skew: float = 0.0) -> Model:
     for i in range(1, nx):
         model.split(i - skew, -1, i + skew * (ny + 1), ny + 1)
     return model
+
+
+def squeeze(model: Model) -> None:
+    """Load every contact: all blocks approach their common centre, then the outermost ones hold the rest."""
+    h, rows = model.h, table(model.array, "block")
+    xs, ys = rows["KX"], rows["KY"]
+    middle = xs.mean(), ys.mean()
+    model.free(-FAR, FAR, -FAR, FAR)
+    h.cr[CON1] = h.cr[CON2] = 1
+    rate = OVERLAP * float(h.cr[DTOL]) / float(h.cr[TDEL])
+    for ib, x, y in zip(rows["address"], xs, ys, strict=True):
+        putr(h, int(ib), KXD, -rate * float(x - middle[0]))
+        putr(h, int(ib), KYD, -rate * float(y - middle[1]))
+    run_cycles(h, 1, None, None, None)
+    for frame in (
+        (-FAR, xs.min() + 0.5, -FAR, FAR),
+        (xs.max() - 0.5, FAR, -FAR, FAR),
+        (-FAR, FAR, -FAR, ys.min() + 0.5),
+        (-FAR, FAR, ys.max() - 0.5, FAR),
+    ):
+        model.fix(*map(float, frame))
+    for ib in rows["address"]:
+        putr(h, int(ib), KXD, 0.0)
+        putr(h, int(ib), KYD, 0.0)
+    model.cycle(SETTLE)
 
 
 def throw(model: Model) -> None:
@@ -101,31 +127,37 @@ def turns(model: Model, s: Slab) -> tuple[float, float, float]:
     return float(np.median(heap)) * per, float(np.median(soa)) * per, float(np.median(heap / soa))
 
 
+STATES = {"at rest": None, "loaded": squeeze, "thrown": throw}
+
+
 def bench_cycles(sizes: list[int], skew: float) -> None:
-    """Whole cycles of slabs at rest and of slabs that are thrown."""
-    print("| blocks | contacts | slab | domain pass | program, ns | structure of arrays, ns | ratio |")
-    print("|---|---|---|---|---|---|---|")
+    """Whole cycles of slabs at rest, of loaded ones and of slabs that are thrown."""
+    print("| blocks | contacts | slab | with force | domain pass | program, ns | arrays, ns | ratio |")
+    print("|---|---|---|---|---|---|---|---|")
     for blocks in sizes:
         model = slab(blocks, skew)
         model.fix(-FAR, FAR, 0, 1)
         model.cycle(SETTLE)
-        for name in ("at rest", "thrown"):
-            if name == "thrown":
-                throw(model)
+        rest = model.array
+        for name, prepare in STATES.items():
+            model.array = rest.copy()
+            if prepare is not None:
+                prepare(model)
             run_cycles(model.h, 2, None, None, None)
-            skipped = model.h.cr[UPEND] > 0
-            s = extract(model.array)
-            run_soa(s, 0)
-            try:
-                heap, soa, ratio = turns(model, s)
-            except ValueError as void:
-                print(f"| {model.h.ci[NBLK]} | {model.h.ci[NCON]} | {name} | {void} | | | |", flush=True)
-                continue
-            pace = "waits" if skipped else "every cycle"
-            n, contacts = model.h.ci[NBLK], model.h.ci[NCON]
-            print(
-                f"| {n} | {contacts} | {name} | {pace} | {heap:.1f} | {soa:.1f} | {ratio:.2f} |", flush=True
-            )
+            print(f"| {model.h.ci[NBLK]} | {model.h.ci[NCON]} | {name} | {measure(model)} |", flush=True)
+
+
+def measure(model: Model) -> str:
+    """The last columns of a line: share of loaded contacts, domain pass, times and ratio."""
+    pace = "waits" if model.h.cr[UPEND] > 0 else "every cycle"
+    loaded = float(np.mean(table(model.array, "contact")["KCFN"] > 0))
+    s = extract(model.array)
+    run_soa(s, 0)
+    try:
+        heap, soa, ratio = turns(model, s)
+    except ValueError as void:
+        return f"{loaded:.0%} | {void} | | | "
+    return f"{loaded:.0%} | {pace} | {heap:.1f} | {soa:.1f} | {ratio:.2f}"
 
 
 def bench_split(sizes: list[int]) -> None:

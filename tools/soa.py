@@ -19,6 +19,7 @@ from offsets import generated as g
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import loop
+from udec_ia.kernels.ford import TURNED
 
 # Flags of the program's kernels; no counting of references to arrays, which its kernels do not have either.
 F = TypeVar("F", bound=Callable[..., Any])
@@ -29,10 +30,9 @@ UPEND, WORK, EVENTS = 0, 1, 2  # numbers that outlive a cycle, in Slab.sums
 
 
 class Constants(NamedTuple):
-    """Scalars of the common block; `border` is DTOL - GTOL, `ftol2` the square of FTOL."""
+    """Scalars of the common block; `border` is DTOL - GTOL."""
 
     border: float
-    ftol2: float
     dt: float
     con1: float
     con2: float
@@ -42,6 +42,7 @@ class Constants(NamedTuple):
     dtol: float
     gtol: float
     btol: float
+    ftol: float
     dtol2: float
     etol: float
     htol: float
@@ -79,13 +80,17 @@ class Corners(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """One row a contact; `twin` is the next contact on block `b1` if it is with `b2` as well."""
+    """One row a contact. The six rows of `near`, where there are such contacts, NONE where not:
+
+    the next and the previous contact on `b1` if they are with `b2` as well; the next and the previous
+    contact on the same segment of `b1`; and of `b2`.
+    """
 
     b1: Any
     b2: Any
     p1: Any
     p2: Any
-    twin: Any
+    near: Any
     code: Any
     mat: Any
     x: Any
@@ -146,16 +151,12 @@ def extract(array: MainArray) -> Slab:
         *_columns(b, "KX KY KXD KYD KTD KBM KBI KBFX KBFY KBFT KBRO"),
     )
     corners = Corners(_rows(p["address"], p["KR"]), *_columns(p, "KXP KYP KXCP KYCP KRAD KXDP KYDP"))
-    twin = _rows(k["address"], k["KL1"])
-    after = k[np.where(twin == NONE, 0, twin)]
-    straight = (after["KB1"] == k["KB1"]) & (after["KB2"] == k["KB2"])
-    same = straight | ((after["KB1"] == k["KB2"]) & (after["KB2"] == k["KB1"]))
     contacts = Contacts(
         _rows(b["address"], k["KB1"]),
         _rows(b["address"], k["KB2"]),
         _rows(p["address"], k["KCP1"]),
         _rows(p["address"], k["KCP2"]),
-        np.where(same, twin, NONE).astype(np.uint32),
+        _near(k),
         k["KCCOD"].astype(np.uint8),
         (k["KCM"] - 1).astype(np.uint8),
         *_columns(k, "KXC KYC KXDC KYDC KCS KCN KCFS KCFN"),
@@ -170,16 +171,38 @@ def extract(array: MainArray) -> Slab:
         g.DTOL,
         g.GTOL,
         g.BTOL,
+        g.FTOL,
         g.DTOL2,
         g.ETOL,
         g.HTOL,
     )
-    border, ftol2 = float(cr[g.DTOL] - cr[g.GTOL]), float(cr[g.FTOL] * cr[g.FTOL])
-    constants = Constants(border, ftol2, *(float(cr[i]) for i in names))
+    constants = Constants(float(cr[g.DTOL] - cr[g.GTOL]), *(float(cr[i]) for i in names))
     kn, ks, mu, coh = (cr[i : i + 50].copy() for i in (g.AKN, g.AKS, g.AMU, g.COH))
     domains = _domains(array, d, p["address"], k["address"])
     sums = np.array([cr[g.UPEND], cr[g.WFRIC], 0.0])
     return Slab(constants, blocks, corners, contacts, domains, kn, ks, mu, coh, sums)
+
+
+def _near(k: Any) -> Any:
+    """The rows of `near` for all contacts, which must be real ones."""
+    columns = []
+    sides = [(1, "KL1"), (1, "KLB1"), (1, "KL1"), (1, "KLB1"), (2, "KL2"), (2, "KLB2")]
+    for n, (side, link) in enumerate(sides):
+        row = _rows(k["address"], k[link])
+        one, two = (_side(k[np.where(row == NONE, 0, row)], k[f"KB{side}"]), _side(k, k[f"KB{side}"]))
+        if n < 2:  # twins: the other block is the same, and the contact is no bridge of the map
+            same = (one[0] == two[0]) & (k["KD1"] != k["KD2"])
+        else:
+            same = (one[1] == two[1]) & (one[2] == two[2])
+        columns.append(np.where(same, row, NONE))
+    return np.stack(columns, axis=1).astype(np.uint32)
+
+
+def _side(k: Any, block: Any) -> tuple[Any, Any, Any]:
+    """For contacts that stand on `block`: the other block, the corner on `block`, True for its arc."""
+    first = k["KB1"] == block
+    arc = (k["KCCOD"] == 1) | (k["KCCOD"] == np.where(first, 2, 3))
+    return np.where(first, k["KB2"], k["KB1"]), np.where(first, k["KCP1"], k["KCP2"]), arc
 
 
 def _domains(array: MainArray, rows: Any, corners: Any, contacts: Any) -> Domains:
@@ -248,8 +271,9 @@ def accumulate(s: Slab, fastest: float) -> None:
                 vx = b.xd[ib] - b.td[ib] * (k.y[j] - b.y[ib])
                 vy = b.yd[ib] + b.td[ib] * (k.x[j] - b.x[ib])
                 lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
-        d.umax[i] += waiting + max(hx - lx, hy - ly) * c.dt
-        if d.umax[i] > c.etol:
+        moved = max(hx - lx, hy - ly) * c.dt
+        d.umax[i] += waiting + moved
+        if d.umax[i] + moved > c.etol or moved > c.etol + c.etol:
             s.sums[EVENTS] += 1
     s.sums[UPEND] = 0.0
 
@@ -303,12 +327,73 @@ def touch(p: Corners, k: Contacts, j: int, c: Constants) -> tuple[float, float, 
         nx, ny = -mx, -my
         k.x[j], k.y[j] = p.xc[iq] + mx * reach, p.yc[iq] + my * reach
     k.un[j] = overlap
-    if overlap <= 0.0 or k.fn[j] == 0.0:
-        i = k.twin[j]
+    return nx, ny, before, fits and -c.btol <= overlap <= c.dtol2
+
+
+@compiled
+def faces(p: Corners, i: int, c: Constants, nx: float, ny: float) -> bool:
+    """False if the arc of corner `i` has turned away from the edge that its normal (nx, ny) points to."""
+    mx, my = p.xc[i] - p.x[i], p.yc[i] - p.y[i]
+    mm = mx * mx + my * my
+    along, across = c.dtol * (nx * mx + ny * my), p.rad[i] * (nx * my - ny * mx)
+    ahead, behind = (along - across) / mm, (along + across) / mm
+    return max(ahead, behind) <= TURNED and min(ahead, behind) <= 0.0
+
+
+@compiled
+def ahead_by(p: Corners, k: Contacts, j: int, ip: int, arc: bool, i: int) -> float:
+    """How far contact `i` lies ahead of contact `j` on a segment of corner `ip`."""
+    if arc:
+        tx, ty = p.y[ip] - p.yc[ip], p.xc[ip] - p.x[ip]
+    else:
+        a = p.before[ip]
+        tx, ty = p.x[ip] - p.x[a], p.y[ip] - p.y[a]
+    return ((k.x[i] - k.x[j]) * tx + (k.y[i] - k.y[j]) * ty) / np.sqrt(tx * tx + ty * ty)
+
+
+@compiled
+def in_place(s: Slab, j: int, nx: float, ny: float) -> bool:
+    """False if open contact `j` would be given up: turned away, or overtaken by a neighbour."""
+    p, k, c = s.corners, s.contacts, s.constants
+    code = k.code[j]
+    if code == 2 and not faces(p, k.p1[j], c, nx, ny):
+        return False
+    if code == 3 and not faces(p, k.p2[j], c, -nx, -ny):
+        return False
+    most = c.ftol - k.un[j]
+    for n in range(2, 6):
+        i = k.near[j, n]
+        if i != NONE:
+            side = n // 4
+            ip, arc = (k.p1[j], code != 3) if side == 0 else (k.p2[j], code != 2)
+            ahead = ahead_by(p, k, j, ip, arc, i)
+            if (ahead if n % 2 == 1 else -ahead) > most:
+                return False
+    return True
+
+
+@compiled
+def has_twin(k: Contacts, j: int, c: Constants) -> bool:
+    """True if a neighbour between the same two blocks is nearer than FTOL."""
+    for n in range(2):
+        i = k.near[j, n]
         if i != NONE:
             dx, dy = k.x[i] - k.x[j], k.y[i] - k.y[j]
-            fits = fits and dx * dx + dy * dy >= c.ftol2
-    return nx, ny, before, fits and -c.btol <= overlap <= c.dtol2
+            if dx * dx + dy * dy < c.ftol * c.ftol:
+                return True
+    return False
+
+
+@compiled
+def stays(s: Slab, j: int, nx: float, ny: float) -> bool:
+    """False if contact `j` carries no force and would be given up."""
+    k, c = s.contacts, s.constants
+    overlap = k.un[j]
+    if overlap > 0.0:
+        return k.fn[j] != 0.0 or not has_twin(k, j, c)
+    if s.sums[UPEND] != 0.0:
+        return True
+    return in_place(s, j, nx, ny) and not has_twin(k, j, c)
 
 
 @compiled
@@ -317,7 +402,7 @@ def forces(s: Slab) -> None:
     b, p, k, c = s.blocks, s.corners, s.contacts, s.constants
     for j in range(len(k.x)):
         nx, ny, before, fits = touch(p, k, j, c)
-        if not fits:
+        if not (fits and stays(s, j, nx, ny)):
             s.sums[EVENTS] += 1
         ib, jb, x, y, overlap = k.b1[j], k.b2[j], k.x[j], k.y[j], k.un[j]
         xi, yi, xj, yj = x - b.x[ib], y - b.y[ib], x - b.x[jb], y - b.y[jb]
@@ -330,14 +415,15 @@ def forces(s: Slab) -> None:
         m = k.mat[j]
         kn, ks = s.kn[m], s.ks[m]
         closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-        fn, fs = k.fn[j] + kn * (overlap - max(before, 0.0)), k.fs[j] + ks * (sliding * c.dt)
-        k.us[j] += sliding * c.dt
+        held, dus = k.fs[j], sliding * c.dt
+        fn, fs = k.fn[j] + kn * (overlap - max(before, 0.0)), held + ks * dus
+        k.us[j] += dus
         if fn <= 0.0:
             fn, fs = 0.0, 0.0
         most = s.coh[m] + s.mu[m] * fn
         dashpot = c.beta * ks * sliding
         if abs(fs) > most:
-            s.sums[WORK] += (abs(fs) - most) / ks * most
+            s.sums[WORK] += (abs(fs) - most) / ks * (most + (held if fs > 0.0 else -held)) * 0.5
             fs = most if fs > 0.0 else -most
             dashpot = 0.0
         k.fn[j], k.fs[j] = fn, fs

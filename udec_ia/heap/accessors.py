@@ -35,7 +35,8 @@ def _which(h: Any) -> int:
     return int(h.ra.itemsize // h.ia.itemsize) >> 1
 
 
-def _which_type(h: Any) -> tuple[int, int]:
+def which_type(h: Any) -> tuple[int, int]:
+    """The same for the compiled type of `h`, and by how many bits a word's address is a real's."""
     ratio = h.dtypes[1].bitwidth // h.dtypes[0].bitwidth
     return ratio >> 1, ratio.bit_length() - 1
 
@@ -79,7 +80,7 @@ def rounding(h: Memory) -> Any:
 
 @overload(iget)
 def _iget(h, iad, k, i=0):
-    j, _ = _which_type(h)
+    j, _ = which_type(h)
 
     def impl(h, iad, k, i=0):
         return np.int64(h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)])
@@ -89,7 +90,7 @@ def _iget(h, iad, k, i=0):
 
 @overload(puti)
 def _puti(h, iad, k, n, i=0):
-    j, _ = _which_type(h)
+    j, _ = which_type(h)
 
     def impl(h, iad, k, n, i=0):
         h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)] = n
@@ -99,7 +100,7 @@ def _puti(h, iad, k, n, i=0):
 
 @overload(getr)
 def _getr(h, iad, k):
-    j, shift = _which_type(h)
+    j, shift = which_type(h)
 
     def impl(h, iad, k):
         return h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)]
@@ -109,7 +110,7 @@ def _getr(h, iad, k):
 
 @overload(putr)
 def _putr(h, iad, k, v):
-    j, shift = _which_type(h)
+    j, shift = which_type(h)
 
     def impl(h, iad, k, v):
         h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)] = v
@@ -119,7 +120,7 @@ def _putr(h, iad, k, v):
 
 @overload(size_of)
 def _size_of(h, nv):
-    j, _ = _which_type(h)
+    j, _ = which_type(h)
 
     def impl(h, nv):
         return nv[j]

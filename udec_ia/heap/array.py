@@ -16,6 +16,14 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
 
 FIRST_SIZE = 8192
+LINE = 64  # bytes that the machine's memory hands out at a time
+
+
+def _words(n: int, kind: Any) -> Any:
+    """`n` words of the type `kind`, all zero, that begin where a line of memory does."""
+    data = np.zeros(n * kind.itemsize + LINE, np.uint8)
+    start = -data.ctypes.data % LINE
+    return data[start : start + n * kind.itemsize].view(kind)
 
 
 class MainArray:
@@ -32,9 +40,8 @@ class MainArray:
         self.scheme = scheme
         self.fixed = mtop is not None
         words = self._whole_reals(min(FIRST_SIZE, scheme.top_address) if mtop is None else mtop)
-        self.h = self._views(
-            np.zeros(words, scheme.int_type), np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type)
-        )
+        ci, cr = np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type)
+        self.h = self._views(_words(words, scheme.int_type), ci, cr)
         self.h.ci[MFREE] = 1
         self.h.ci[MTOP] = words
 
@@ -59,7 +66,7 @@ class MainArray:
         if need - 1 > self.limit:
             return False
         size = min(max(self._whole_reals(2 * need), FIRST_SIZE), self.limit)
-        ia = np.zeros(size, self.scheme.int_type)
+        ia = _words(size, self.scheme.int_type)
         ia[: len(self.h.ia)] = self.h.ia
         self.h = self._views(ia, ci, self.h.cr)
         ci[MTOP] = size
@@ -70,5 +77,7 @@ class MainArray:
         """An independent copy of the whole state."""
         other = object.__new__(MainArray)
         other.scheme, other.fixed = self.scheme, self.fixed
-        other.h = self._views(self.h.ia.copy(), self.h.ci.copy(), self.h.cr.copy())
+        ia = _words(len(self.h.ia), self.scheme.int_type)
+        ia[:] = self.h.ia
+        other.h = self._views(ia, self.h.ci.copy(), self.h.cr.copy())
         return other

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from offsets.generated import IBPNT, KB, MFDEF, MSDEF
+from offsets.generated import IBPNT, KB, MFDEF, MSDEF, NVBL
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
+from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.fdef import move_fdef
 from udec_ia.kernels.motion import motion
@@ -23,6 +24,7 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
     fastest = real(h, 0.0)
     ib = h.ci[IBPNT]
     while ib != 0:
+        fetch(h, ib, NVBL, LEAD)
         if soft is not None:
             kind = iget(h, ib, HEAD)
             if kind == MFDEF:

@@ -33,17 +33,23 @@ from offsets.generated import (
     KCCOD,
     KD,
     KDLOOP,
+    KL1,
+    KL2,
     KUMAX,
     KXC,
     KXDP,
     KYC,
     KYDP,
     NERR,
+    NVCN,
+    NVCR,
+    NVDO,
     TDEL,
     UPEND,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.ahead import LEAD, fetch
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.points import velocity_at
@@ -77,6 +83,20 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
             return max(hx - lx, hy - ly)
 
 
+@inlined
+def look_ahead(h: Memory, idm: int) -> int:
+    """Fetch what domain `idm` is going to look at; returns the domain after it, 0 where there is none."""
+    if idm == 0:
+        return int64(0)
+    ic = iget(h, idm, KDLOOP)
+    fetch(h, idm, NVDO, LEAD)
+    fetch(h, ic, NVCN, LEAD + LEAD)  # there are more contacts than domains
+    if ic != 0:
+        fetch(h, iget(h, ic, KL1), NVCR)
+        fetch(h, iget(h, ic, KL2), NVCR)
+    return iget(h, idm, KD)
+
+
 @kernel
 def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
     """Sum the fictitious displacements of one step; True if a domain is to be updated.
@@ -91,7 +111,11 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
         return False
     most = real(h, 0.0)
     idm = h.ci[IDPNT]
+    ahead = idm
+    for _ in range(LEAD):
+        ahead = look_ahead(h, ahead)
     while idm != 0:
+        ahead = look_ahead(h, ahead)
         moved = relative_velocity(h, idm, soft) * dt
         umax = getr(h, idm, KUMAX) + waiting + moved
         if umax + moved > h.cr[ETOL]:

@@ -40,26 +40,31 @@ from offsets.generated import (
     KD1,
     KD2,
     KL1,
+    KL2,
     KLB1,
+    KLB2,
     KXC,
     KXDC,
     KYC,
     KYDC,
     NBROKE,
     NERR,
+    NVCN,
+    NVCR,
     TDEL,
     UPEND,
     WFRIC,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.jointlaw import by_law, has_law, is_open
-from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.lists import is_contact
 from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
-from udec_ia.kernels.segments import ahead_by, on_arc, same_segment
-from udec_ia.kernels.touch import CORNER_CORNER, EDGE_CORNER, VIRTUAL, ce, faces
+from udec_ia.kernels.segments import same_segment, way_along
+from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, faces
 
 OVERLAP_TOO_GREAT = 15
 
@@ -67,70 +72,80 @@ TURNED = 0.3  # sine of the angle; a little more than near.FACING, so that conta
 
 
 @kernel
-def restart(h: Memory, ic: int) -> float:
-    """Settle contact `ic` in a changed geometry, its forces as they are; returns the overlap."""
-    _, _, overlap = settle(h, ic)
+def restart(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Settle contact `ic` in a changed geometry, its forces as they are; normal (x, y) and overlap."""
+    nx, ny, overlap = settle(h, ic)
     putr(h, ic, KCN, overlap)
-    return overlap
+    return nx, ny, overlap
 
 
-@kernel
+@inlined
+def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
+    """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
+    if not is_contact(h, jc) or (iget(h, jc, KB1) != jb and iget(h, jc, KB2) != jb):
+        return False
+    dx, dy = getr(h, jc, KXC) - getr(h, ic, KXC), getr(h, jc, KYC) - getr(h, ic, KYC)
+    return dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL] and iget(h, jc, KCCOD) != VIRTUAL
+
+
+@inlined
 def has_twin(h: Memory, ic: int) -> bool:
     """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
     ib, jb = iget(h, ic, KB1), iget(h, ic, KB2)
-    for jc in (iget(h, ic, KL1), iget(h, ic, KLB1)):
-        if is_contact(h, jc) and other(h, ib, jc) == jb and iget(h, jc, KCCOD) != VIRTUAL:
-            dx, dy = getr(h, jc, KXC) - getr(h, ic, KXC), getr(h, jc, KYC) - getr(h, ic, KYC)
-            if dx * dx + dy * dy < h.cr[FTOL] * h.cr[FTOL]:
-                return True
-    return False
+    return is_twin(h, ic, iget(h, ic, KL1), ib, jb) or is_twin(h, ic, iget(h, ic, KLB1), ib, jb)
 
 
-@kernel
+@inlined
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, most: float) -> bool:
+    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other."""
+    ahead, behind = same_segment(h, after, ip, arc), same_segment(h, before, ip, arc)
+    if not ahead and not behind:
+        return False
+    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
+    tx, ty, z = way_along(h, ip, arc)
+    if ahead and ((getr(h, after, KXC) - x) * tx + (getr(h, after, KYC) - y) * ty) / z < -most:
+        return True
+    return behind and ((getr(h, before, KXC) - x) * tx + (getr(h, before, KYC) - y) * ty) / z > most
+
+
+@inlined
 def overtaken(h: Memory, ic: int, gap: float) -> bool:
     """True if open contact `ic` and a neighbour on the same segment have passed each other.
 
     Something has slipped through the gap: the contact is no wall any more.
     """
-    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-    most = h.cr[FTOL] + gap
-    for ib in (iget(h, ic, KB1), iget(h, ic, KB2)):
-        ip, arc = corner_of(h, ib, ic), on_arc(h, ib, ic)
-        after, before = nextcp(h, ib, ic), prevcp(h, ib, ic)
-        if same_segment(h, ib, after, ip, arc) and ahead_by(h, ib, ip, after, x, y) < -most:
-            return True
-        if same_segment(h, ib, before, ip, arc) and ahead_by(h, ib, ip, before, x, y) > most:
-            return True
-    return False
+    code, most = iget(h, ic, KCCOD), h.cr[FTOL] + gap
+    after, before, ip = iget(h, ic, KL1), iget(h, ic, KLB1), iget(h, ic, KCP1)
+    if passed(h, ic, after, before, ip, code != EDGE_CORNER, most):
+        return True
+    after, before, ip = iget(h, ic, KL2), iget(h, ic, KLB2), iget(h, ic, KCP2)
+    return passed(h, ic, after, before, ip, code != CORNER_EDGE, most)
 
 
-@kernel
-def turned_away(h: Memory, ic: int) -> bool:
+@inlined
+def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """True if the arc of a corner on an edge has turned away from it by more than TURNED.
 
-    The circle of a blunt corner reaches far beyond its arc, even beyond its block.
+    The circle of a blunt corner reaches far beyond its arc, even beyond its block. (nx, ny) is the contact's
+    normal.
     """
     code = iget(h, ic, KCCOD)
-    if code == CORNER_CORNER:
-        return False
-    ip, iq = iget(h, ic, KCP1), iget(h, ic, KCP2)
-    if code == EDGE_CORNER:
-        ip, iq = iq, ip
-    ex, ey, _, _, _ = ce(h, ip, iq)
-    return not faces(h, ip, -ex, -ey, real(h, TURNED))
+    if code == CORNER_EDGE:
+        return not faces(h, iget(h, ic, KCP1), nx, ny, real(h, TURNED))
+    return code == EDGE_CORNER and not faces(h, iget(h, ic, KCP2), -nx, -ny, real(h, TURNED))
 
 
-@kernel
-def drop(h: Memory, ic: int, overlap: float) -> bool:
+@inlined
+def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """Delete contact `ic` if it is open too far, turned away or overtaken, or idle beside a twin.
 
-    A bridge of the map becomes virtual instead; beside a twin it stays.
+    A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
     """
     if overlap > 0 and getr(h, ic, KCFN) != 0:
         return False
     is_bridge = iget(h, ic, KD1) == iget(h, ic, KD2)
     if overlap >= -h.cr[BTOL]:
-        gone = overlap <= 0 and (turned_away(h, ic) or overtaken(h, ic, -overlap))
+        gone = overlap <= 0 and (turned_away(h, ic, nx, ny) or overtaken(h, ic, -overlap))
         if not gone and (is_bridge or not has_twin(h, ic)):
             return False
     h.ci[NBROKE] += 1
@@ -181,7 +196,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     if joints is not None and has_law(h, joints, ic):
         idle = is_open(h, ic, overlap)
     still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
-    if idle and not still and drop(h, ic, overlap):
+    if idle and not still and drop(h, ic, nx, ny, overlap):
         return  # an open contact looks at its neighbours only when the domain pass has run
     xd, yd = cvel(h, ic, soft)
     if joints is not None and has_law(h, joints, ic):
@@ -214,11 +229,31 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     push(h, ic, nx, ny, fn + h.cr[BETA] * kn * closing, fs + dashpot, overlap, soft)
 
 
+@inlined
+def look_ahead(h: Memory, ic: int) -> int:
+    """Fetch what contact `ic` is going to look at; returns the contact after it, 0 where there is none."""
+    if ic == 0:
+        return int64(0)
+    fetch(h, ic, NVCN, LEAD)
+    fetch(h, iget(h, ic, KCP1), NVCR)
+    fetch(h, iget(h, ic, KCP2), NVCR)
+    if getr(h, ic, KCFN) == 0:  # it may look at its neighbours
+        fetch(h, iget(h, ic, KL1), NVCR)
+        fetch(h, iget(h, ic, KL2), NVCR)
+        fetch(h, iget(h, ic, KLB1), NVCR)
+        fetch(h, iget(h, ic, KLB2), NVCR)
+    return iget(h, ic, KC)
+
+
 @kernel
 def ford_all(h: Memory, soft: Any, joints: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[ICPNT]
+    ahead = ic
+    for _ in range(LEAD):
+        ahead = look_ahead(h, ahead)
     while ic != 0:
+        ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
             ford(h, ic, soft, joints)
@@ -232,5 +267,6 @@ def settle_all(h: Memory) -> None:
     while ic != 0:
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
-            drop(h, ic, restart(h, ic))
+            nx, ny, overlap = restart(h, ic)
+            drop(h, ic, nx, ny, overlap)
         ic = following

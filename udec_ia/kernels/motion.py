@@ -37,9 +37,11 @@ from offsets.generated import (
     KYD,
     KYDP,
     KYP,
+    NVCR,
     TDEL,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import kernel
 
 FIXED, GIVEN_X, GIVEN_Y = 1, 2, 4  # KBFIX: FIX; velocities that BOUNDARY gives
@@ -67,6 +69,7 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
         rx, ry = getr(h, ip, KXCP) - x, getr(h, ip, KYCP) - y
         putr(h, ip, KXCP, xn + (c * rx - s * ry))
         putr(h, ip, KYCP, yn + (s * rx + c * ry))
+        fetch(h, ip, NVCR, LEAD)
         ip = iget(h, ip, KR)
         if ip == ip0:
             return

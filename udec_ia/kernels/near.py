@@ -148,10 +148,10 @@ def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: fl
     """By how much the point (x, y) lies outside the exposure of a segment that follows item `iad`."""
     worst = real(h, 0.0)
     before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
-    if same_segment(h, ib, before, ip, arc):
-        worst = max(worst, ahead_by(h, ib, ip, before, x, y))
-    if same_segment(h, ib, after, ip, arc):
-        worst = max(worst, -ahead_by(h, ib, ip, after, x, y))
+    if same_segment(h, before, ip, arc):
+        worst = max(worst, ahead_by(h, ip, arc, before, x, y))
+    if same_segment(h, after, ip, arc):
+        worst = max(worst, -ahead_by(h, ip, arc, after, x, y))
     return worst
 
 

@@ -18,9 +18,25 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import KB1, KB2, KCCOD, KD1, KDLOOP, KR, KRAD, KXC, KXCP, KXP, KYC, KYCP, KYP
+from offsets.generated import (
+    KB1,
+    KB2,
+    KCCOD,
+    KCP1,
+    KCP2,
+    KD1,
+    KDLOOP,
+    KR,
+    KRAD,
+    KXC,
+    KXCP,
+    KXP,
+    KYC,
+    KYCP,
+    KYP,
+)
 from udec_ia.heap.accessors import Memory, getr, iget, int64
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import corner_of, is_corner, next_corner, nextcp, prevcp
 from udec_ia.kernels.reclass import settle
@@ -40,22 +56,32 @@ def on_arc(h: Memory, ib: int, ic: int) -> bool:
     return code == (CORNER_EDGE if iget(h, ic, KB1) == ib else EDGE_CORNER)
 
 
-@kernel
-def same_segment(h: Memory, ib: int, iad: int, ip: int, arc: bool) -> bool:
+@inlined
+def same_segment(h: Memory, iad: int, ip: int, arc: bool) -> bool:
     """True if item `iad` is a contact on the arc of corner `ip`, or on the edge that ends there."""
-    if is_corner(h, iad) or iget(h, iad, KCCOD) == VIRTUAL:
+    if is_corner(h, iad):
         return False
-    return corner_of(h, ib, iad) == ip and on_arc(h, ib, iad) == arc
+    first, second, code = iget(h, iad, KCP1) == ip, iget(h, iad, KCP2) == ip, iget(h, iad, KCCOD)
+    one, two = (CORNER_EDGE, EDGE_CORNER) if arc else (EDGE_CORNER, CORNER_EDGE)
+    both = arc and code == CORNER_CORNER
+    return (first and (code == one or both)) or (second and (code == two or both))
+
+
+@inlined
+def way_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
+    """Clockwise vector along the edge that ends at corner `ip`, or its arc's chord, and its length."""
+    if arc and getr(h, ip, KRAD) > 0:  # the chord is normal to the line to the centre
+        tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
+    else:
+        ia = iget(h, ip, KR)
+        tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
+    return tx, ty, np.sqrt(tx * tx + ty * ty)
 
 
 @kernel
-def ahead_by(h: Memory, ib: int, ip: int, ic: int, x: float, y: float) -> float:
+def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float) -> float:
     """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
-    ia = iget(h, ip, KR)
-    tx, ty = getr(h, ip, KXP) - getr(h, ia, KXP), getr(h, ip, KYP) - getr(h, ia, KYP)
-    if on_arc(h, ib, ic) and getr(h, ip, KRAD) > 0:  # along the arc's chord, normal to the line to the centre
-        tx, ty = -(getr(h, ip, KYCP) - getr(h, ip, KYP)), getr(h, ip, KXCP) - getr(h, ip, KXP)
-    z = np.sqrt(tx * tx + ty * ty)
+    tx, ty, z = way_along(h, ip, arc)
     return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
 
 

@@ -78,7 +78,7 @@ def of_the_map(h: Memory, blocks: Any) -> dict[str, Any]:
     corners = np.empty(top // size_of(h, NVCR), np.int64)
     contacts, domains = np.empty(int(h.ci[NCON]), np.int64), np.empty(int(h.ci[NDOM]), np.int64)
     count, _, _ = map_order(h, blocks, corners, contacts, domains, np.zeros(top + 1, np.bool_))
-    return {"block": blocks, "corner": corners[:count], "contact": contacts, "domain": domains}
+    return {"block": blocks, "contact": contacts, "corner": corners[:count], "domain": domains}
 
 
 def of_deformable_blocks(h: Memory, blocks: Any) -> dict[str, Any]:
