@@ -64,7 +64,7 @@ def squeeze(model: Model) -> None:
     for ib, x, y in zip(rows["address"], xs, ys, strict=True):
         putr(h, int(ib), KXD, -rate * float(x - middle[0]))
         putr(h, int(ib), KYD, -rate * float(y - middle[1]))
-    run_cycles(h, 1, None, None, None)
+    run_cycles(h, 1, None, None, None, None)
     for frame in (
         (-FAR, xs.min() + 0.5, -FAR, FAR),
         (xs.max() - 0.5, FAR, -FAR, FAR),
@@ -115,7 +115,7 @@ def turns(model: Model, s: Slab) -> tuple[float, float, float]:
     times = []
     for _ in range(TURNS):
         start = process_time()
-        done = run_cycles(model.h, n, None, None, None)
+        done = run_cycles(model.h, n, None, None, None, None)
         between = process_time()
         run_soa(s, n)
         times.append((between - start, process_time() - between))
@@ -143,7 +143,7 @@ def bench_cycles(sizes: list[int], skew: float) -> None:
             model.array = rest.copy()
             if prepare is not None:
                 prepare(model)
-            run_cycles(model.h, 2, None, None, None)
+            run_cycles(model.h, 2, None, None, None, None)
             print(f"| {model.h.ci[NBLK]} | {model.h.ci[NCON]} | {name} | {measure(model)} |", flush=True)
 
 

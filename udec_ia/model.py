@@ -36,6 +36,7 @@ from udec_ia.ops.change import change
 from udec_ia.ops.create import create
 from udec_ia.ops.cycle import cycle
 from udec_ia.ops.delete import delete
+from udec_ia.ops.energy import Balance, balance, switch
 from udec_ia.ops.insitu import insitu
 from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
@@ -427,6 +428,20 @@ class Model:
         self._ready(sound=False)
         settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
+    def energy(self, state: str = "on") -> None:
+        """ENERGY: "on": an account of the energy begins (see `balance`); "off": it ends."""
+        self._ready()
+        if state.lower() not in ("on", "off"):
+            raise UdecError(10, f"ENERGY {state}", "ON or OFF", parameter="state")
+        switch(self.array, state.lower() == "on")
+
+    def balance(self) -> Balance:
+        """The account of the energy that PRINT ENERGY shows, in J per m of thickness.
+
+        Error 26 unless energy("on") began one.
+        """
+        return balance(self.h)
+
     def fraction(self, f: float, safe: bool = False) -> None:
         """FRACTION: fraction of the critical time-step to be used; safe: of the bound that is always safe."""
         self._ready(sound=False)
@@ -551,7 +566,7 @@ class Model:
         return list(check(self.array))
 
     def print(self, *what: str) -> str:
-        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "histories"."""
+        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "energy", "histories"."""
         from udec_ia.output.printout import printout
 
         return printout(self.h, *(word.lower() for word in what), series=self._recorder.series)

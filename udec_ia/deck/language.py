@@ -183,6 +183,15 @@ COMMANDS = (
         numbers="n m",
     ),
     Command(
+        "ENErgy",
+        "ON: an account of the energy begins, which PRINT ENERGY shows: motion, springs, weight, friction, "
+        "damping, boundary conditions. It makes a cycle longer. OFF: it ends.",
+        "ENERGY ON",
+        words=(Word("ON", sets="state"), Word("OFf", sets="state")),
+        first="state",
+        ours="the command",
+    ),
+    Command(
         "END", "The last line of a deck, after STOP.", "END", opens=True, ours="only said to be one more line"
     ),
     Command(
@@ -284,7 +293,8 @@ COMMANDS = (
     Command(
         "Print",
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones, boundary conditions, or what histories have recorded.",
+        "grid-points, zones, boundary conditions, the account of the energy, or what histories have "
+        "recorded.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(
             Word(keyword, sets=SEVERAL)
@@ -298,6 +308,7 @@ COMMANDS = (
                 "Gridpoints",
                 "Zones",
                 "BOundaries",
+                "ENErgy",
                 "HIStories",
             )
         ),

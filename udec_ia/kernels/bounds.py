@@ -8,14 +8,18 @@ A condition acts on a grid-point, on a block at its centroid, or on the middle o
                arrives is absorbed, and one is put in as a load of 2 rho C v L
 
 f is 1, a sine or a FUNCTION of time. Loads keep the direction and the size that they had when they were
-given. The work that they do is summed in WBOUND.
+given. The work that they do is summed in WBOUND if an account of the energy is kept (kernels.energy).
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from offsets.generated import (
+    GRAVX,
+    GRAVY,
     IBNPNT,
     ISGPNT,
     KBEX,
@@ -26,6 +30,8 @@ from offsets.generated import (
     KED11,
     KED12,
     KED22,
+    KGFX,
+    KGFY,
     KGPM,
     KR,
     KT,
@@ -99,7 +105,7 @@ def set_signals(h: Memory) -> None:
 
 
 @kernel
-def _velocity(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
+def velocity_of(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
     """Velocity of what condition `iu` acts on: a grid-point, or its block at (x, y)."""
     ig, ib = iget(h, iu, KUG), iget(h, iu, KUB)
     if ig != 0:
@@ -129,14 +135,27 @@ def push_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> N
 
 
 @kernel
-def _give_velocity(h: Memory, iu: int, factor: float) -> None:
-    """Set the velocities that condition `iu` gives; what that takes from rest is work of the boundary."""
+def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) -> None:
+    """Add to WBOUND what kinetic energy (kernels.energy) grows by when (ux, uy) becomes (vx, vy)."""
+    ig, ib, half = iget(h, iu, KUG), iget(h, iu, KUB), real(h, 0.5)
+    if ig != 0:
+        m, fx, fy = getr(h, ig, KGPM), getr(h, ig, KGFX), getr(h, ig, KGFY)
+    else:
+        m, fx, fy = getr(h, ib, KBM), getr(h, ib, KBFX), getr(h, ib, KBFY)
+    squares = m * (vx * vx + vy * vy - ux * ux - uy * uy)
+    power = (fx + m * h.cr[GRAVX]) * (vx - ux) + (fy + m * h.cr[GRAVY]) * (vy - uy)
+    h.cr[WBOUND] += (squares + power * h.cr[TDEL]) * half
+
+
+@kernel
+def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
+    """Set the velocities that condition `iu` gives; what that takes from those before is its work."""
     ig, ib, fix = iget(h, iu, KUG), iget(h, iu, KUB), iget(h, iu, KUFIX)
     if ig != 0:
-        vx, vy, m = getr(h, ig, KXDG), getr(h, ig, KYDG), getr(h, ig, KGPM)
+        vx, vy = getr(h, ig, KXDG), getr(h, ig, KYDG)
     else:
-        vx, vy, m = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KBM)
-    before = vx * vx + vy * vy
+        vx, vy = getr(h, ib, KXD), getr(h, ib, KYD)
+    ux, uy = vx, vy
     if fix & 1 != 0:
         vx = getr(h, iu, KUVX) * factor
     if fix & 2 != 0:
@@ -147,12 +166,13 @@ def _give_velocity(h: Memory, iu: int, factor: float) -> None:
     else:
         putr(h, ib, KXD, vx)
         putr(h, ib, KYD, vy)
-    h.cr[WBOUND] += m * (vx * vx + vy * vy - before) * real(h, 0.5)
+    if energy is not None:
+        note_jerk(h, iu, ux, uy, vx, vy)
 
 
 @kernel
-def load(h: Memory, iu: int) -> tuple[float, float, float, float, float]:
-    """Force of condition `iu` at the velocities and the signal of now, where it acts, and its power."""
+def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
+    """Force of condition `iu` at the velocities and the signal of now, and where it acts."""
     half, factor = real(h, 0.5), real(h, 1.0)
     if iget(h, iu, KUS) != 0:
         factor = getr(h, iget(h, iu, KUS), KTNOW)
@@ -161,16 +181,16 @@ def load(h: Memory, iu: int) -> tuple[float, float, float, float, float]:
     if ip != 0:
         ia = iget(h, ip, KR)
         x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
-    vx, vy = _velocity(h, iu, x, y)
+    vx, vy = velocity_of(h, iu, x, y)
     cxx, cxy, cyy = getr(h, iu, KUCXX), getr(h, iu, KUCXY), getr(h, iu, KUCYY)
     fx = getr(h, iu, KUFX) * factor - cxx * vx - cxy * vy
     fy = getr(h, iu, KUFY) * factor - cxy * vx - cyy * vy
-    return fx, fy, x, y, fx * vx + fy * vy
+    return fx, fy, x, y
 
 
 @kernel
-def apply_bounds(h: Memory) -> None:
-    """Apply all boundary conditions for the step that begins."""
+def apply_bounds(h: Memory, energy: Any) -> None:
+    """Apply all boundary conditions for the step that begins. energy: as in run_cycles."""
     zero = real(h, 0.0)
     set_signals(h)
     iu = h.ci[IBNPNT]
@@ -179,9 +199,11 @@ def apply_bounds(h: Memory) -> None:
             factor = real(h, 1.0)
             if iget(h, iu, KUS) != 0:
                 factor = getr(h, iget(h, iu, KUS), KTNOW)
-            _give_velocity(h, iu, factor)
-        fx, fy, x, y, power = load(h, iu)
+            _give_velocity(h, iu, factor, energy)
+        iu = iget(h, iu, KU)
+    iu = h.ci[IBNPNT]
+    while iu != 0:
+        fx, fy, x, y = load(h, iu)
         if fx != zero or fy != zero:
             push_load(h, iu, fx, fy, x, y)
-            h.cr[WBOUND] += power * h.cr[TDEL]
         iu = iget(h, iu, KU)

@@ -17,16 +17,18 @@ from udec_ia.kernels.bounds import apply_bounds
 from udec_ia.kernels.domains import accumulate
 from udec_ia.kernels.ford import ford_all
 from udec_ia.kernels.update import update_all
+from udec_ia.kernels.works import note_forces, note_stresses
 
 BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 
 
 @kernel
-def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any) -> int:
+def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid and free of boundary conditions, else True. laws, joints: None if no
-    deformable block, no contact follows a law of the user's, else the laws (kernels.lawcall).
+    deformable block, no contact follows a law of the user's, else the laws (kernels.lawcall). energy: None if
+    no account of the energy is kept, else True.
     """
     done = 0
     while done < n:
@@ -34,8 +36,12 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any) -> int:
             if h.ci[NSPARE] > 0 and not room(h, h.ci[NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
             if soft is not None:
-                apply_bounds(h)
+                apply_bounds(h, energy)
+            if energy is not None:
+                note_forces(h, soft)
             fastest = move_all(h, soft, laws)
+            if energy is not None:
+                note_stresses(h, soft)
             h.ci[JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
         if h.ci[JPHASE] == DOMAINS:
             if not update_all(h):
@@ -43,7 +49,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any) -> int:
             h.ci[JPHASE] = CONTACTS
         if h.ci[JPHASE] == CONTACTS:
             broken = h.ci[NBROKE]
-            ford_all(h, soft, joints)
+            ford_all(h, soft, joints, energy)
             h.ci[JPHASE] = BLOCKS if h.ci[NBROKE] == broken else BROKEN
         if h.ci[JPHASE] == BROKEN:  # domains that merged are looked through at once
             if not update_all(h):

@@ -72,7 +72,6 @@ from offsets.generated import (
     KZS22,
     NERR,
     TDEL,
-    WBOUND,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
@@ -92,23 +91,26 @@ def putfdf(h: Memory, ig: int, fx: float, fy: float) -> None:
 
 
 @inlined
-def gpmot(h: Memory, ig: int) -> tuple[float, float]:
-    """Law of motion for grid-point `ig` (GPMOT); resets its force sum; returns its velocity.
+def next_point_velocity(h: Memory, ig: int) -> tuple[float, float]:
+    """Velocity of grid-point `ig` at the end of the step, from its force sum.
 
-    A component of the velocity that KGFIX says is given stays as it is; its reaction does work.
+    A component that KGFIX says is given stays as it is.
     """
-    zero = real(h, 0.0)
     dt, con1, con2, m = h.cr[TDEL], h.cr[CON1], h.cr[CON2], getr(h, ig, KGPM)
     fx, fy = getr(h, ig, KGFX) + m * h.cr[GRAVX], getr(h, ig, KGFY) + m * h.cr[GRAVY]
     xd, yd, fix = getr(h, ig, KXDG), getr(h, ig, KYDG), iget(h, ig, KGFIX)
     if fix & 1 == 0:
         xd = (con1 * xd + fx / m * dt) * con2
-    else:
-        h.cr[WBOUND] -= fx * xd * dt
     if fix & 2 == 0:
         yd = (con1 * yd + fy / m * dt) * con2
-    else:
-        h.cr[WBOUND] -= fy * yd * dt
+    return xd, yd
+
+
+@inlined
+def gpmot(h: Memory, ig: int) -> tuple[float, float]:
+    """Law of motion for grid-point `ig` (GPMOT); resets its force sum; returns its velocity."""
+    zero, dt = real(h, 0.0), h.cr[TDEL]
+    xd, yd = next_point_velocity(h, ig)
     putr(h, ig, KGFX, zero)
     putr(h, ig, KGFY, zero)
     putr(h, ig, KXDG, xd)

@@ -65,6 +65,7 @@ from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.segments import same_segment, way_along
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, faces
+from udec_ia.kernels.works import note_corners, note_damping, note_law_damping, note_opening
 
 OVERLAP_TOO_GREAT = 15
 
@@ -183,24 +184,31 @@ def push(
 
 
 @inlined
-def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
+def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it.
 
-    soft: None if all blocks are rigid. joints: None if no contact follows a law of the user's, else the laws.
+    soft, joints, energy: as in run_cycles.
     """
     before = getr(h, ic, KCN)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, KCN, overlap)
     zero = real(h, 0.0)
     idle = overlap <= zero or getr(h, ic, KCFN) == zero
+    by_springs = True
     if joints is not None and has_law(h, joints, ic):
+        by_springs = False
         idle = is_open(h, ic, overlap)
+    if energy is not None and by_springs and overlap <= zero:
+        note_opening(h, ic)
     still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
         return  # an open contact looks at its neighbours only when the domain pass has run
+    was_x, was_y = getr(h, ic, KXDC), getr(h, ic, KYDC)
     xd, yd = cvel(h, ic, soft)
     if joints is not None and has_law(h, joints, ic):
         normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
+        if energy is not None:
+            note_law_damping(h, ic, normal, shear, -(xd * nx + yd * ny), yd * nx - xd * ny)
         push(h, ic, nx, ny, normal, shear, overlap, soft)
         return
     if overlap <= zero:
@@ -216,6 +224,8 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     fs = held + ks * dus
     putr(h, ic, KCS, getr(h, ic, KCS) + dus)
     if fn <= zero:
+        if energy is not None:
+            h.cr[WFRIC] += held * fs / (ks + ks)
         fn, fs = zero, zero
     most = h.cr[COH + m] + h.cr[AMU + m] * fn
     dashpot = h.cr[BETA] * ks * sliding
@@ -224,6 +234,15 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
         h.cr[WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
         fs = most if fs > zero else -most
         dashpot = zero
+    if energy is not None and soft is not None and before > zero and fn > zero:
+        note_corners(h, ic, fn, closing, overlap - before)
+    if energy is not None and h.cr[BETA] != zero:
+        if before <= zero:
+            was_x, was_y = zero, zero
+        held_fn = getr(h, ic, KCFN)
+        stuck = abs(held) < h.cr[COH + m] + h.cr[AMU + m] * held_fn or held_fn == zero
+        was = -(was_x * nx + was_y * ny), was_y * nx - was_x * ny if stuck else zero
+        note_damping(h, kn, ks, was, (closing, sliding), sliding if dashpot != zero else zero)
     putr(h, ic, KCFN, fn)
     putr(h, ic, KCFS, fs)
     push(h, ic, nx, ny, fn + h.cr[BETA] * kn * closing, fs + dashpot, overlap, soft)
@@ -246,7 +265,7 @@ def look_ahead(h: Memory, ic: int) -> int:
 
 
 @kernel
-def ford_all(h: Memory, soft: Any, joints: Any) -> None:
+def ford_all(h: Memory, soft: Any, joints: Any, energy: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[ICPNT]
     ahead = ic
@@ -256,7 +275,7 @@ def ford_all(h: Memory, soft: Any, joints: Any) -> None:
         ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
         following = iget(h, ic, KC)
         if iget(h, ic, KCCOD) != VIRTUAL:
-            ford(h, ic, soft, joints)
+            ford(h, ic, soft, joints, energy)
         ic = following
 
 

@@ -60,10 +60,11 @@ def by_law(h: Memory, laws: Laws, ic: int, before: float, sliding: float) -> tup
     dt = h.cr[TDEL]
     dun, dus = overlap - before, sliding * dt
     dfn, dfs = force_increment(h, laws, ic, fn, fs, dun, dus, before, us)
+    m = iget(h, ic, KCM) - 1
     if fn + dfn <= zero:
+        h.cr[WFRIC] += fs * (dus + fs / h.cr[AKS + m]) * half
         no_force(h, ic)
         return zero, zero
-    m = iget(h, ic, KCM) - 1
     lost = (fn + dfn * half) * (dun - dfn / h.cr[AKN + m]) + (fs + dfs * half) * (dus - dfs / h.cr[AKS + m])
     h.cr[WFRIC] += lost
     putr(h, ic, KCFN, fn + dfn)

@@ -76,24 +76,32 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
 
 
 @kernel
-def accelerate(h: Memory, ib: int) -> None:
-    """Velocities of block `ib` at the end of the step, from its force sums, which are reset."""
-    zero = real(h, 0.0)
-    fx, fy, ft = getr(h, ib, KBFX), getr(h, ib, KBFY), getr(h, ib, KBFT)
-    putr(h, ib, KBFX, zero)
-    putr(h, ib, KBFY, zero)
-    putr(h, ib, KBFT, zero)
-    fix = iget(h, ib, KBFIX)
-    if fix == FIXED:
-        return
+def next_velocity(h: Memory, ib: int) -> tuple[float, float, float]:
+    """Velocities of block `ib`, which is not fixed, at the end of the step, from its force sums."""
+    xd, yd, td, fix = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KTD), iget(h, ib, KBFIX)
     dt, con1, con2 = h.cr[TDEL], h.cr[CON1], h.cr[CON2]
     bm = getr(h, ib, KBM)
     if fix & GIVEN_X == 0:
-        putr(h, ib, KXD, (con1 * getr(h, ib, KXD) + (fx / bm + h.cr[GRAVX]) * dt) * con2)
+        xd = (con1 * xd + (getr(h, ib, KBFX) / bm + h.cr[GRAVX]) * dt) * con2
     if fix & GIVEN_Y == 0:
-        putr(h, ib, KYD, (con1 * getr(h, ib, KYD) + (fy / bm + h.cr[GRAVY]) * dt) * con2)
+        yd = (con1 * yd + (getr(h, ib, KBFY) / bm + h.cr[GRAVY]) * dt) * con2
     if fix != GIVEN_X + GIVEN_Y:
-        putr(h, ib, KTD, (con1 * getr(h, ib, KTD) + ft / getr(h, ib, KBI) * dt) * con2)
+        td = (con1 * td + getr(h, ib, KBFT) / getr(h, ib, KBI) * dt) * con2
+    return xd, yd, td
+
+
+@kernel
+def accelerate(h: Memory, ib: int) -> None:
+    """Velocities of block `ib` := those at the end of the step; its force sums are reset."""
+    zero = real(h, 0.0)
+    if iget(h, ib, KBFIX) != FIXED:
+        xd, yd, td = next_velocity(h, ib)
+        putr(h, ib, KXD, xd)
+        putr(h, ib, KYD, yd)
+        putr(h, ib, KTD, td)
+    putr(h, ib, KBFX, zero)
+    putr(h, ib, KBFY, zero)
+    putr(h, ib, KBFT, zero)
 
 
 @kernel

@@ -161,7 +161,7 @@ def greatest_under_loads(h: Memory) -> float:
     for i in range(n):
         conditions[i] = iu
         keep_sums(h, iu, words[i])
-        fx, fy, x, y, _ = load(h, iu)
+        fx, fy, x, y = load(h, iu)
         push_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, KU)
     most = greatest(h, True)

@@ -11,14 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import IHPNT, KH, KHG, KHK, KHN, MCTOT, NERR, TIME
+from offsets.generated import EREF, IHPNT, KH, KHG, KHK, KHN, MCTOT, NERR, TIME
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.cycle import run_cycles
+from udec_ia.kernels.energy import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.kernels.rest import force_ratio, unbalanced
 
 CHECK = 10  # cycles between two looks at the force ratio
-COMMON_BLOCK, UNBALANCED = 0, 0
+COMMON_BLOCK = 0
+UNBALANCED, RATIO, KINETIC, STRAIN = 0, 1, 2, 3
 
 
 @kernel
@@ -26,7 +28,13 @@ def quantity(h: Memory, which: int, soft: Any) -> float:
     """Quantity `which` of the whole model, in the order of ops.recordable.QUANTITIES."""
     if which == UNBALANCED:
         return float(unbalanced(h, soft))
-    return float(force_ratio(h, soft))
+    if which == RATIO:
+        return float(force_ratio(h, soft))
+    if which == KINETIC:
+        return kinetic(h, soft)
+    if which == STRAIN:
+        return strain_of_contacts(h) + strain_of_blocks(h, soft)
+    return height(h) - h.cr[EREF]
 
 
 @kernel
@@ -84,7 +92,7 @@ def run_watched(
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the force ratio fell to `ratio`.
 
-    laws: the last three arguments of run_cycles. Stops early when NERR is set, when `rows` is full, and at
+    laws: the last four arguments of run_cycles. Stops early when NERR is set, when `rows` is full, and at
     the ratio, which is looked at every CHECK cycles of the run; a negative one is never reached.
     """
     done = 0
@@ -92,7 +100,7 @@ def run_watched(
         ahead = min(int64(n - done), CHECK - h.ci[MCTOT] % CHECK) if ratio >= 0 else int64(n - done)
         before = h.ci[MCTOT]
         asked = until_due(h, ahead)
-        completed = run_cycles(h, asked, laws[0], laws[1], laws[2])
+        completed = run_cycles(h, asked, laws[0], laws[1], laws[2], laws[3])
         done += completed
         if h.ci[MCTOT] > before:
             record(h, laws[0], places, rows, count)

@@ -52,7 +52,8 @@ from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
-from udec_ia.ops.laws import LawBook, failure
+from udec_ia.ops import energy
+from udec_ia.ops.laws import Bound, LawBook, failure
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
@@ -125,13 +126,24 @@ def cycle(
     keep_spare(array)
     array.h.ci[NCYC] = n
     array.h.ci[NERR] = array.h.ci[IERAD] = 0  # a run that was interrupted may have left an error behind
+    energy.begin(array)
+    try:
+        return _run(array, n, report, every, bound, watch)
+    finally:
+        energy.end(array)
+
+
+def _run(
+    array: MainArray, n: int, report: Report | None, every: int | None, bound: Bound, watch: Watch | None
+) -> int:
+    """`n` cycles, in pieces. Returns how many were completed."""
     if watch is not None:
         watch.begin()
     done, piece = 0, every or FIRST_PIECE
     while done < n and not (watch is not None and watch.reached):
         start = perf_counter()
         most = min(piece, n - done)
-        given = soft(array), bound.blocks, bound.joints
+        given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
         done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
         _raise_error(array)
         if report is not None:

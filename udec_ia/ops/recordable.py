@@ -20,6 +20,9 @@ HISTORY = "history"
 QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.watch.quantity
     "UNBalanced": ("N/m", "greatest unbalanced force"),
     "RATio": ("-", "unbalanced force ratio, as in SOLVE"),
+    "KINetic": ("J/m", "kinetic energy"),
+    "STRain": ("J/m", "strain energy of contacts and deformable blocks"),
+    "POTential": ("J/m", "potential of gravity against that at ENERGY ON"),
 }
 
 

@@ -1,7 +1,8 @@
 """PLOT HISTORY: what was recorded against time, as PNG and SVG.
 
-Histories of one field share a panel, since they can be compared; the panels stand one above the other over
-one time axis. A curve breaks off where its group has gone.
+Histories of one field of several groups share a panel, since they can be compared, and so do quantities of
+the whole model in one unit, such as energies. The panels stand one above the other over one time axis. A
+curve breaks off where its group has gone.
 """
 
 from __future__ import annotations
@@ -43,13 +44,13 @@ def draw(series: Sequence[Series], name: str, base: Path) -> list[Path]:
 
 
 def figure(series: Sequence[Series], name: str) -> Figure:
-    """The picture: a panel for each field, in the order in which they were asked for."""
+    """The picture: its panels in the order in which they were asked for."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     panels: dict[str, list[Series]] = {}
     for one in series:
-        panels.setdefault(one.name, []).append(one)
+        panels.setdefault(one.name if one.group else one.unit or one.name, []).append(one)
     left, right, bottom, top = MARGINS
     size = (left + WIDTH + KEY_WIDTH + right, bottom + PANEL * len(panels) + top)
     picture = Figure(size, facecolor="white")
@@ -61,12 +62,11 @@ def figure(series: Sequence[Series], name: str) -> Figure:
         axes = picture.add_axes(box, sharex=shared)
         shared = shared or axes
         _panel(axes, curves)
-        if place == 0:
-            axes.set_title(name, loc="left", fontsize=10, color=INK)
         if place < len(panels) - 1:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("time (s)", fontsize=9, color=INK)
+    picture.text(left / size[0], 1 - 0.3 / size[1], name, fontsize=10, color=INK)
     return picture
 
 
@@ -75,15 +75,17 @@ def _key(one: Series) -> str:
 
 
 def _panel(axes: Axes, curves: list[Series]) -> None:
-    """The curves of one field, and a key to them."""
-    first = curves[0]
+    """Curves that belong together, and a key to them."""
+    names, unit = {one.name for one in curves}, curves[0].unit
+    label = unit if len(names) > 1 else curves[0].name + (f" ({unit})" if unit else "")
     for i, one in enumerate(curves):
         _, time, value = one.numbers.T
         style: dict[str, Any] = {"color": COLOURS[i % len(COLOURS)], "linewidth": 1.2}
         if np.isfinite(value).sum() < MARKED:
             style |= {"marker": "o", "markersize": 2.5}
         axes.plot(time, value, label=_key(one), **style)
-    axes.set_ylabel(first.name + (f" ({first.unit})" if first.unit else ""), fontsize=9, color=INK)
+    axes.set_ylabel(label, fontsize=9, color=INK)
+    axes.yaxis.get_offset_text().set(fontsize=8, color=INK)
     axes.grid(color="#e4e0d8", linewidth=0.6)
     axes.tick_params(labelsize=8, colors=INK, width=0.6)
     for spine in axes.spines.values():

@@ -21,6 +21,7 @@ from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, members, point
+from udec_ia.ops.energy import Balance, balance
 from udec_ia.ops.watch import Series
 
 T = TypeVar("T")
@@ -39,7 +40,7 @@ TABLES = {
 }
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
-HISTORIES = "histories"
+ENERGY, HISTORIES = "energy", "histories"
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
 
@@ -70,10 +71,10 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     """The tables and lists asked for, in the order asked for (PRINT, report I-1).
 
     what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
-    "dlist" (anticlockwise loop of every domain) and "histories" (what `series` have recorded). Error 7
-    without any, error 10 for anything else.
+    "dlist" (anticlockwise loop of every domain), "energy" (its account) and "histories" (what `series` have
+    recorded). Error 7 without any, 26 without an account, 10 for anything else.
     """
-    known = ", ".join([*TABLES, *LISTS, HISTORIES])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -84,6 +85,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
                 parts += _group_tables(h, "sdef")
         elif name in LISTS:
             parts += _lists(h, LISTS[name])
+        elif name == ENERGY:
+            parts.append(_energy(balance(h)))
         elif name == HISTORIES:
             parts += _histories(series)
         else:
@@ -98,6 +101,28 @@ def _state(h: Memory) -> str:
         f"cycle {h.ci[g.MCTOT]}, time {h.cr[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
         f"{h.ci[g.NCON]} contacts{virtual}, {h.ci[g.NDOM]} domains"
     )
+
+
+def _energy(b: Balance) -> str:
+    """PRINT ENERGY: what was put in, what is there, what was lost, and what is not accounted for."""
+    lines = [
+        ("there at first, and by commands", b.commands),
+        ("work of boundary conditions", b.boundary),
+        ("kinetic", b.kinetic),
+        ("strain of contacts", b.contacts),
+        ("strain of deformable blocks", b.blocks),
+        ("gravity, since the account began", b.potential),
+        ("lost to friction", b.friction),
+        ("lost to mass damping", b.mass_damping),
+        ("lost to stiffness damping", b.stiffness_damping),
+        ("lost to yielding", b.yielding),
+        ("lost to changes of shape", b.shape),
+        ("not accounted for", b.residual),
+    ]
+    table = "\n".join(f"{name:34}{value:14.6g}" for name, value in lines)
+    per_cent = 100 * abs(b.residual) / b.throughput if b.throughput else 0.0
+    share = f"{per_cent:.2g} % of {b.throughput:.6g} that passed through"
+    return f"Energy, in J per m of thickness\n{table} = {share}"
 
 
 def _histories(series: Sequence[Series]) -> list[str]:

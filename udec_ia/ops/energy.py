@@ -1,0 +1,112 @@
+"""The account of the energy: what was put in, what is there, and what was lost (ENERGY, PRINT ENERGY).
+
+It begins with ENERGY ON: what the model holds then is the first that was put in, and gravity's potential
+counts from there. Between two CYCLEs commands change a model in ways that no force does: they delete what
+moves, set velocities, change stiffnesses. What they put in or take out is the difference of what is stored,
+kinetic and strain energy, between the end of one CYCLE and the beginning of the next. So the account of the
+cycles themselves has to balance, and its residual is the error of the time-step, of contacts that open and
+close within one, and of forgotten terms.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from offsets.generated import (
+    EPOT,
+    EPUT,
+    EREF,
+    ESTOR,
+    LENER,
+    WBOUND,
+    WFRIC,
+    WMASS,
+    WSHAPE,
+    WSTIF,
+    WYIELD,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.ops.soft import soft_in
+
+
+class Balance(NamedTuple):
+    """Energies in J per m of thickness. commands: there at first, and put in by commands since."""
+
+    commands: float
+    boundary: float
+    kinetic: float
+    contacts: float
+    blocks: float
+    potential: float
+    friction: float
+    mass_damping: float
+    stiffness_damping: float
+    yielding: float
+    shape: float
+
+    @property
+    def strain(self) -> float:
+        """Strain energy of contacts and deformable blocks."""
+        return self.contacts + self.blocks
+
+    @property
+    def residual(self) -> float:
+        """What was put in and is neither there nor lost."""
+        return self.commands + self.boundary - sum(self[2:])
+
+    @property
+    def throughput(self) -> float:
+        """What came in from all sources, or went to all sinks: the mean of both."""
+        return sum(map(abs, self)) / 2
+
+
+def keeps_account(array: MainArray) -> Any:
+    """None if no account is kept: nothing of it is compiled then."""
+    return True if array.h.ci[LENER] else None
+
+
+def switch(array: MainArray, on: bool) -> None:
+    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends."""
+    h = array.h
+    h.ci[LENER] = int(on)
+    for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
+        h.cr[name] = 0
+    h.cr[EPUT] = h.cr[ESTOR] = _stored(h)
+    h.cr[EREF] = float(height(h))
+
+
+def balance(h: Memory) -> Balance:
+    """The account as it is now. Error 26 if none is kept."""
+    if not h.ci[LENER]:
+        raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
+    moving = float(kinetic(h, soft_in(h)))
+    springs, blocks = float(strain_of_contacts(h)), float(strain_of_blocks(h, soft_in(h)))
+    commands = float(h.cr[EPUT]) + (moving + springs + blocks - float(h.cr[ESTOR]))
+    lost = (float(h.cr[name]) for name in (WFRIC, WMASS, WSTIF, WYIELD, WSHAPE))
+    return Balance(commands, float(h.cr[WBOUND]), moving, springs, blocks, float(h.cr[EPOT]), *lost)
+
+
+def begin(array: MainArray) -> None:
+    """A CYCLE begins: note what commands have done since the last one."""
+    h = array.h
+    if h.ci[LENER]:
+        h.cr[EPUT] = balance(h).commands
+        h.cr[ESTOR] = _stored(h)
+        h.cr[EREF] = float(height(h)) - float(h.cr[EPOT])
+
+
+def end(array: MainArray) -> None:
+    """A CYCLE has ended."""
+    h = array.h
+    if h.ci[LENER]:
+        h.cr[ESTOR] = _stored(h)
+        h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
+
+
+def _stored(h: Memory) -> float:
+    """Kinetic and strain energy."""
+    soft = soft_in(h)
+    return float(kinetic(h, soft)) + float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
