@@ -11,6 +11,7 @@ from naive.dynamics import angle_between, bounce, peaks
 
 from offsets.generated import ALPHA, BETA
 from udec_ia import Model
+from udec_ia.errors import UdecError
 
 EPS = np.finfo(float).eps
 
@@ -154,3 +155,57 @@ def _momentum(m: Model) -> list[float]:
     px, py = b["KBM"] * b["KXD"], b["KBM"] * b["KYD"]
     spin = b["KX"] * py - b["KY"] * px + b["KBI"] * b["KTD"]
     return [float(px.sum()), float(py.sum()), float(spin.sum())]
+
+
+def pair_of_squares(gap: float) -> Model:
+    """Unit squares side by side, `gap` apart, two above a fixed base 40 wide, without gravity; D = 0.1."""
+    m = model(*box(-20, 20, -1, 3), d=0.1, gravity=(0.0, 0.0))
+    m.split(-21, 0, 21, 0)
+    m.split(-21, 2, 21, 2)
+    m.delete(-20, 20, 0, 2)
+    m.fix(-20, 20, -1, 0)
+    for x in (-1 - gap / 2, -gap / 2, gap / 2, 1 + gap / 2):
+        m.split(x, 1, x, 4)
+    m.delete(-20, -1 - gap / 2, 2, 3)
+    m.delete(1 + gap / 2, 20, 2, 3)
+    if gap:
+        m.delete(-gap / 2, gap / 2, 2, 3)
+    return m
+
+
+@pytest.mark.parametrize("gap", [0.0, 3.0])
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.0])
+def test_blocks_fly_apart_however_fast(gap: float, angle: float) -> None:
+    """At two rounding lengths a cycle each, side by side or upwards: nothing is in their way."""
+    m = pair_of_squares(gap)
+    m.cycle(1)
+    speed = 0.2 / step(m)
+    left, right = (block(m, x, 2.5) for x in (-0.5 - gap / 2, 0.5 + gap / 2))
+    for row, way in ((left, -1), (right, 1)):
+        push(m, row["address"], way * speed * np.cos(angle), speed * np.sin(angle))
+    n = 50
+    m.cycle(n)
+    for row, way in ((left, -1), (right, 1)):
+        now = at(m, "block", row["address"])
+        assert now["KX"] == pytest.approx(row["KX"] + way * n * 0.2 * np.cos(angle), abs=1e-9)
+        assert now["KY"] == pytest.approx(row["KY"] + n * 0.2 * np.sin(angle), abs=1e-9)
+    sound(m)
+
+
+@pytest.mark.parametrize(("way", "ends"), [(0.2, True), (0.005, False)])
+def test_blocks_that_go_into_each_other_in_one_step_end_the_run(way: float, ends: bool) -> None:
+    """From a gap to an overlap of more than D/2: error 15. Slower ones meet in a contact."""
+    m = pair_of_squares(0.5)
+    m.property(1, kn=1e12, ks=1e12)
+    m.cycle(1)
+    left, right = (block(m, x, 2.5)["address"] for x in (-0.75, 0.75))
+    push(m, left, way / 2 / step(m))
+    push(m, right, -way / 2 / step(m))
+    if ends:
+        with pytest.raises(UdecError, match="have gone into each other") as caught:
+            m.cycle(20)
+        assert caught.value.number == 15
+        return
+    m.cycle(200)
+    assert at(m, "block", left)["KXD"] < 0 < at(m, "block", right)["KXD"]
+    sound(m)

@@ -177,8 +177,8 @@ def _raise_error(array: MainArray) -> None:
         raise failure(array, group)
     if iget(h, group, HEAD) == MDOM:
         detail = (
-            f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} in cycle "
-            f"{int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact to be formed in time"
+            f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} and have gone into each "
+            f"other in cycle {int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact in time"
         )
         raise UdecError(number, detail, "take a smaller FRACTION or a greater ROUND", group=group)
     if iget(h, group, HEAD) != MCON:  # it vanished in a later pass of the same cycle
