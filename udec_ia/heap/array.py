@@ -16,6 +16,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
 
 FIRST_SIZE = 8192
+LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
 LINE = 64  # bytes that the machine's memory hands out at a time
 
 
@@ -45,6 +46,12 @@ class MainArray:
         self.h.ci[MFREE] = 1
         self.h.ci[MTOP] = words
 
+    def _copied(self, size: int) -> Any:
+        """`size` words, of which those below MFREE are as they are now and the others zero."""
+        ia, used = _words(size, self.scheme.int_type), int(self.h.ci[MFREE]) - 1
+        ia[:used] = self.h.ia[:used]
+        return ia
+
     def _whole_reals(self, words: int) -> int:
         return words // self.scheme.ratio * self.scheme.ratio
 
@@ -65,10 +72,9 @@ class MainArray:
         need = int(ci[MFREE] + ci[NWANT])
         if need - 1 > self.limit:
             return False
-        size = min(max(self._whole_reals(2 * need), FIRST_SIZE), self.limit)
-        ia = _words(size, self.scheme.int_type)
-        ia[: len(self.h.ia)] = self.h.ia
-        self.h = self._views(ia, ci, self.h.cr)
+        wanted = max(2 * need, FIRST_SIZE if need < LARGE else AMPLE)  # words not touched yet cost nothing
+        size = min(self._whole_reals(wanted), self.limit)
+        self.h = self._views(self._copied(size), ci, self.h.cr)
         ci[MTOP] = size
         ci[NERR] = ci[NWANT] = 0
         return True
@@ -77,7 +83,5 @@ class MainArray:
         """An independent copy of the whole state."""
         other = object.__new__(MainArray)
         other.scheme, other.fixed = self.scheme, self.fixed
-        ia = _words(len(self.h.ia), self.scheme.int_type)
-        ia[:] = self.h.ia
-        other.h = self._views(ia, self.h.ci.copy(), self.h.cr.copy())
+        other.h = self._views(self._copied(len(self.h.ia)), self.h.ci.copy(), self.h.cr.copy())
         return other

@@ -38,7 +38,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
         start = moved[order[kind][0]] - 1
         words[start : start + rows.size] = rows.ravel()
     h.ia[: free - 1] = words
-    h.ia[free - 1 :] = 0
+    h.ia[free - 1 : int(h.ci[MFREE]) - 1] = 0
     for field in table.common:
         if field.role == "head":
             i = getattr(generated, field.name)

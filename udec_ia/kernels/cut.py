@@ -48,7 +48,7 @@ from offsets.generated import (
     NVSD,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
@@ -95,17 +95,16 @@ def enter_boxes(h: Memory, boxes: Any, blocks: Any) -> int:
     return h.ci[NBLK]
 
 
-@kernel
-def in_path(box: Any, line: Any, far: Any) -> bool:
-    """True unless the box lies clear of the line, or on one side of it."""
-    if max(line[0], far[0]) < box[0] or min(line[0], far[0]) > box[2]:
+@inlined
+def in_path(boxes: Any, k: int, line: Any, far: Any) -> bool:
+    """True unless box `k` lies clear of the line, or on one side of it."""
+    ax, ay, bx, by = boxes[k, 0], boxes[k, 1], boxes[k, 2], boxes[k, 3]
+    if max(line[0], far[0]) < ax or min(line[0], far[0]) > bx:
         return False
-    if max(line[1], far[1]) < box[1] or min(line[1], far[1]) > box[3]:
+    if max(line[1], far[1]) < ay or min(line[1], far[1]) > by:
         return False
-    x, y = (box[0] + box[2]) / 2 - line[0], (box[1] + box[3]) / 2 - line[1]
-    return abs(y * line[2] - x * line[3]) <= (
-        (box[2] - box[0]) * abs(line[3]) + (box[3] - box[1]) * abs(line[2])
-    )
+    x, y = (ax + bx) / 2 - line[0], (ay + by) / 2 - line[1]
+    return abs(y * line[2] - x * line[3]) <= (bx - ax) * abs(line[3]) + (by - ay) * abs(line[2])
 
 
 @kernel
@@ -118,7 +117,7 @@ def path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where
     far = (line[0] + line[2] * line[4], line[1] + line[3] * line[4])
     found = 0
     for k in range(n):
-        if not in_path(boxes[k], line, far):
+        if not in_path(boxes, k, line, far):
             continue
         what, cuts = try_cuts(h, blocks[k], line, where, which)
         if what != OK:

@@ -76,7 +76,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
     if status != DONE:
         _refuse(array, status, found, float(where[0, X]), float(where[0, Y]))
-    for ib in boxes.blocks[rows[:found]].tolist():
+    for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
     status, boxes.n = cut_path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, soft(array))
