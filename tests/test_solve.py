@@ -103,9 +103,10 @@ def carried(m: Model) -> list[float]:
     return found
 
 
-def test_the_ratio_of_deformable_blocks_under_loads() -> None:
+def test_the_ratio_of_deformable_blocks_under_loads(tmp_path: Path) -> None:
     """Against the tables, while loads, springs and zones are at work; and looking changes no bit."""
     m = every_kind()
+    m.out = tmp_path
     m.boundary(1, 3, 0, 1, free=True)  # simply-deformable blocks
     seen = []
     for _ in range(5):
