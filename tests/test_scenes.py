@@ -21,6 +21,7 @@ from offsets.generated import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIR
 from udec_ia.model import Model
 
 SCENES = 300
+NARROW = 60  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
 
@@ -71,6 +72,19 @@ def segments(row: Any) -> tuple[Any, ...]:
 def test_every_cycle_of_random_scenes_is_sound(first: int) -> None:
     for seed in range(first, first + BATCH):
         play(seed, watch=sound, cycles=SHORT)
+
+
+@pytest.mark.parametrize("first", range(0, NARROW, BATCH))
+def test_every_cycle_of_random_scenes_with_narrow_reals_is_sound(first: int) -> None:
+    for seed in range(first, first + BATCH):
+        play(seed, Model(build="i16r32"), watch=sound, cycles=SHORT)
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i16r32"])
+@pytest.mark.parametrize("seed", [256, 434, 504, 512, 544, 549, 717])
+def test_contacts_around_small_triangles_are_sound(seed: int, build: str) -> None:
+    """Joints that almost meet in one point cut out triangles and wedges not much larger than the rounding."""
+    play(seed, Model(build=build), watch=sound, cycles=SHORT)
 
 
 @pytest.mark.parametrize("first", range(SCENES, SCENES + 30, 5))

@@ -24,6 +24,7 @@ from offsets.generated import (
     COH,
     DTOL2,
     FTOL,
+    HTOL,
     ICPNT,
     IERAD,
     KB1,
@@ -63,7 +64,7 @@ from udec_ia.kernels.jointlaw import by_law, has_law, is_open
 from udec_ia.kernels.lists import is_contact
 from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
-from udec_ia.kernels.segments import same_segment, way_along
+from udec_ia.kernels.segments import ahead_by, same_segment
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, faces
 from udec_ia.kernels.works import note_corners, note_damping, note_law_damping, note_opening
 
@@ -97,30 +98,26 @@ def has_twin(h: Memory, ic: int) -> bool:
 
 
 @inlined
-def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, most: float) -> bool:
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool) -> bool:
     """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other."""
-    ahead, behind = same_segment(h, after, ip, arc), same_segment(h, before, ip, arc)
-    if not ahead and not behind:
-        return False
-    x, y = getr(h, ic, KXC), getr(h, ic, KYC)
-    tx, ty, z = way_along(h, ip, arc)
-    if ahead and ((getr(h, after, KXC) - x) * tx + (getr(h, after, KYC) - y) * ty) / z < -most:
+    x, y, most = getr(h, ic, KXC), getr(h, ic, KYC), h.cr[FTOL]
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y) < -most:
         return True
-    return behind and ((getr(h, before, KXC) - x) * tx + (getr(h, before, KYC) - y) * ty) / z > most
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y) > most
 
 
 @inlined
-def overtaken(h: Memory, ic: int, gap: float) -> bool:
+def overtaken(h: Memory, ic: int) -> bool:
     """True if open contact `ic` and a neighbour on the same segment have passed each other.
 
     Something has slipped through the gap: the contact is no wall any more.
     """
-    code, most = iget(h, ic, KCCOD), h.cr[FTOL] + gap
+    code = iget(h, ic, KCCOD)
     after, before, ip = iget(h, ic, KL1), iget(h, ic, KLB1), iget(h, ic, KCP1)
-    if passed(h, ic, after, before, ip, code != EDGE_CORNER, most):
+    if passed(h, ic, after, before, ip, code != EDGE_CORNER):
         return True
     after, before, ip = iget(h, ic, KL2), iget(h, ic, KLB2), iget(h, ic, KCP2)
-    return passed(h, ic, after, before, ip, code != CORNER_EDGE, most)
+    return passed(h, ic, after, before, ip, code != CORNER_EDGE)
 
 
 @inlined
@@ -146,7 +143,7 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         return False
     is_bridge = iget(h, ic, KD1) == iget(h, ic, KD2)
     if overlap >= -h.cr[BTOL]:
-        gone = overlap <= 0 and (turned_away(h, ic, nx, ny) or overtaken(h, ic, -overlap))
+        gone = overlap <= 0 and (turned_away(h, ic, nx, ny) or overtaken(h, ic))
         if not gone and (is_bridge or not has_twin(h, ic)):
             return False
     h.ci[NBROKE] += 1
@@ -200,7 +197,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
         idle = is_open(h, ic, overlap)
     if energy is not None and by_springs and overlap <= zero:
         note_opening(h, ic)
-    still = h.cr[UPEND] != zero and -h.cr[BTOL] <= overlap <= zero
+    still = zero < h.cr[UPEND] < h.cr[HTOL] and -h.cr[BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
         return  # an open contact looks at its neighbours only when the domain pass has run
     was_x, was_y = getr(h, ic, KXDC), getr(h, ic, KYDC)

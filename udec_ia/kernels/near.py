@@ -159,7 +159,8 @@ def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: fl
 def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
     """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
 
-    Urgent is the greatest overlap at the place in the list where the contact belongs.
+    Urgent is the greatest overlap at the place in the list where the contact belongs. An open contact that
+    would be given up at once, because something stands in its gap, is not made but asked for again.
     """
     zero = real(h, 0.0)
     ib, ip, iarc = seg[i, BLOCK], seg[i, CORNER], seg[i, ARC]
@@ -192,7 +193,8 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
     )
     if wrong > h.cr[ETOL]:
         return 0, zero
-    if len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp):
+    passed = wrong > h.cr[FTOL]
+    if (passed and overlap <= 0) or (len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp)):
         h.ci[NTIPS] += 1
         return 0, zero
     return code, overlap - wrong

@@ -79,10 +79,29 @@ def way_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
 
 
 @kernel
+def _foot(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
+    """Where the arc of corner `ip` is nearest to the point (x, y) outside it; a point inside stays."""
+    rad = getr(h, ip, KRAD)
+    dx, dy = x - getr(h, ip, KXCP), y - getr(h, ip, KYCP)
+    z = np.sqrt(dx * dx + dy * dy)
+    if z <= rad:
+        return x, y
+    return getr(h, ip, KXCP) + dx / z * rad, getr(h, ip, KYCP) + dy / z * rad
+
+
+@kernel
 def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float) -> float:
-    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise."""
+    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise.
+
+    On an arc it is the two places on the arc that count, along its chord: an open contact lies off the arc by
+    half of its gap, and where the arc is narrow that is far to one side.
+    """
+    ax, ay, bx, by = x, y, getr(h, ic, KXC), getr(h, ic, KYC)
+    if arc and getr(h, ip, KRAD) > 0:
+        ax, ay = _foot(h, ip, ax, ay)
+        bx, by = _foot(h, ip, bx, by)
     tx, ty, z = way_along(h, ip, arc)
-    return ((getr(h, ic, KXC) - x) * tx + (getr(h, ic, KYC) - y) * ty) / z
+    return ((bx - ax) * tx + (by - ay) * ty) / z
 
 
 @kernel

@@ -16,6 +16,7 @@ import numpy as np
 
 from offsets.generated import (
     BTOL,
+    DTOL,
     KB1,
     KB2,
     KCCOD,
@@ -55,30 +56,34 @@ def find_tips(h: Memory, seg: Any, n: int) -> Any:
 
 
 @kernel
-def _cross(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float) -> bool:
-    """True if the segments ab and cd cross."""
-    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
-    a = ux * (cy - ay) - uy * (cx - ax)
-    b = ux * (dy - ay) - uy * (dx - ax)
-    c = vx * (ay - cy) - vy * (ax - cx)
-    d = vx * (by - cy) - vy * (bx - cx)
-    return (a > 0) != (b > 0) and (c > 0) != (d > 0)
+def _crosses(ax: float, ay: float, bx: float, by: float, nx: float, ny: float, half: float) -> bool:
+    """True if the segment ab crosses the one from minus to plus `half` along the unit vector (nx, ny)."""
+    a, b = nx * ay - ny * ax, nx * by - ny * bx
+    if (a > 0) == (b > 0):
+        return False
+    return abs((nx * ax + ny * ay) * b - (nx * bx + ny * by) * a) < half * abs(b - a)
 
 
 @kernel
-def _stands_in(h: Memory, ib: int, ip: int, ax: float, ay: float, bx: float, by: float) -> bool:
-    """True if the rounded corner `ip` of block `ib`, or an edge at it, crosses the segment ab."""
-    x, y = getr(h, ip, KXCP) - ax, getr(h, ip, KYCP) - ay
-    ux, uy = bx - ax, by - ay
-    part = (x * ux + y * uy) / (ux * ux + uy * uy)
-    part = min(max(part, real(h, 0.0)), real(h, 1.0))
-    x, y = x - part * ux, y - part * uy
+def _stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
+    """True if corner `ip` of block `ib`, rounded, or an edge at it crosses a gap.
+
+    The gap is 2 `half` wide along the unit vector (nx, ny), its middle is at (x, y).
+    """
+    dx, dy = getr(h, ip, KXCP) - x, getr(h, ip, KYCP) - y
+    out = max(abs(dx * nx + dy * ny) - half, real(h, 0.0))
+    across = dx * ny - dy * nx
     r = getr(h, ip, KRAD)
-    if x * x + y * y < r * r:
+    if out * out + across * across < r * r:
         return True
-    px, py = getr(h, ip, KXP), getr(h, ip, KYP)
+    px, py = getr(h, ip, KXP) - x, getr(h, ip, KYP) - y
     for iq in (iget(h, ip, KR), next_corner(h, ib, ip)):
-        if _cross(ax, ay, bx, by, px, py, getr(h, iq, KXP), getr(h, iq, KYP)):
+        ux, uy = getr(h, iq, KXP) - getr(h, ip, KXP), getr(h, iq, KYP) - getr(h, ip, KYP)
+        part = h.cr[DTOL] / np.sqrt(ux * ux + uy * uy)  # of the edge, that its rounding takes at either end
+        most = real(h, 1.0) - (part if getr(h, iq, KRAD) > 0 else real(h, 0.0))
+        ax, ay = px + ux * part, py + uy * part
+        bx, by = px + ux * most, py + uy * most
+        if _crosses(ax, ay, bx, by, nx, ny, half):
             return True
     return False
 
@@ -89,11 +94,10 @@ def blocked(h: Memory, seg: Any, tips: Any, ib: int, jb: int, code: int, ip: int
     nx, ny, overlap, x, y, _ = meet(h, code, ip, jp)
     if not overlap < 0:
         return False
-    half = overlap * real(h, 0.5)
-    ax, ay, bx, by = x + nx * half, y + ny * half, x - nx * half, y - ny * half
+    half = -overlap * real(h, 0.5)
     for i in tips:
         kb = seg[i, BLOCK]
-        if kb not in (ib, jb) and _stands_in(h, kb, seg[i, CORNER], ax, ay, bx, by):
+        if kb not in (ib, jb) and _stands_in(h, kb, seg[i, CORNER], x, y, nx, ny, half):
             return True
     return False
 
