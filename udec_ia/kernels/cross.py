@@ -74,32 +74,23 @@ def _edge_crossing(h: Memory, ip: int, line: Any) -> tuple[float, float, float]:
 
 @kernel
 def _corner_crosses(h: Memory, ib: int, ip: int, line: Any, eps: float) -> int:
-    """Corner `ip` lies on the line: 1 if the line passes from side to side of the outline here.
+    """Corner `ip` lies on the line: 1 if the line goes into the block or out of it here.
 
-    0 if it does not, -1 if it touches a reflex corner from inside or runs between two of them. A line
-    that runs along an edge from a convex to a reflex corner goes in or out at the reflex one.
+    0 if it does not, -1 if it touches a reflex corner from inside. Where an edge along the line begins or
+    ends, the line leaves the inside of the block if that is on both sides of it: at a reflex corner.
     """
-    before = side(h, iget(h, ip, KR), line, eps)
-    iq = next_corner(h, ib, ip)
-    after = side(h, iq, line, eps)
-    reflex = is_reflex(h, ib, ip)
+    ia, iq = iget(h, ip, KR), next_corner(h, ib, ip)
+    before, after = side(h, ia, line, eps), side(h, iq, line, eps)
     if before != 0 and after != 0:
         if before != after:
             return 1
-        return -1 if reflex else 0
+        return -1 if is_reflex(h, ib, ip) else 0
     if before == 0 and after == 0:
         return 0  # a flat corner on an edge along the line
-    if before == 0:
-        far, beyond = iget(h, ip, KR), side(h, iget(h, iget(h, ip, KR), KR), line, eps)
-        here = after
-    else:
-        far, beyond = iq, side(h, next_corner(h, ib, iq), line, eps)
-        here = before
-    if beyond == here or beyond == 0:
-        return -1 if reflex else 0
-    if reflex == is_reflex(h, ib, far):
-        return -1
-    return 1 if reflex else 0
+    start, end = (ia, ip) if before == 0 else (ip, iq)
+    ux, uy = getr(h, end, KXP) - getr(h, start, KXP), getr(h, end, KYP) - getr(h, start, KYP)
+    forwards = ux * line[2] + uy * line[3] > 0  # the inside of the block is to the right of its edge
+    return 1 if (before + after > 0) == forwards else 0
 
 
 @kernel

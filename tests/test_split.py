@@ -1,0 +1,61 @@
+"""SPLIT along the edges of concave blocks: exactly along the floor of a notch, on and on, from both sides."""
+
+from __future__ import annotations
+
+import pytest
+from naive.geometry import Outline, Point, centroid
+from naive.geometry import split as naive_split
+
+from udec_ia import Model
+
+U = [(0, 0), (0, 3), (1, 3), (1, 1), (2, 1), (2, 3), (3, 3), (3, 0)]
+T = [(1, 0), (1, 2), (0, 2), (0, 3), (3, 3), (3, 2), (2, 2), (2, 0)]
+L = [(0, 0), (0, 3), (1, 3), (1, 1), (3, 1), (3, 0)]
+Z = [(0, 0), (0, 2), (1, 2), (1, 3), (3, 3), (3, 1), (2, 1), (2, 0)]
+H = [(0, 0), (0, 3), (1, 3), (1, 2), (2, 2), (2, 3), (3, 3), (3, 0), (2, 0), (2, 1), (1, 1), (1, 0)]
+CUTS = [
+    ("the floor of a U", U, (-1, 1), (4, 1), 2),
+    ("from end to end of that floor and no farther", U, (1, 1), (2, 1), 0),
+    ("one side of that floor", U, (-1, 1), (1.5, 1), 1),
+    ("a wall of a U", U, (1, -1), (1, 4), 1),
+    ("under the arms of a T", T, (-1, 2), (4, 2), 1),
+    ("the step of an L", L, (-1, 1), (4, 1), 1),
+    ("that step, up to its corner", L, (1, 1), (0, 1), 1),
+    ("two steps one after the other", Z, (1, -1), (1, 4), 1),
+    ("two notches that share a line", H, (1, -1), (1, 4), 1),
+    ("the ceiling of the lower notch of an H", H, (-1, 1), (4, 1), 2),
+]
+
+
+DIGITS = 3 * 8 * 2.0**-23  # of centroids of blocks 3 across: some last digits of 32-bit reals
+
+
+def turned(point: Point, times: int) -> Point:
+    x, y = point
+    for _ in range(times):
+        x, y = -y, x
+    return x, y
+
+
+def in_order(points: list[Point]) -> list[Point]:
+    return sorted(points, key=lambda point: (round(point[0], 3), round(point[1], 3)))
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i16r32"])
+@pytest.mark.parametrize("times", range(4))
+@pytest.mark.parametrize(("where", "outline", "start", "end", "cuts"), CUTS, ids=[cut[0] for cut in CUTS])
+def test_along_an_edge(
+    build: str, times: int, where: str, outline: Outline, start: Point, end: Point, cuts: int
+) -> None:
+    """The blocks are those that a library of polygons cuts out, whichever way the line runs."""
+    corners = [turned(point, times) for point in outline]
+    one, two = turned(start, times), turned(end, times)
+    wanted = in_order([centroid(part) for part in naive_split(corners, one, two)])
+    for line in ((*one, *two), (*two, *one)):
+        model = Model(build=build)
+        model.block(*(number for point in corners for number in point))
+        assert model.split(*line) == cuts, where
+        found = in_order([(float(row["KX"]), float(row["KY"])) for row in model.table("block")])
+        for here, there in zip(found, wanted, strict=True):
+            assert here == pytest.approx(there, abs=DIGITS)
+        assert model.check() == []
