@@ -1,9 +1,10 @@
 """Where a line crosses a block, and whether the block can be split there.
 
-The line is given by its start (x1, y1), its unit vector (c, s) and its length z. Corners count as on
-the line when they are so to rounding. The crossings are ordered along the line; between the first and
-the second, the third and the fourth ... the line runs inside the block. The block is split there if
-both ends lie within the given line: a line that ends inside a block leaves it whole.
+The line is given by its start (x1, y1), its unit vector (c, s) and its length z; the sixth number is the
+shortest edge that a cut may leave. Corners count as on the line when they are so to rounding. The crossings
+are ordered along the line; between the first and the second, the third and the fourth ... the line runs
+inside the block. The block is split there if both ends lie within the given line: a line that ends inside a
+block leaves it whole.
 
 Nothing is ever moved to a corner that is merely near: a cut that would leave an edge shorter than the
 smallest allowed, or that runs almost along an edge, is refused with its coordinates.
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import DTOL, KP, KR, KXP, KYP, LROUND, MCTOT
+from offsets.generated import KP, KR, KXP, KYP, LROUND, MCTOT
 from udec_ia.heap.accessors import Memory, getr, iget, real, rounding
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import next_corner
@@ -33,6 +34,12 @@ CORNER, AT = 0, 1
 def slack(h: Memory, x: float, y: float) -> float:
     """Distance that counts as zero at (x, y): some roundings of the coordinates."""
     return (abs(x) + abs(y)) * real(h, ROUNDINGS) * rounding(h)
+
+
+@kernel
+def rounding_is_open(h: Memory) -> bool:
+    """True while the rounding length still follows from the edges: no ROUND and no cycle yet."""
+    return h.ci[LROUND] == 0 and h.ci[MCTOT] == 0
 
 
 @kernel
@@ -169,10 +176,10 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
         if at == 0:
             vx, vy = x - getr(h, ia, KXP), y - getr(h, ia, KYP)
             part = np.sqrt(vx * vx + vy * vy)
-            if h.ci[LROUND] == 1 or h.ci[MCTOT] > 0:
-                if min(part, z - part) < (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999):
-                    return TOO_SHORT
-            elif min(part, z - part) < z * real(h, SHORTEST):
+            least = min(part, z - part)
+            if least < line[5]:
+                return TOO_SHORT
+            if rounding_is_open(h) and least < z * real(h, SHORTEST):
                 return TOO_CLOSE
     return OK
 
@@ -186,9 +193,7 @@ def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
         if what != OK:
             where[0, X], where[0, Y] = x, y
             return what
-    z = where[k + 1, T] - where[k, T]
-    fixed = h.ci[LROUND] == 1 or h.ci[MCTOT] > 0
-    if fixed and z < (h.cr[DTOL] + h.cr[DTOL]) * real(h, 0.999999):
+    if where[k + 1, T] - where[k, T] < line[5]:
         where[0, X], where[0, Y] = where[k, X], where[k, Y]
         return TOO_SHORT
     return OK

@@ -34,8 +34,6 @@ from offsets.generated import (
     KXP,
     KYC,
     KYP,
-    LROUND,
-    MCTOT,
     MSDEF,
     NBLK,
     NBROKE,
@@ -51,7 +49,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.bridge import flag_all
-from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, try_cuts
+from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.ford import restart, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.masses import share_extension
@@ -181,7 +179,7 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
     jb = spli(h, ib, ia, iz)
     if soft is not None and iget(h, ib, HEAD) == MSDEF:
         share_extension(h, ib, jb)
-    if h.ci[LROUND] == 0 and h.ci[MCTOT] == 0:
+    if rounding_is_open(h):
         least = min(_shortest(h, ib), _shortest(h, jb))
         if least < h.cr[DTOL] * real(h, 4.0):
             set_rounding(h, least * real(h, 0.125))

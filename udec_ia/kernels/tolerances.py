@@ -27,9 +27,11 @@ from offsets.generated import (
     KB,
     KP,
     KR,
+    KXP,
+    KYP,
     NSHORT,
 )
-from udec_ia.heap.accessors import Memory, iget, int64, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.shape import crad, is_edge_point, zcs
 
@@ -77,6 +79,23 @@ def edges(h: Memory) -> tuple[float, float, int]:
                 break
         ib = iget(h, ib, KB)
     return total / real(h, n), least, shortest
+
+
+@kernel
+def extent(h: Memory) -> float:
+    """Greatest |x| + |y| of any corner."""
+    most = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        ip0 = iget(h, ib, KP)
+        ip = ip0
+        while True:
+            most = max(most, abs(getr(h, ip, KXP)) + abs(getr(h, ip, KYP)))
+            ip = iget(h, ip, KR)
+            if ip == ip0:
+                break
+        ib = iget(h, ib, KB)
+    return most
 
 
 @kernel

@@ -15,12 +15,18 @@ from udec_ia.kernels.bridge import maked
 from udec_ia.kernels.shape import makeb
 from udec_ia.kernels.split import makep, new_block
 from udec_ia.kernels.tolerances import default_rounding, set_rounding
-from udec_ia.ops.limits import constitutive_number, finite, material_number
+from udec_ia.ops.limits import (
+    EDGE_DIGITS,
+    ROUNDING_DIGITS,
+    check_resolution,
+    constitutive_number,
+    finite,
+    material_number,
+)
 from udec_ia.ops.memory import require
 from udec_ia.ops.rounding import check_rounding
 
 Point = tuple[float, float]
-FINEST = 1e-4  # rounding of a coordinate, as a part of the shortest edge, that leaves room to cut
 PART = 0.01  # length of the smallest parts that are cut, as a part of the block's
 CLOCKWISE = "give the corners in clockwise order, along an outline that does not cross itself"
 
@@ -72,14 +78,12 @@ def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
     """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings."""
     ends = zip(corners, (*corners[1:], corners[0]), strict=True)
     least, x, y = min((math.dist(a, b), *b) for a, b in ends)
-    bits = array.scheme.real_bits
-    digit = float(np.finfo(array.scheme.real_type).eps) * max(abs(x) + abs(y) for x, y in corners)
-    if least < digit / FINEST:
-        detail = f"an edge {least:g} long, where {bits}-bit reals resolve {digit:g}"
-        advice = "take the origin nearer to the block, or a --build with 64-bit reals"
-        raise UdecError(28, detail, advice, parameter="x1")
+    size = max(abs(x) + abs(y) for x, y in corners)
+    check_resolution(array, "x1", "an edge", least, EDGE_DIGITS, size)
     if array.h.ci[LROUND]:
-        check_rounding(float(array.h.cr[DTOL]), least, x, y)
+        d = float(array.h.cr[DTOL])
+        check_rounding(d, least, x, y)
+        check_resolution(array, "x1", "a rounding length", d, ROUNDING_DIGITS, size)
 
 
 def _check_outline(corners: Sequence[Point]) -> None:

@@ -19,6 +19,12 @@ NMAT = next(field.count for field in read_table().common if field.name == "AKN")
 NCONS = 5
 LARGEST = 2**63 - 1  # integer of the common block
 
+# How many last digits of a coordinate long an edge must be, and a rounding length, which without ROUND is
+# at least a twentieth of an edge. FTOL, a twentieth again and the least length that decides about a contact,
+# is then 25 digits, and so is the radius of a corner of 6 degrees; of the sharpest that SPLIT makes, 2.5.
+EDGE_DIGITS = 1e4
+ROUNDING_DIGITS = EDGE_DIGITS / 20
+
 
 def material_number(n: int) -> int:
     """`n` if it is a material number, else error 4."""
@@ -70,3 +76,24 @@ def positive(array: MainArray, **numbers: float) -> None:
     for name, value in numbers.items():
         if value <= 0:
             raise UdecError(28, f"{name} is {value:g}", f"{name} must be positive", parameter=name)
+
+
+def last_digit(array: MainArray, size: float) -> float:
+    """What the reals of the word scheme resolve where |x| + |y| is up to `size`."""
+    return float(np.finfo(array.scheme.real_type).eps) * size
+
+
+def check_resolution(
+    array: MainArray, parameter: str, what: str, length: float, digits: float, size: float
+) -> None:
+    """Error 28 at `parameter` if `length` is less than so many last digits where |x| + |y| is `size`."""
+    digit = last_digit(array, size)
+    if length < digits * digit:
+        bits = array.scheme.real_bits
+        raise UdecError(
+            28,
+            f"{what} {length:g} long, where {bits}-bit reals resolve {digit:g}",
+            f"it must be at least {digits * digit:g}: take the origin nearer to the blocks, or a --build "
+            "with 64-bit reals",
+            parameter=parameter,
+        )

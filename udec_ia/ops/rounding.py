@@ -24,10 +24,10 @@ from udec_ia.heap.accessors import getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.ford import settle_all
-from udec_ia.kernels.tolerances import default_rounding, edges, set_rounding
+from udec_ia.kernels.tolerances import default_rounding, edges, extent, set_rounding
 from udec_ia.kernels.touch import VIRTUAL
 from udec_ia.kernels.update import update_all
-from udec_ia.ops.limits import positive
+from udec_ia.ops.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.memory import all_or_nothing, find_room, keep_spare
 
 
@@ -81,11 +81,12 @@ def update_flagged(array: MainArray) -> None:
 
 
 def round_corners(array: MainArray, d: float) -> None:
-    """ROUND d. Error 28 if `d` is not positive; error 14, and nothing is changed, if an edge is too short for
-    it or if an overlap would be more than half of it.
+    """ROUND d. Error 28 unless `d` is positive and the reals resolve it; error 14, and nothing is changed, if
+    an edge is too short for it or if an overlap would be more than half of it.
     """
     positive(array, d=d)
     check_all_edges(array, d)
+    check_resolution(array, "d", "a rounding length", d, ROUNDING_DIGITS, float(extent(array.h)))
     with all_or_nothing(array):
         h = array.h
         h.ci[LROUND] = 1

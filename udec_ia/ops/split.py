@@ -10,10 +10,10 @@ from offsets.generated import DTOL, KBEX, KFG, MCTOT, MFDEF, NBLK
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.cross import MOST, X, Y
+from udec_ia.kernels.cross import MOST, X, Y, rounding_is_open
 from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
 from udec_ia.ops.forces import renew_forces
-from udec_ia.ops.limits import finite
+from udec_ia.ops.limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import update_flagged
 from udec_ia.ops.soft import soft
@@ -26,6 +26,7 @@ class Boxes:
         self.boxes = np.zeros((0, 4))
         self.blocks = np.zeros(0, np.int64)
         self.n = 0
+        self.size = 0.0  # greatest |x| + |y| that a corner can have
 
     def forget(self) -> None:
         """Blocks have moved or gone: look at the block list again next time."""
@@ -38,6 +39,8 @@ class Boxes:
             self._resize(array, 4 * count + MOST)
         if self.n != count:
             self.n = enter_boxes(array.h, self.boxes, self.blocks)
+            far = np.abs(self.boxes[: self.n]).max(axis=0)
+            self.size = float(max(far[0], far[2]) + max(far[1], far[3]))
 
     def _resize(self, array: MainArray, size: int) -> None:
         boxes, blocks = np.zeros((size, 4), array.h.cr.dtype), np.zeros(size, np.int64)
@@ -59,7 +62,7 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
     before = int(array.h.ci[NBLK])
     if before == 0:
         return 0
-    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z], array.h.cr.dtype)
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, 0], array.h.cr.dtype)
     while not _cut(array, boxes, line):
         boxes.forget()
     if array.h.ci[MCTOT] > 0:
@@ -72,10 +75,12 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     keep_spare(array)
     boxes.enter(array)
     h = array.h
+    digit = last_digit(array, boxes.size)
+    line[5] = EDGE_DIGITS * digit if rounding_is_open(h) else 2 * (h.cr[DTOL] - digit)
     rows, where = np.empty(boxes.n, np.int64), np.empty((MOST, 3), h.cr.dtype)
     status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
     if status != DONE:
-        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]))
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[5]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
@@ -89,15 +94,19 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     return bool(status == DONE)
 
 
-def _refuse(array: MainArray, status: int, ib: int, x: float, y: float) -> None:
+def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, least: float) -> None:
     place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
+    if status == REFUSED_SHORT and rounding_is_open(array.h):
+        bits = array.scheme.real_bits
+        detail = f"{place} it leaves an edge shorter than {least:g}, the finest for {bits}-bit reals here"
+        advice = "move the line, take the origin nearer to the blocks, or a --build with 64-bit reals"
+        raise UdecError(27, detail, advice, group=ib)
     if status == REFUSED_SHORT:
-        d = float(array.h.cr[DTOL])
-        detail = f"the cut {place} leaves an edge shorter than {2 * d:g}"
+        detail = f"the cut {place} leaves an edge shorter than {least:g}"
         raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
     raise UdecError(
         27,
         place,
-        "move the line: it may pass exactly through a corner, but not graze one or run along a concave edge",
+        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside",
         group=ib,
     )

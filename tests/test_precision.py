@@ -1,0 +1,160 @@
+"""What the reals of a word scheme resolve: no place is lost to rounding, and what is too fine is refused."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+from offsets import generated as g
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, putr
+from udec_ia.inspect.walk import corners, groups
+from udec_ia.kernels.near import arc_on_arc, arc_on_edge
+from udec_ia.kernels.shape import crad
+from udec_ia.model import Model
+from udec_ia.ops.limits import EDGE_DIGITS, ROUNDING_DIGITS, last_digit
+
+ROUNDING = 0.5
+SIDE = 4.0
+
+
+def stack(build: str, angle: float, far: float) -> tuple[Model, int, int]:
+    """Two squares on one another, turned by `angle`: the model, the lower and the upper block."""
+    c, s = cos(angle), sin(angle)
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        return far + c * x - s * y, far + s * x + c * y
+
+    model = Model(build)
+    corner = [at(*point) for point in ((0, -SIDE), (0, SIDE), (SIDE, SIDE), (SIDE, -SIDE))]
+    model.block(*(number for point in corner for number in point))
+    model.split(*at(-1, 0), *at(SIDE + 1, 0))
+    model.round(ROUNDING)
+    lower, upper = sorted(
+        groups(model.h, "block"),
+        key=lambda ib: c * (getr(model.h, ib, g.KY) - far) - s * (getr(model.h, ib, g.KX) - far),
+    )
+    return model, lower, upper
+
+
+def can_touch(model: Model, one: int, two: int) -> bool:
+    """True if any arc of one block can have a contact with an arc or edge of the other."""
+    h = model.h
+    return any(
+        arc_on_arc(h, ip, iq)[0] or arc_on_edge(h, ip, iq)[0] or arc_on_edge(h, iq, ip)[0]
+        for ip in corners(h, one)
+        for iq in corners(h, two)
+    )
+
+
+@pytest.mark.parametrize("build", ["i32r32", "i32r64"])
+@pytest.mark.parametrize("far", [0.0, 100.0])
+def test_no_place_between_edge_and_arc_is_lost(build: str, far: float) -> None:
+    """A square slides, digit by digit, over the place where the edge below it passes into an arc.
+
+    Its corner's circle stands on the edge, or on the arc, or its own edge stands on the arc.
+    """
+    rng = np.random.default_rng(3)
+    for angle in rng.uniform(0, 2 * pi, 20):
+        model, lower, upper = stack(build, angle, far)
+        h = model.h
+        digit = last_digit(model.array, 2 * far + 2 * SIDE)
+        there = [(ip, getr(h, ip, g.KXP), getr(h, ip, g.KYP)) for ip in corners(h, upper)]
+        for k in range(-20, 21):
+            slide = SIDE - 2 * ROUNDING + k * digit  # now the two circles are one above the other
+            for ip, x, y in there:
+                putr(h, ip, g.KXP, x + slide * cos(angle))
+                putr(h, ip, g.KYP, y + slide * sin(angle))
+            crad(h, upper)
+            assert can_touch(model, upper, lower), (angle, k)
+
+
+def memory(model: Model) -> list[bytes]:
+    """All words of a model but NSPARE, by which the array is kept ready for the next command."""
+    common = np.delete(model.h.ci, g.NSPARE)
+    return [part.tobytes() for part in (model.h.ia, common, model.h.cr)]
+
+
+def too_fine(model: Model, command: str, *numbers: float) -> UdecError:
+    """The error of a command that is refused and changes nothing."""
+    before = memory(model)
+    with pytest.raises(UdecError) as caught:
+        getattr(model, command)(*numbers)
+    assert memory(model) == before
+    return caught.value
+
+
+SQUARE = (100, 100, 100, 110, 110, 110, 110, 100)
+
+
+@pytest.mark.parametrize("times", [1.01, 0.99])
+def test_a_rounding_length_must_be_resolved(times: float) -> None:
+    """32-bit reals resolve 2^-23 of |x| + |y|, at most 220 here; 64-bit reals take the same length easily."""
+    least = ROUNDING_DIGITS * 220 * 2.0**-23
+    for build in ("i32r32", "i32r64"):
+        model = Model(build)
+        model.block(*SQUARE)
+        if times > 1 or build == "i32r64":
+            model.round(times * least)
+            assert model.check() == []
+            continue
+        error = too_fine(model, "round", times * least)
+        assert error.number == 28
+        assert f"32-bit reals resolve {220 * 2.0**-23:g}" in error.detail
+        assert f"at least {least:g}" in error.advice
+
+
+def test_a_block_must_fit_the_rounding_length_given_before() -> None:
+    model = Model("i32r32")
+    model.round(0.005)  # there is no block yet, so nothing is known about its coordinates
+    error = too_fine(model, "block", *SQUARE)
+    assert error.number == 28
+    assert "a rounding length 0.005" in error.detail
+    model.block(0, 0, 0, 10, 10, 10, 10, 0)
+    assert model.check() == []
+
+
+def test_an_edge_must_be_resolved() -> None:
+    """A line that would leave an edge too fine is refused by name; a little farther on it cuts."""
+    least = EDGE_DIGITS * 220 * 2.0**-23
+    for build in ("i32r32", "i32r64"):
+        model = Model(build)
+        model.block(*SQUARE)
+        x = 100 + 0.9 * least
+        if build == "i32r64":
+            assert model.split(x, 99, x, 111) == 1
+            continue
+        error = too_fine(model, "split", x, 99, x, 111)
+        assert error.number == 27
+        assert f"shorter than {least:g}, the finest for 32-bit reals" in error.detail
+        x = 100 + 1.1 * least
+        assert model.split(x, 99, x, 111) == 1
+        assert model.check() == []
+
+
+def test_a_cut_must_leave_a_thousandth_of_an_edge() -> None:
+    """While the rounding length is open. With 32-bit reals 10,000 digits are more than that here."""
+    for build, least in (("i32r64", 1e-3 * 10), ("i32r32", EDGE_DIGITS * 20 * 2.0**-23)):
+        for x in (least, 10 - least):
+            inwards = 1e-3 * np.sign(5 - x) * least
+            model = Model(build)
+            model.block(0, 0, 0, 10, 10, 10, 10, 0)
+            assert too_fine(model, "split", x - inwards, -1, x - inwards, 11).number == 27
+            assert model.split(x + inwards, -1, x + inwards, 11) == 1
+
+
+def test_lines_that_end_in_a_sliver() -> None:
+    """Three lines that leave edges of less than a millimetre on a block of 10 m.
+
+    With 32-bit reals the last one is refused: its edges would be a few hundred digits long.
+    """
+    lines = [(8.362, 3.133, 2.554, 4.64), (8.081, -2.387, 8.345, 9.61), (0.982, 1.934, 12.793, 4.055)]
+    for build, cuts in (("i32r64", [1, 2, 3]), ("i32r32", [1, 2])):
+        model = Model(build)
+        model.block(0, 0, 5, 9, 10, 0)
+        for line, parts in zip(lines, cuts, strict=False):
+            assert model.split(*line) == parts
+            assert model.check() == []
+    assert too_fine(model, "split", *lines[2]).number == 27
