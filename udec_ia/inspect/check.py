@@ -3,7 +3,8 @@
     1. every word below MFREE is in exactly one group, in use or junk; nothing points into junk
     2. every pointer is 0 or the base of a group of its kind; the main lists are linked both ways
     3. clockwise lists close, contacts in physical order; links back and reverse lists mirror them
-    4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close
+    4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close; what
+       hangs on a virtual contact lies in the domain in which it hangs
     5. blocks - contacts + domains = 2, and the counts of the common block are true
     6. grid-point and corner links are mutual
     7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
@@ -32,6 +33,7 @@ from udec_ia.inspect.check_groups import State, Violation, check_pointers
 from udec_ia.inspect.check_history import check_histories
 from udec_ia.inspect.check_map import check_map
 from udec_ia.inspect.check_memory import check_memory
+from udec_ia.inspect.check_pieces import check_pieces
 from udec_ia.inspect.check_place import check_places
 
 __all__ = ["Violation", "check", "check_links"]
@@ -62,6 +64,7 @@ def check(array: MainArray) -> list[Violation]:
         shapes = outlines(state)
         if shapes is not None:
             check_outlines(state, shapes)
+            check_pieces(state, shapes)
             touching = touches(state, shapes)
             check_contacts(state, shapes, touching)
             check_places(state, shapes, touching)

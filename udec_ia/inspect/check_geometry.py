@@ -34,8 +34,8 @@ class Outlines:
 
     block: addresses of the blocks; first, count: where their corners stand; owner: index into `block`.
     corner: address; before, after: index of the neighbours. p, c: corner and circle centre (n x 2);
-    r: radius; pointed: True for a point of an edge, by its grid-point. d: the rounding length; step: relative
-    rounding error of a coordinate of the heap.
+    r: radius; pointed: True for a point of an edge, by its grid-point. d: the rounding length; digit:
+    relative rounding error of one real of the heap; cycles: in each the coordinates were rounded anew.
     """
 
     block: Numbers
@@ -50,7 +50,8 @@ class Outlines:
     r: Numbers
     pointed: Numbers
     d: float
-    step: float
+    digit: float
+    cycles: float
 
     @cached_property
     def z(self) -> Numbers:
@@ -84,10 +85,19 @@ class Outlines:
         return np.asarray(np.arctan2(-cross(t, after), dot(t, after)))
 
     @cached_property
-    def slack(self) -> Numbers:
-        """What a coordinate of the corner, or of its circle, may be off by rounding."""
+    def fine(self) -> Numbers:
+        """What the heap's reals may be off in a length that follows from the coordinates as they are."""
         size = np.maximum(np.abs(self.p).max(axis=1), np.maximum(np.abs(self.c).max(axis=1), np.abs(self.r)))
-        return np.asarray(np.maximum.reduceat(size, self.first)[self.owner] * self.step)
+        return np.asarray(np.maximum.reduceat(size, self.first)[self.owner] * self.digit * ROUNDINGS)
+
+    @cached_property
+    def slack(self) -> Numbers:
+        """What a coordinate of the corner, or of its circle, may have gone off against the others.
+
+        It grows with the square root of the number of cycles, for each rounds anew, and with their number,
+        for a block that spins steadily rounds the same way in each.
+        """
+        return np.asarray(self.fine * (np.sqrt(self.cycles) + self.cycles / ROUNDINGS))
 
     @cached_property
     def start(self) -> Numbers:
@@ -116,11 +126,7 @@ def turned(a: Numbers) -> Numbers:
 
 
 def outlines(state: State) -> Outlines | None:
-    """The outlines of the blocks whose lists close and whose coordinates are finite; None if there are none.
-
-    The tolerance of a coordinate grows with the square root of the number of cycles, for each rounds anew,
-    and with their number, for a block that spins steadily rounds the same way in each.
-    """
+    """The outlines of the blocks with closed lists and finite coordinates; None if there are none."""
     ring_of = {
         block: [iad for iad in ring if not state.is_contact[iad]] for block, ring in state.rings.items()
     }
@@ -146,8 +152,6 @@ def outlines(state: State) -> Outlines | None:
     owner = np.repeat(np.arange(len(block)), count)
     here = np.arange(len(owner))
     last = first + count - 1
-    cycles = 1.0 + max(state.common("MCTOT"), 0)
-    step = float(np.finfo(state.h.cr.dtype).eps) * (ROUNDINGS * np.sqrt(cycles) + cycles)
     return Outlines(
         block=block,
         first=first,
@@ -161,7 +165,8 @@ def outlines(state: State) -> Outlines | None:
         r=r[kept],
         pointed=on_edge[grid_point[kept]],
         d=state.tolerance("DTOL"),
-        step=step,
+        digit=float(np.finfo(state.h.cr.dtype).eps),
+        cycles=1.0 + max(state.common("MCTOT"), 0),
     )
 
 
@@ -250,7 +255,7 @@ class Touches:
 
     row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
     outlines; overlap, point: from the outlines, the point in the middle of the overlap; slack: what they may
-    be off by rounding.
+    be off by rounding, also because SPLIT has made the circles anew.
     """
 
     row: Numbers
