@@ -27,7 +27,16 @@ if TYPE_CHECKING:
 
 DAMAGED = 20  # after this error the main array is not worth saving: RESTART would refuse it
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
-COUNTED = {"split": "cut off", "delete": "deleted", "fix": "fixed", "free": "set free", "change": "changed"}
+COUNTED = {  # what a command that returns a number has done
+    "split": "block cut off",
+    "delete": "block deleted",
+    "fix": "block fixed",
+    "free": "block set free",
+    "change": "block changed",
+    "insitu": "block stressed",
+    "boundary": "condition in the range",
+}
+NONE = {"split": "no block cut", "boundary": "no condition in range"}
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
 
@@ -83,8 +92,8 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if name in COUNTED and isinstance(result, int):
             self._write(counted(name, result, self.model))
-        if name == "cycle":
-            self._write(f" CYCLE: {self.model.step_limits()}")
+        if name in ("cycle", "solve"):
+            self._write(f" {name.upper()}: {self.model.step_limits()}")
         self._show(result)
         self.model.deck_log += [
             line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
@@ -171,6 +180,7 @@ def _names_a_file(text: str) -> bool:
 def counted(name: str, n: int, model: Model) -> str:
     """One line on what the command `name`, which returned `n`, has done."""
     if n == 0:
-        return f" {name.upper()}: no block {'cut' if name == 'split' else 'in range'}"
+        return f" {name.upper()}: {NONE.get(name, 'no block in range')}"
     now = f", {model.h.ci[NBLK]} blocks now" if name in ("split", "delete") else ""
-    return f" {name.upper()}: {n} block{'s' if n > 1 else ''} {COUNTED[name]}{now}"
+    what, _, done = COUNTED[name].partition(" ")
+    return f" {name.upper()}: {n} {what}{'s' if n > 1 else ''} {done}{now}"

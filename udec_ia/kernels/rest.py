@@ -1,9 +1,9 @@
 """How far a model is from rest: its greatest unbalanced force, and that against the forces it carries.
 
 Unbalanced is what accelerates something free: a rigid block, a grid-point of a fully-deformable block, or the
-strains of a simply-deformable one, there as a force at the distance of its farthest corner. The weight
-counts, and so do the loads of boundary conditions: these are put on the force sums for a moment, whose old
-words are kept and put back, so that looking changes no bit.
+strains of a simply-deformable one; moments and strains as a force at the distance of the farthest corner.
+The weight counts, and so do the loads of boundary conditions: these are put on the force sums for a moment,
+whose old words are kept and put back, so that looking changes no bit.
 """
 
 from __future__ import annotations
@@ -68,13 +68,14 @@ SUMS = len(BLOCK_SUMS) + len(APPLIED)  # that a load can change; those of a grid
 
 @kernel
 def block_force(h: Memory, ib: int) -> float:
-    """Unbalanced force on block `ib` as a whole."""
+    """Unbalanced force on block `ib` as a whole; its moment counts as a force on the farthest corner."""
     fix, bm, zero = iget(h, ib, KBFIX), getr(h, ib, KBM), real(h, 0.0)
     if fix == FIXED:
         return zero
     fx = zero if fix & GIVEN_X else getr(h, ib, KBFX) + bm * h.cr[GRAVX]
     fy = zero if fix & GIVEN_Y else getr(h, ib, KBFY) + bm * h.cr[GRAVY]
-    return np.sqrt(fx * fx + fy * fy)
+    ft = zero if fix == GIVEN_X + GIVEN_Y else getr(h, ib, KBFT) / getr(h, ib, KBRO)
+    return max(np.sqrt(fx * fx + fy * fy), abs(ft))
 
 
 @kernel

@@ -22,12 +22,14 @@ from offsets.generated import (
     KB1,
     KB2,
     KBEX,
+    KBFIX,
     KC,
     KCCOD,
     KCM,
     KFG,
     KFZ,
     KG,
+    KGFIX,
     KGP,
     KGPM,
     KMAT,
@@ -44,7 +46,23 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.fdef import gradient
 from udec_ia.kernels.lists import corner_of
+from udec_ia.kernels.motion import FIXED
 from udec_ia.kernels.touch import VIRTUAL
+
+
+@kernel
+def addresses(h: Memory, first: int, link: Any) -> Any:
+    """Addresses of the groups of a chain, in its order: `first` (0: none) and those that `link` leads to."""
+    n, iad = 0, int64(first)
+    while iad != 0:
+        n += 1
+        iad = iget(h, iad, link)
+    found = np.empty(n, np.int64)
+    iad = int64(first)
+    for i in range(n):
+        found[i] = iad
+        iad = iget(h, iad, link)
+    return found
 
 
 @kernel
@@ -87,16 +105,16 @@ def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
 
 @kernel
 def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
-    """Least mass over stiffness of all internal modes and grid-points, and the address that has it.
+    """Least mass over stiffness of all internal modes and grid-points that can move, and its address.
 
     stiffness: one real for every word of IA() in use, all zero.
     """
     least, at = real(h, np.inf), int64(0)
     ib = h.ci[IBPNT]
     while ib != 0:
-        if iget(h, ib, HEAD) == MFDEF:
+        if iget(h, ib, KBFIX) != FIXED and iget(h, ib, HEAD) == MFDEF:
             zone_stiffness(h, ib, stiffness)
-        elif iget(h, ib, HEAD) == MSDEF and internal_mode(h, ib) < least:
+        elif iget(h, ib, KBFIX) != FIXED and iget(h, ib, HEAD) == MSDEF and internal_mode(h, ib) < least:
             least, at = internal_mode(h, ib), ib
         ib = iget(h, ib, KB)
     ic = h.ci[ICPNT]
@@ -106,10 +124,10 @@ def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
         ic = iget(h, ic, KC)
     ib = h.ci[IBPNT]
     while ib != 0:
-        if iget(h, ib, HEAD) == MFDEF:
+        if iget(h, ib, KBFIX) != FIXED and iget(h, ib, HEAD) == MFDEF:
             ig = iget(h, iget(h, ib, KBEX), KFG)
             while ig != 0:
-                if getr(h, ig, KGPM) < least * stiffness[ig]:
+                if iget(h, ig, KGFIX) != 3 and getr(h, ig, KGPM) < least * stiffness[ig]:
                     least, at = getr(h, ig, KGPM) / stiffness[ig], ig
                 ig = iget(h, ig, KG)
         ib = iget(h, ib, KB)

@@ -131,14 +131,17 @@ def boundary(
     if sine is not None:
         positive(array, sine=sine[0])
         not_negative(array, sine=sine[1])
+    moves = xvel is not None or yvel is not None or bool(xforce or yforce)
+    presses = viscous or any((*stress, *xgrad, *ygrad))
+    _check_asked(moves or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where)
     fix = (xvel is not None) + 2 * (yvel is not None)
     loads: dict[Target, Load] = {}
-    if fix or xforce or yforce:
+    if moves:
         for target in _points(array.h, where):
             loads.setdefault(target, Load()).add(xforce, yforce)
-    if viscous or any((*stress, *xgrad, *ygrad)):
+    if presses:
         for ib, ip in _edges(array.h, where):
             _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
     if not loads:
@@ -157,6 +160,19 @@ def boundary(
             _release(h, target, fix)
         _make(h, target, load, fix if on_point else 0, (xvel or 0.0, yvel or 0.0), signal)
     return len(loads)
+
+
+def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> None:
+    """Error 26 if no condition is given, 10 if those that are given cannot stand together."""
+    if free and (condition or sine or function):
+        raise UdecError(
+            10, "FREE stands alone", "give other conditions in a line of their own", parameter="free"
+        )
+    if sine and function:
+        advice = "a condition follows a sine or a function, not both"
+        raise UdecError(10, "FUNCTION beside SINE", advice, parameter="function")
+    if not (condition or free):
+        raise UdecError(26, "no velocity, and no force or stress that is not 0", "BOUNDARY 0 9 0 1 YVEL=0")
 
 
 def _inside(where: Range, x: float, y: float) -> bool:

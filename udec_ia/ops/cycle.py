@@ -11,6 +11,7 @@ from time import perf_counter
 
 from offsets.generated import (
     AKN,
+    ALAM1,
     ALPB,
     ALPHA,
     C1B,
@@ -31,6 +32,7 @@ from offsets.generated import (
     KCM,
     KCN,
     KFZ,
+    KMAT,
     KX,
     KXC,
     KY,
@@ -39,6 +41,7 @@ from offsets.generated import (
     MCTOT,
     MDOM,
     MFDEF,
+    MRIG,
     NBLK,
     NCYC,
     NERR,
@@ -79,7 +82,7 @@ def prepare(array: MainArray) -> None:
         make_masses(h, soft(array))
     settle_default(array)
     check_all_edges(array, float(h.cr[DTOL]))
-    _check_zones(array)
+    _check_deformable(array)
     h.cr[TDEL] = time_step(array)
     for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
         half = h.cr[alpha] * h.cr[TDEL] / 2
@@ -92,13 +95,17 @@ def prepare(array: MainArray) -> None:
         h.cr[con2] = 1 / (1 + half)
 
 
-def _check_zones(array: MainArray) -> None:
-    """Error 26 for a fully-deformable block without zones."""
+def _check_deformable(array: MainArray) -> None:
+    """Error 26 for a fully-deformable block without zones, or a deformable one without stiffness."""
     h = array.h
     for ib in chain(h, int(h.ci[IBPNT]), KB) if h.ci[NSOFT] else ():
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFZ) == 0:
             place = f"({getr(h, ib, KX):g}, {getr(h, ib, KY):g})"
             raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
+        m = iget(h, ib, KMAT)
+        if iget(h, ib, HEAD) != MRIG and not h.cr[ALAM1 + m - 1] > 0:
+            detail = f"block@{ib} is deformable, and its material {m} has neither BULK nor G"
+            raise UdecError(26, detail, f"PROPERTY MATERIAL={m} BULK=... G=...", group=ib)
 
 
 def cycle(

@@ -121,6 +121,10 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 def set_fraction(array: MainArray, f: float, safe: bool = False) -> None:
     """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound."""
     positive(array, f=f)
+    if safe and f > 1:
+        raise UdecError(
+            28, f"{f:g} of the safe bound is not safe", "FRACTION f SAFE takes f up to 1", parameter="f"
+        )
     array.h.cr[FRAC] = f
     array.h.ci[LSAFE] = int(safe)
 

@@ -84,7 +84,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass
-from udec_ia.kernels.timestep import soft_step
+from udec_ia.kernels.timestep import addresses, soft_step
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.ops.lists import chain
 
@@ -105,55 +105,63 @@ class _Rows:
 
     def __init__(self, h: Memory) -> None:
         self.h = h
-        words = int(h.ci[MFREE]) + 1
+        blocks = addresses(h, int(h.ci[IBPNT]), KB)
+        meshed = blocks[_ints(h, blocks, HEAD) == MFDEF]
+        firsts = _ints(h, _ints(h, meshed, KBEX), KFG)
+        points = [addresses(h, int(first), KG) for first in firsts]
+        self.address = np.unique(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
+        words = len(self.address)
         self.sum = np.zeros((words, DOFS))
         self.mass = np.full((words, DOFS), np.inf)
         self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
         self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
         self.length = np.ones(words)  # radius of gyration of a block
-        blocks = _addresses(h, int(h.ci[IBPNT]), KB)
-        self.kind = np.zeros(words, np.int64)
-        self.kind[blocks] = _ints(h, blocks, HEAD)
-        self._enter_blocks(blocks[self.kind[blocks] != MFDEF])
-        for ib in blocks[self.kind[blocks] == MFDEF]:
-            self._enter_zones(int(ib))
+        self._enter_blocks(blocks[_ints(h, blocks, HEAD) != MFDEF])
+        for ib, own in zip(meshed, points, strict=True):
+            self._enter_zones(int(ib), own)
+
+    def row(self, addresses: Array) -> Array:
+        """Rows of blocks and grid-points."""
+        return np.searchsorted(self.address, addresses)
 
     def _enter_blocks(self, blocks: Array) -> None:
         """Masses of rigid and simply-deformable blocks, and the inner stiffness of the latter."""
         h = self.h
         mass = _reals(h, blocks, KBM)
-        self.length[blocks] = np.sqrt(_reals(h, blocks, KBI) / mass)
-        self.mass[blocks] = mass[:, None]
+        rows = self.row(blocks)
+        self.length[rows] = np.sqrt(_reals(h, blocks, KBI) / mass)
+        self.mass[rows] = mass[:, None]
         fix = _ints(h, blocks, KBFIX)
-        self.free[blocks, 0] = fix & 3 == 0
-        self.free[blocks, 1] = fix & 5 == 0
-        self.free[blocks, 2] = (fix != 1) & (fix != 6)
-        soft = blocks[(self.kind[blocks] == MSDEF) & (fix != 1)]
+        self.free[rows, 0] = fix & 3 == 0
+        self.free[rows, 1] = fix & 5 == 0
+        self.free[rows, 2] = (fix != 1) & (fix != 6)
+        soft = blocks[(_ints(h, blocks, HEAD) == MSDEF) & (fix != 1)]
         if not len(soft):
             return
-        ext, mat = _ints(h, soft, KBEX), _ints(h, soft, KMAT) - 1
+        rows, ext, mat = self.row(soft), _ints(h, soft, KBEX), _ints(h, soft, KMAT) - 1
         j11, j12, j22, area = (_reals(h, ext, k) for k in (KSJ11, KSJ12, KSJ22, KSAREA))
         zero = np.zeros_like(j11)
         tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
-        square = self.length[soft] ** 2
-        self.mass[soft, 3:] = (np.linalg.eigvalsh(tensor)[:, 0] / square)[:, None]
-        self.free[soft, 3:] = 1
+        square = self.length[rows] ** 2
+        self.mass[rows, 3:] = (np.linalg.eigvalsh(tensor)[:, 0] / square)[:, None]
+        self.free[rows, 3:] = 1
         one, two = h.cr[ALAM1 + mat], h.cr[ALAM2 + mat]
-        self.sum[soft, 3] = self.sum[soft, 4] = area * (one + np.abs(two)) / square
-        self.sum[soft, 5] = area * 2 * (one - two) / square
+        self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
+        self.sum[rows, 5] = area * 2 * (one - two) / square
 
-    def _enter_zones(self, ib: int) -> None:
+    def _enter_zones(self, ib: int, points: Array) -> None:
         """Masses of the grid-points of block `ib`, and the stiffness of its zones."""
         h, ie = self.h, iget(self.h, ib, KBEX)
-        points, zones = _addresses(h, iget(h, ie, KFG), KG), _addresses(h, iget(h, ie, KFZ), KZ)
-        self.mass[points] = _reals(h, points, KGPM)[:, None]
+        rows, zones = self.row(points), addresses(h, int(iget(h, ie, KFZ)), KZ)
+        self.mass[rows] = _reals(h, points, KGPM)[:, None]
         fix = _ints(h, points, KGFIX)
         held = iget(h, ib, KBFIX) == 1
-        self.free[points, 0] = (fix & 1 == 0) & (not held)
-        self.free[points, 1] = (fix & 2 == 0) & (not held)
+        self.free[rows, 0] = (fix & 1 == 0) & (not held)
+        self.free[rows, 1] = (fix & 2 == 0) & (not held)
         corner = np.stack([_ints(h, zones, KZG, i) for i in (2, 1, 0)], axis=1)
         x, y = (_reals(h, corner, k) for k in (KXG, KYG))
         b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
+        corner = self.row(corner)
         twice = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
         one, two = (float(h.cr[k + iget(h, ib, KMAT) - 1]) for k in (ALAM1, ALAM2))
         shear = (one - two) / 2
@@ -171,7 +179,7 @@ class _Rows:
     def add_contacts(self) -> None:
         """The stiffness of all contacts that are not virtual."""
         h = self.h
-        contacts = _addresses(h, int(h.ci[ICPNT]), KC)
+        contacts = addresses(h, int(h.ci[ICPNT]), KC)
         contacts = contacts[_ints(h, contacts, KCCOD) != VIRTUAL]
         if not len(contacts):
             return
@@ -193,7 +201,7 @@ class _Rows:
         h = self.h
         blocks, corners = _ints(h, contacts, kb), _ints(h, contacts, kp)
         x, y = _reals(h, contacts, KXC), _reals(h, contacts, KYC)
-        meshed = self.kind[blocks] == MFDEF
+        meshed = _ints(h, blocks, HEAD) == MFDEF
         body = self._body(blocks, x, y)
         before = _ints(h, corners, KR)
         xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
@@ -201,22 +209,23 @@ class _Rows:
         part = np.clip(((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy), 0, 1)
         part = np.where(np.isin(_ints(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
         point = _point(len(body[0]))
-        here = np.where(meshed, _ints(h, corners, KGP), blocks)
-        there = np.where(meshed, _ints(h, before, KGP), 0)
+        here = self.row(np.where(meshed, _ints(h, corners, KGP), blocks))
+        there = self.row(np.where(meshed, _ints(h, before, KGP), 0))
         first = np.where(meshed[:, None], point * part[:, None], body)
         second = np.where(meshed[:, None], point * (1 - part)[:, None], 0.0)
         return [(here, first), (there, second)]
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
-        rx, ry = (np.abs(p - _reals(self.h, blocks, k)) / self.length[blocks] for p, k in ((x, KX), (y, KY)))
+        length = self.length[self.row(blocks)]
+        rx, ry = (np.abs(p - _reals(self.h, blocks, k)) / length for p, k in ((x, KX), (y, KY)))
         one, zero = np.ones_like(rx), np.zeros_like(rx)
         return np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
 
     def add_dashpots(self) -> None:
         """The dashpots of all viscous boundaries."""
         h = self.h
-        bounds = _addresses(h, int(h.ci[IBNPNT]), KU)
+        bounds = addresses(h, int(h.ci[IBNPNT]), KU)
         cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
         blocks, points, corners = (_ints(h, bounds, k) for k in (KUB, KUG, KUP))
         before = _ints(h, corners, KR)
@@ -224,8 +233,8 @@ class _Rows:
             np.where(corners > 0, (_reals(h, corners, kp) + _reals(h, before, kp)) / 2, _reals(h, blocks, k))
             for kp, k in ((KXP, KX), (KYP, KY))
         )
-        at = np.where(points > 0, points, blocks)
-        share = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
+        at = self.row(np.where(points > 0, points, blocks))
+        share: Array = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
         total = (share * self.free[at]).sum(axis=2)
         for axis, (along, across) in enumerate(((cxx, cxy), (cyy, cxy))):
             rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
@@ -236,7 +245,7 @@ class _Rows:
         rate = _rate(self.sum / self.mass, self.drag / self.mass) * (self.free > 0)
         at = int(rate.max(axis=1).argmax())
         fastest = float(rate[at].max())
-        return Limit(2 / fastest if fastest else math.inf, at)
+        return Limit(2 / fastest if fastest else math.inf, int(self.address[at]))
 
 
 def _point(n: int) -> Array:
@@ -281,7 +290,7 @@ def estimate(array: MainArray) -> Limit:
 
 def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
     """The least step of what viscous boundaries hold; stiffness: of the grid-points, by address."""
-    bounds = _addresses(h, int(h.ci[IBNPNT]), KU)
+    bounds = addresses(h, int(h.ci[IBNPNT]), KU)
     if not len(bounds):
         return Limit(math.inf, 0)
     blocks, points = _ints(h, bounds, KUB), _ints(h, bounds, KUG)
@@ -315,7 +324,8 @@ def time_step(array: MainArray) -> float:
     """FRAC times the estimate, or times the safe bound if asked for; error 28 if reals cannot hold it."""
     critical = estimate(array).step
     if array.h.ci[LSAFE]:
-        critical = min(bound(array).step, critical)
+        safe = bound(array).step
+        critical = damped(safe, float(array.h.cr[BETA])) if math.isfinite(safe) else critical
     step = float(array.h.cr[FRAC]) * critical
     reals = np.finfo(array.scheme.real_type)
     if not reals.smallest_normal < step < reals.max:
@@ -323,19 +333,26 @@ def time_step(array: MainArray) -> float:
     return step
 
 
+def damped(step: float, beta: float) -> float:
+    """The critical time-step with stiffness damping, `step` being that without it.
+
+    A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
+    damping at the frequency w.
+    """
+    share = beta / step
+    return step / (math.hypot(1, share) + share)
+
+
 def instability(array: MainArray) -> str:
     """A warning if stiffness damping may make the time-step unstable, else "".
 
-    A dashpot lowers the critical time-step to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of
-    critical damping at the highest frequency w, here that of the safe bound.
+    The highest frequency is taken to be that of the safe bound.
     """
     cr = array.h.cr
     beta, step, fraction = float(cr[BETA]), float(cr[TDEL]), float(cr[FRAC])
     if beta == 0:
         return ""
-    undamped = bound(array).step
-    damped = beta / undamped
-    critical = undamped / (math.hypot(1, damped) + damped)
+    critical = damped(bound(array).step, beta)
     if step <= critical:
         return ""
     return (
@@ -363,10 +380,6 @@ def kind_of(h: Memory, address: int) -> str:
         if iget(h, ib, HEAD) == MFDEF and address in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
             return f"grid-point@{address} of block@{ib}"
     return f"@{address}"
-
-
-def _addresses(h: Memory, first: int, link: Offset) -> Array:
-    return np.fromiter(chain(h, first, link), np.int64)
 
 
 def _ints(h: Memory, at: Array, k: Offset, i: int = 0) -> Array:

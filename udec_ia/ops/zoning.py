@@ -190,15 +190,17 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
 
 
 def block_to_zone(array: MainArray, where: Range) -> int:
-    """The first block in the range. Error 24 if there is none, 28 if it is divided into zones already."""
+    """The first block in the range that has no zones. Errors 24 if none is there, 28 if all have zones."""
     blocks = blocks_in(array, where)
     if not blocks:
         raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where), parameter="x1")
-    h, ib = array.h, blocks[0]
-    if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
-        advice = "give a range that holds another block only, or CHANGE it to RIGID first"
-        raise UdecError(28, f"block@{ib} is divided into zones already", advice, group=ib)
-    return ib
+    h = array.h
+    for ib in blocks:
+        if iget(h, ib, HEAD) != MFDEF or iget(h, iget(h, ib, KBEX), KFG) == 0:
+            return ib
+    ib = blocks[0]
+    advice = "give a range that holds another block, or CHANGE it to RIGID first"
+    raise UdecError(28, f"block@{ib} is divided into zones already", advice, group=ib)
 
 
 def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:

@@ -32,8 +32,8 @@ LEGIBLE = 16.0  # points that a block must measure to be given its address
 ROOMY = 90.0  # points that it must measure to be given those of its corners
 
 
-def limits(states: list[State]) -> tuple[float, float, float, float]:
-    """x and y range over all states, with a margin of 4 %.
+def limits(states: list[State], margin: float = 0.04) -> tuple[float, float, float, float]:
+    """x and y range over all states, with a margin as a share of the size.
 
     What is thrown further than the whole first state is wide must not shrink the rest to a dot: the range
     ends there.
@@ -43,8 +43,8 @@ def limits(states: list[State]) -> tuple[float, float, float, float]:
     if not len(lows):
         return 0.0, 1.0, 0.0, 1.0
     size = max(highs[0] - lows[0])
-    low = np.maximum(lows.min(axis=0), lows[0] - size) - 0.04 * size
-    high = np.minimum(highs.max(axis=0), highs[0] + size) + 0.04 * size
+    low = np.maximum(lows.min(axis=0), lows[0] - size) - margin * size
+    high = np.minimum(highs.max(axis=0), highs[0] + size) + margin * size
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 

@@ -31,19 +31,25 @@ def draw_zones(axes: Axes, now: Field, o: Outlines) -> None:
     mesh.set_clip_path(_outline(o, o.kind == g.MFDEF), axes.transData)
 
 
-def draw_contours(axes: Axes, now: Field, o: Outlines, name: str) -> None:
-    """Zones and simply-deformable blocks in the colour of one of their stresses, with a key on the right."""
+def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float = 0.0) -> None:
+    """Zones and simply-deformable blocks in the colour of one of their stresses, with a key on the right.
+
+    beyond: width of what stands between picture and key, as a share of the picture. Stresses of both signs
+    are red and blue about 0, others have the whole range of a palette.
+    """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.collections import PathCollection, PolyCollection
     from matplotlib.colors import Normalize
 
     values = measure(now.stress, name)
-    signed = name != "shear"
-    most = float(np.abs(values).max(initial=0.0)) or 1.0
-    colour = ScalarMappable(
-        Normalize(-most if signed else 0.0, most), colormaps["RdBu_r" if signed else "viridis"]
-    )
+    least, most, palette = float(values.min(initial=0.0)), float(values.max(initial=0.0)), "RdBu_r"
+    if least < 0 < most:
+        most = max(most, -least)
+        least = -most
+    elif len(values):
+        least, most, palette = float(values.min()), float(values.max()), "viridis"
+    colour = ScalarMappable(Normalize(least, most), colormaps[palette])
     shades = colour.to_rgba(values)
     n = len(now.zone)
     if n:
@@ -58,7 +64,7 @@ def draw_contours(axes: Axes, now: Field, o: Outlines, name: str) -> None:
     axes.add_collection(
         PathCollection([edges], facecolors="none", edgecolors=OUTLINE, linewidths=0.8, zorder=2.7)
     )
-    strip = axes.inset_axes((1.02, 0.0, 0.02, 1.0))
+    strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
     bar = axes.figure.colorbar(colour, cax=strip)
     bar.set_label(CONTOURS[name], fontsize=8)
     strip.tick_params(labelsize=7)

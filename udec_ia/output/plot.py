@@ -28,6 +28,7 @@ from udec_ia.output.draw import (
     scale_for,
 )
 from udec_ia.output.draw_field import (
+    LONGEST,
     draw_contours,
     draw_displacements,
     draw_principal,
@@ -65,6 +66,11 @@ class What:
     def notes(self) -> int:
         """Number of notes on scales."""
         return self.stresses + self.velocities + self.displacements
+
+    @property
+    def margin(self) -> float:
+        """Share of the picture that stays free around the blocks: room for arrows, if there are any."""
+        return LONGEST + 0.02 if self.velocities or self.displacements else 0.04
 
 
 BARE = What()
@@ -147,10 +153,10 @@ class Frame:
 
     def figure(self) -> Figure:
         """The picture of all states of the frame."""
-        box = self.what.window or limits(self.states)
+        box = self.what.window or limits(self.states, self.what.margin)
         inches = scale_for(box, self.scale)
         notes = self._notes()
-        key = KEY_WIDTH if len(self.states) > 1 or self.what.contour else 0.0
+        key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour))
         figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
         last = self.states[-1]
         axes.set_title(self.name, loc="left", fontsize=10, color=INK)
@@ -173,7 +179,8 @@ class Frame:
         if now is None:
             return []
         if what.contour:
-            draw_contours(axes, now, shown, what.contour)
+            key = KEY_WIDTH if len(self.states) > 1 else 0.0  # to the states, in inches
+            draw_contours(axes, now, shown, what.contour, key * axes.figure.dpi / axes.bbox.width)
         draw_zones(axes, now, shown)
         notes = []
         if what.stresses:
