@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "09bb456b4301a658c0a25558af2d253db36c2f965555bcfd7f4e774a5cd89acc"
+DIGEST = "ad88d62c716e293791962dfd11cee4a74e3a538990ea1619f54b3e657b07dbd6"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -147,11 +147,11 @@ KJSN = (4, 4, 4)  # real: average normal stress
 KJTS = (5, 5, 5)  # real: average shear stress
 NVDE = (5, 10, 20)
 
-# one boundary condition on a grid-point, a block, or an edge of a block (page ours)
+# one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int: block that it acts on; never 0
 KUG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
-KUP = (4, 4, 4)  # int: corner that ends the edge it acts on; 0 if not on an edge
+KUP = (4, 4, 4)  # int: corner of the block that it acts on; 0 if it does not act on a corner
 KUS = (5, 5, 5)  # int: signal that load and velocity are multiplied by; 0 if constant
 KUFIX = (6, 6, 6)  # int: velocities that are given: 1 in x, 2 in y, 3 both
 KUFX = (8, 5, 3)  # real: force in x

@@ -42,7 +42,7 @@ from udec_ia.heap.accessors import getr, iget, putr
 from udec_ia.model import Model
 
 MOST_BLOCKS = 30
-TOO_GREAT = 15  # overlap too great: the cycle is completed, the map may be unsound
+ENDS = (15, 32)  # overlap too great, zone inside out: the cycle is completed, the map may be unsound
 Numbers = tuple[float, ...]
 
 
@@ -87,9 +87,16 @@ def lines_of(model: Model, step: Step) -> list[str]:
     if step.name == "property":
         values = " ".join(f"{word.upper()}={value:.17g}" for word, value in step.words.items())
         return [f"PROPERTY MATERIAL={numbers} {values}"]
-    words = {"only": "{}", "material": "MATERIAL={}"}
-    rest = [words[word].format(value).upper() for word, value in step.words.items()]
-    return [" ".join([step.name.upper(), numbers, *rest])]
+    return [" ".join([step.name.upper(), numbers, *(in_deck(*word) for word in step.words.items())])]
+
+
+def in_deck(word: str, value: Any) -> str:
+    """A word of a step as it stands in a deck."""
+    if isinstance(value, str):
+        return value.upper()
+    if value is True:
+        return word.upper()
+    return " ".join([word.upper(), *(f"{number:.17g}" for number in np.ravel(value))])
 
 
 def obey(model: Model, step: Step) -> None:
@@ -99,8 +106,8 @@ def obey(model: Model, step: Step) -> None:
             putr(model.h, blocks(model)[int(step.numbers[0])], k, value)
         return
     numbers = step.numbers
-    if step.name in ("cycle", "property"):
-        numbers = (int(numbers[0]),)
+    if step.name in ("cycle", "property", "function"):
+        numbers = (int(numbers[0]), *numbers[1:])
     getattr(model, step.name)(*numbers, **step.words)
 
 
@@ -108,7 +115,7 @@ class Scene:
     """A scene as far as it has been played.
 
     watch is called after every command and every cycle. errors counts the numbered errors by number.
-    ended: error 15 has stopped the scene.
+    ended: one of the errors in ENDS has stopped the scene.
     """
 
     def __init__(self, model: Model, watch: Callable[[Scene], None] | None = None) -> None:
@@ -146,7 +153,7 @@ class Scene:
                 self.model.cycle(1)
             except UdecError as error:
                 self.errors[error.number] += 1
-                self.ended = error.number == TOO_GREAT
+                self.ended = error.number in ENDS
                 done += self.ended
                 break
             done += 1
@@ -182,7 +189,7 @@ def replay(model: Model, steps: list[Step], after: Callable[[Model], Model] | No
         try:
             obey(model, step)
         except UdecError as error:
-            if error.number != TOO_GREAT or step is not steps[-1]:
+            if error.number not in ENDS or step is not steps[-1]:
                 raise
         if after is not None:
             model = after(model)
@@ -464,15 +471,15 @@ def materials(scene: Scene, rng: np.random.Generator) -> None:
     scene.do("fraction", float(rng.choice([0.03, 0.1, 0.1, 0.2])))
 
 
-def round_some(scene: Scene, rng: np.random.Generator) -> None:
-    """A rounding length that fits, from sharp corners to no straight edges at all."""
+def round_some(scene: Scene, rng: np.random.Generator, most: float = 0.5) -> None:
+    """A rounding length that fits, from sharp corners to `most` of the shortest edge."""
     shortest = min(
         hypot(p[0] - q[0], p[1] - q[1])
         for ib in blocks(scene.model)
         for ring in (outline(scene.model, ib),)
         for p, q in zip(ring, [ring[-1], *ring[:-1]], strict=True)
     )
-    scene.do("round", shortest * float(rng.choice([0.03, 0.1, 0.2, 0.35, 0.5])) * (1 - 1e-9))
+    scene.do("round", shortest * min(float(rng.choice([0.03, 0.1, 0.2, 0.35, 0.5])), most) * (1 - 1e-9))
 
 
 LATER = (

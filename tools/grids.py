@@ -45,3 +45,23 @@ def generate(model: Model, nodes: Any, mixed: bool = False) -> int:
             zones += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
     low, high = nodes.reshape(-1, 2).min(axis=0), nodes.reshape(-1, 2).max(axis=0)
     return model.generate(low[0], high[0], low[1], high[1], "manual", points, zones, mixed=mixed)
+
+
+def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
+    """GENERATE for the convex block whose centroid is nearest to (x, y): all zones meet in its centroid.
+
+    edge_points: grid-points on each edge besides those at its ends.
+    """
+    blocks = model.table("block")
+    row = blocks[((blocks["KX"] - x) ** 2 + (blocks["KY"] - y) ** 2).argmin()]
+    corners = model.table("corner")
+    ring = corners[corners["KNB"] == row["address"]]
+    outer: list[tuple[float, float]] = []
+    for start, end in zip(ring, np.roll(ring, -1), strict=True):
+        for k in range(edge_points + 1):
+            s = k / (edge_points + 1)
+            outer.append(tuple(float((1 - s) * start[name] + s * end[name]) for name in ("KXP", "KYP")))
+    n, cx, cy = len(outer), float(row["KX"]), float(row["KY"])
+    zones = [(1, k + 2, (k + 1) % n + 2) for k in range(n)]  # the centroid, given last, is number 1
+    at = cx - 1e-6, cx + 1e-6, cy - 1e-6, cy + 1e-6
+    return model.generate(*at, "manual", [*reversed(outer), (cx, cy)], zones)

@@ -1,6 +1,6 @@
 """Boundary conditions: given velocities, loads and non-reflecting edges (the report's further developments).
 
-A condition acts on a grid-point, on a block at its centroid, or on the middle of a block's edge:
+A condition acts on a grid-point, on a block at its centroid, or at a corner of a block without grid-points:
 
     velocity   V f takes the place of what the law of motion would give
     load       F f
@@ -23,9 +23,11 @@ from offsets.generated import (
     IBNPNT,
     ISGPNT,
     KBEX,
+    KBFIX,
     KBFT,
     KBFX,
     KBFY,
+    KBI,
     KBM,
     KED11,
     KED12,
@@ -33,7 +35,7 @@ from offsets.generated import (
     KGFX,
     KGFY,
     KGPM,
-    KR,
+    KNB,
     KT,
     KTD,
     KTFREQ,
@@ -65,14 +67,18 @@ from offsets.generated import (
     KYDG,
     KYP,
     MSDEF,
+    NVBN,
     TDEL,
     TIME,
     WBOUND,
 )
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real, size_of
 from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import find
 from udec_ia.kernels.fdef import putfdf
+from udec_ia.kernels.motion import FIXED, GIVEN_X, GIVEN_Y
 from udec_ia.kernels.sdef import putstr
+from udec_ia.kernels.shape import geo
 
 
 @kernel
@@ -151,6 +157,13 @@ def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) ->
 def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
     """Set the velocities that condition `iu` gives; what that takes from those before is its work."""
     ig, ib, fix = iget(h, iu, KUG), iget(h, iu, KUB), iget(h, iu, KUFIX)
+    if iget(h, ib, KBFIX) == FIXED:
+        return
+    if iget(h, ib, KBFIX) == GIVEN_X + GIVEN_Y:
+        if energy is not None:
+            td = getr(h, ib, KTD)
+            h.cr[WBOUND] -= td * (getr(h, ib, KBI) * td + getr(h, ib, KBFT) * h.cr[TDEL]) * real(h, 0.5)
+        putr(h, ib, KTD, real(h, 0.0))
     if ig != 0:
         vx, vy = getr(h, ig, KXDG), getr(h, ig, KYDG)
     else:
@@ -173,14 +186,13 @@ def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
 @kernel
 def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
     """Force of condition `iu` at the velocities and the signal of now, and where it acts."""
-    half, factor = real(h, 0.5), real(h, 1.0)
+    factor = real(h, 1.0)
     if iget(h, iu, KUS) != 0:
         factor = getr(h, iget(h, iu, KUS), KTNOW)
     ib, ip = iget(h, iu, KUB), iget(h, iu, KUP)
     x, y = getr(h, ib, KX), getr(h, ib, KY)
     if ip != 0:
-        ia = iget(h, ip, KR)
-        x, y = (getr(h, ip, KXP) + getr(h, ia, KXP)) * half, (getr(h, ip, KYP) + getr(h, ia, KYP)) * half
+        x, y = getr(h, ip, KXP), getr(h, ip, KYP)
     vx, vy = velocity_of(h, iu, x, y)
     cxx, cxy, cyy = getr(h, iu, KUCXX), getr(h, iu, KUCXY), getr(h, iu, KUCYY)
     fx = getr(h, iu, KUFX) * factor - cxx * vx - cxy * vy
@@ -207,3 +219,39 @@ def apply_bounds(h: Memory, energy: Any) -> None:
         if fx != zero or fy != zero:
             push_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, KU)
+
+
+@kernel
+def on_blocks(h: Memory) -> int:
+    """Number of conditions that act on blocks at their centroids."""
+    n = 0
+    iu = h.ci[IBNPNT]
+    while iu != 0:
+        n += iget(h, iu, KUG) == 0 and iget(h, iu, KUP) == 0
+        iu = iget(h, iu, KU)
+    return n
+
+
+@kernel
+def share_bounds(h: Memory, ib: int, jb: int) -> None:
+    """Share the conditions on block `ib` with block `jb`, which has been cut from it.
+
+    What acts at a corner goes with the corner. Of what acts on the whole block both get the velocity, and of
+    the load each its part by area, so that the resultant stays.
+    """
+    area, other = geo(h, ib)[0], geo(h, jb)[0]
+    iu = h.ci[IBNPNT]
+    while iu != 0:
+        following = iget(h, iu, KU)
+        if iget(h, iu, KUB) == ib and iget(h, iu, KUP) != 0:
+            puti(h, iu, KUB, iget(h, iget(h, iu, KUP), KNB))
+        elif iget(h, iu, KUB) == ib:
+            ju = find(h, NVBN)
+            for i in range(size_of(h, NVBN)):
+                puti(h, ju, HEAD, iget(h, iu, HEAD, i), i)
+            puti(h, iu, KU, ju)
+            puti(h, ju, KUB, jb)
+            for k, part in ((iu, area / (area + other)), (ju, other / (area + other))):
+                putr(h, k, KUFX, getr(h, k, KUFX) * part)
+                putr(h, k, KUFY, getr(h, k, KUFY) * part)
+        iu = following

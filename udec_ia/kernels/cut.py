@@ -19,6 +19,7 @@ import numpy as np
 from offsets.generated import (
     DTOL,
     ETOL,
+    IBNPNT,
     IBPNT,
     KB,
     KCCOD,
@@ -40,6 +41,7 @@ from offsets.generated import (
     NSHORT,
     NSPARE,
     NVBL,
+    NVBN,
     NVCN,
     NVCR,
     NVDO,
@@ -48,6 +50,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
+from udec_ia.kernels.bounds import on_blocks, share_bounds
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.ford import restart, settle_all
@@ -179,6 +182,8 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
     jb = spli(h, ib, ia, iz)
     if soft is not None and iget(h, ib, HEAD) == MSDEF:
         share_extension(h, ib, jb)
+    if soft is not None and h.ci[IBNPNT] != 0:
+        share_bounds(h, ib, jb)
     if rounding_is_open(h):
         least = min(_shortest(h, ib), _shortest(h, jb))
         if least < h.cr[DTOL] * real(h, 4.0):
@@ -225,7 +230,7 @@ def cut_path(
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 6 * size_of(h, NVCN) + 5 * size_of(h, NVDO)
     if soft is not None:
-        need += size_of(h, NVSD)
+        need += size_of(h, NVSD) + on_blocks(h) * size_of(h, NVBN)
     cuts = 0
     for r in range(found):
         cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]

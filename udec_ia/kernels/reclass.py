@@ -10,6 +10,9 @@ moves when its own geometry says so, and the order of the list stays the order o
 A corner on an edge keeps its corner when its block rolls over to the next one, which then has a contact
 of its own - unless the flat between the two is shorter than FTOL. Two contacts so close are one: the
 contact is handed from corner to corner, and the report's ball rolls on a single contact.
+
+Points of edges have no contact with each other; two that meet have each a contact with an edge beside the
+other. Each of these stands in the way of the other, so they pass together.
 """
 
 from __future__ import annotations
@@ -23,6 +26,9 @@ from offsets.generated import (
     KCCOD,
     KCP1,
     KCP2,
+    KD1,
+    KD2,
+    KDLOOP,
     KR,
     KRAD,
     KXCP,
@@ -33,10 +39,13 @@ from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.lists import (
     corner_of,
+    domain_before,
     is_corner,
     link,
     next_corner,
     nextcp,
+    nextp,
+    other,
     prevcp,
     set_corner_of,
     take_out,
@@ -99,6 +108,80 @@ def _standing_before(h: Memory, ib: int, iad: int, ip: int) -> None:
 
 
 @kernel
+def _is_of_point(h: Memory, ic: int, ib: int, jb: int, iq: int) -> bool:
+    """True if item `ic` of block `ib` is the contact of its corner `iq` with an edge of block `jb`."""
+    if is_corner(h, ic) or corner_of(h, ib, ic) != iq or other(h, ib, ic) != jb:
+        return False
+    return iget(h, ic, KCCOD) == (CORNER_EDGE if iget(h, ic, KB1) == ib else EDGE_CORNER)
+
+
+@kernel
+def _in_a_row(h: Memory, ib: int, before: int, one: int, two: int, three: int, after: int) -> None:
+    """Let the five items follow one another in the list of block `ib`."""
+    link(h, ib, before, one)
+    link(h, ib, one, two)
+    link(h, ib, two, three)
+    link(h, ib, three, after)
+
+
+@kernel
+def _pass_forwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
+    """Point `ip` passes point `iq` of block `ib`, clockwise; `ic` is its contact with the edge before `iq`.
+
+    The contact of `iq` passes point `ip` then. False if there is none in the way.
+    """
+    jb, jc = other(h, ib, ic), nextcp(h, ib, ic)
+    if not _is_of_point(h, jc, ib, jb, iq) or nextcp(h, ib, jc) != iq:
+        return False
+    if nextcp(h, jb, jc) != ic or nextcp(h, jb, ic) != ip:
+        return False
+    after, behind = nextcp(h, ib, iq), nextcp(h, jb, ip)
+    _in_a_row(h, ib, prevcp(h, ib, ic), jc, iq, ic, after)
+    _in_a_row(h, jb, prevcp(h, jb, jc), ic, ip, jc, behind)
+    set_corner_of(h, ib, ic, nextp(h, ib, after))
+    set_corner_of(h, jb, jc, nextp(h, jb, behind))
+    _change_places(h, ib, ic, jc)
+    return True
+
+
+@kernel
+def _pass_backwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
+    """As _pass_forwards, anticlockwise; `ic` is the contact of point `ip` with the edge after `iq`."""
+    jb, jc = other(h, ib, ic), prevcp(h, ib, iq)
+    if not _is_of_point(h, jc, ib, jb, iq) or nextcp(h, ib, iq) != ic:
+        return False
+    if nextcp(h, jb, ic) != ip or nextcp(h, jb, ip) != jc:
+        return False
+    _in_a_row(h, ib, prevcp(h, ib, jc), ic, jc, iq, nextcp(h, ib, ic))
+    _in_a_row(h, jb, prevcp(h, jb, ic), jc, ic, ip, nextcp(h, jb, jc))
+    set_corner_of(h, ib, ic, iq)
+    set_corner_of(h, jb, jc, ip)
+    _change_places(h, ib, jc, ic)
+    return True
+
+
+@kernel
+def _change_places(h: Memory, ib: int, ic: int, jc: int) -> None:
+    """Contacts `ic` and `jc` of the same two blocks have changed places: so do the domains beside them."""
+    jb = other(h, ib, ic)
+    left, between, right = domain_before(h, ib, ic), domain_before(h, ib, jc), domain_before(h, jb, jc)
+    _put_domains(h, ib, jc, left, between)
+    _put_domains(h, ib, ic, between, right)
+    if iget(h, left, KDLOOP) == ic:
+        puti(h, left, KDLOOP, jc)
+    if iget(h, right, KDLOOP) == jc:
+        puti(h, right, KDLOOP, ic)
+
+
+@kernel
+def _put_domains(h: Memory, ib: int, ic: int, before: int, after: int) -> None:
+    """The domains before and after contact `ic`, clockwise along block `ib`."""
+    first = iget(h, ic, KB1) == ib
+    puti(h, ic, KD1, before if first else after)
+    puti(h, ic, KD2, after if first else before)
+
+
+@kernel
 def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z: float) -> bool:
     """Corner `ip` has come near an end of the edge of block `ib` that ends at `iq`."""
     code, border = iget(h, ic, KCCOD), h.cr[DTOL] - h.cr[GTOL]
@@ -107,12 +190,14 @@ def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z
     if rad > 0 and along < border:
         return mvbak(h, ic, ib, CORNER_CORNER)
     if rad == 0 and past(h, ia, ip) < -h.cr[GTOL]:
-        return mvbak(h, ic, ib, code)
+        return _pass_backwards(h, ic, ib, ia, ip) or mvbak(h, ic, ib, code)
     rad = getr(h, iq, KRAD)
     if rad > 0 and z - along < border:
         puti(h, ic, KCCOD, CORNER_CORNER)
         return True
-    return rad == 0 and past(h, iq, ip) > h.cr[GTOL] and mvfor(h, ic, ib, code)
+    if rad != 0 or past(h, iq, ip) <= h.cr[GTOL]:
+        return False
+    return _pass_forwards(h, ic, ib, iq, ip) or mvfor(h, ic, ib, code)
 
 
 @kernel

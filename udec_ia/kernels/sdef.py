@@ -10,7 +10,8 @@ Euler tensor, the integral of density times r r about the centroid, A the area, 
 
 In one step the corners are carried along by r := (1 - G/2)^-1 (1 + G/2) r with G = (w + e) dt: for a pure
 rotation that is the rigid block's rotation, and length is kept to rounding. Stress and strain rate turn
-with the block, so that spinning leaves their invariants as they are.
+with the block, so that spinning leaves their invariants as they are. The angular momentum stays when the
+moment of inertia changes.
 """
 
 from __future__ import annotations
@@ -169,7 +170,9 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
     putr(h, ie, KSJ11, j11)
     putr(h, ie, KSJ12, j12)
     putr(h, ie, KSJ22, j22)
-    putr(h, ib, KBI, j11 + j22)
+    second = j11 + j22
+    putr(h, ib, KTD, td * (getr(h, ib, KBI) / second))
+    putr(h, ib, KBI, second)
     putr(h, ie, KSAREA, getr(h, ie, KSAREA) * (m11 * m22 - m12 * m21))
 
 

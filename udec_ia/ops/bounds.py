@@ -3,9 +3,9 @@
 Velocities and forces act on the grid-points on the outlines of fully-deformable blocks that lie in the range,
 and on rigid and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges
 that have both ends in the range. Tension is positive. A stress S(x, y) = S0 + x SX + y SY on an edge from a
-to b with the outward normal n and the length L gives the tractions t = S n at its ends: the forces
-L (2 ta + tb)/6 and L (ta + 2 tb)/6 at the grid-points of a fully-deformable block, else L (ta + tb)/2 in the
-middle.
+to b with the outward normal n and the length L gives the tractions t = S n at its ends, and there, on the
+corners or their grid-points, the forces L (2 ta + tb)/6 and L (ta + 2 tb)/6: their resultant and their moment
+are those of t.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ from udec_ia.ops.memory import require
 from udec_ia.ops.ranges import Range, check_range
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
-Target = tuple[int, int, int]  # block; grid-point or 0; corner that ends an edge, or 0
+Target = tuple[int, int, int]  # block; grid-point or 0; corner of a block without grid-points, or 0
 ZERO: Triple = (0.0, 0.0, 0.0)
 
 
@@ -190,9 +190,16 @@ def _points(h: Memory, where: Range) -> Iterator[Target]:
             yield ib, 0, 0
 
 
+def _awaits_zones(h: Memory, ib: int) -> bool:
+    """True for a fully-deformable block that GENERATE has not divided yet: it takes no condition."""
+    return iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) == 0
+
+
 def _edges(h: Memory, where: Range) -> Iterator[tuple[int, int]]:
     """Block and end corner of the edges with both ends in the range."""
     for ib in chain(h, int(h.ci[IBPNT]), KB):
+        if _awaits_zones(h, ib):
+            continue
         for ip in items(h, ib):
             if is_corner(h, ip):
                 ends = [_corner(h, ip), _corner(h, iget(h, ip, KR))]
@@ -220,15 +227,16 @@ def _load_edge(
     (tax, tay), (tbx, tby) = traction(ax, ay), traction(bx, by)
     cn, cs = _impedances(h, ib) if viscous else (0.0, 0.0)
     c = (cn * nx * nx + cs * ny * ny, (cn - cs) * nx * ny, cn * ny * ny + cs * nx * nx)
-    if iget(h, ib, HEAD) == MFDEF:
-        half = (c[0] * length / 2, c[1] * length / 2, c[2] * length / 2)
-        start, end = (ib, iget(h, ia, KGP), 0), (ib, iget(h, ip, KGP), 0)
-        loads.setdefault(start, Load()).add(length * (2 * tax + tbx) / 6, length * (2 * tay + tby) / 6, half)
-        loads.setdefault(end, Load()).add(length * (tax + 2 * tbx) / 6, length * (tay + 2 * tby) / 6, half)
-    else:
-        whole = (c[0] * length, c[1] * length, c[2] * length)
-        middle = loads.setdefault((ib, 0, ip), Load())
-        middle.add(length * (tax + tbx) / 2, length * (tay + tby) / 2, whole)
+    half = (c[0] * length / 2, c[1] * length / 2, c[2] * length / 2)
+    start, end = (loads.setdefault(_corner_target(h, ib, i), Load()) for i in (ia, ip))
+    start.add(length * (2 * tax + tbx) / 6, length * (2 * tay + tby) / 6, half)
+    end.add(length * (tax + 2 * tbx) / 6, length * (tay + 2 * tby) / 6, half)
+
+
+def _corner_target(h: Memory, ib: int, ip: int) -> Target:
+    """Where a load on corner `ip` of block `ib` acts: at its grid-point, if there is one."""
+    ig = iget(h, ip, KGP)
+    return (ib, ig, 0) if ig else (ib, 0, ip)
 
 
 def _impedances(h: Memory, ib: int) -> tuple[float, float]:
@@ -282,8 +290,33 @@ def drop(h: Memory, iu: int) -> None:
         puti(h, before, KU, iget(h, iu, KU))
     else:
         h.ci[IBNPNT] = iget(h, iu, KU)
+    isg = iget(h, iu, KUS)
     puti(h, iu, HEAD, 0)
     lose(h, iu, NVBN)
+    if isg and not iget(h, isg, KTP):
+        _lose_unused(h, isg)
+
+
+def _lose_unused(h: Memory, isg: int) -> None:
+    """Give back sine `isg`, which no command can name, when no condition is left that it belongs to."""
+    if any(iget(h, iu, KUS) == isg for iu in chain(h, int(h.ci[IBNPNT]), KU)):
+        return
+    before = next((s for s in chain(h, int(h.ci[ISGPNT]), KT) if iget(h, s, KT) == isg), 0)
+    if before:
+        puti(h, before, KT, iget(h, isg, KT))
+    else:
+        h.ci[ISGPNT] = iget(h, isg, KT)
+    puti(h, isg, HEAD, 0)
+    lose(h, isg, NVSG)
+
+
+def given_velocities(h: Memory, ib: int) -> int:
+    """KBFIX of block `ib` if it is not fixed: which velocities its conditions give."""
+    fix = 0
+    for iu in chain(h, int(h.ci[IBNPNT]), KU):
+        if iget(h, iu, KUB) == ib and iget(h, iu, KUG) == 0:
+            fix |= 2 * iget(h, iu, KUFIX)
+    return fix
 
 
 def forget_block(h: Memory, ib: int) -> None:
@@ -305,11 +338,12 @@ def _free(h: Memory, iu: int) -> None:
 
 def _set_free(h: Memory, where: Range) -> int:
     """Take away the conditions in the range; returns their number."""
-    points, edges = set(_points(h, where)), {(ib, 0, ip) for ib, ip in _edges(h, where)}
+    points = set(_points(h, where))
     gone = [
         iu
         for iu in chain(h, int(h.ci[IBNPNT]), KU)
-        if (iget(h, iu, KUB), iget(h, iu, KUG), iget(h, iu, KUP)) in points | edges
+        if (iget(h, iu, KUB), iget(h, iu, KUG), iget(h, iu, KUP)) in points
+        or (iget(h, iu, KUP) and _inside(where, *_corner(h, iget(h, iu, KUP))))
     ]
     for iu in gone:
         _free(h, iu)

@@ -4,7 +4,8 @@ What a change of type keeps. Momentum and angular momentum: always. Stress: a ri
 deformable in a run begins with the mean stress of the contact forces on it, so that a block at rest stays
 at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
 simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
-lost, and so are boundary conditions on the block. Masses never change after the first cycle.
+lost, and so are boundary conditions on the block and the corners that GENERATE has put on its edges. Masses
+never change after the first cycle.
 """
 
 from __future__ import annotations
@@ -65,8 +66,10 @@ from udec_ia.ops.bounds import forget_block
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import constitutive_number, material_number
 from udec_ia.ops.lists import chain, items
-from udec_ia.ops.memory import require
+from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
+from udec_ia.ops.rounding import update_flagged
+from udec_ia.ops.straighten import check_straight, edge_points, straighten
 
 TYPES = {"rigid": MRIG, "sdef": MSDEF, "fdef": MFDEF}
 Stress = tuple[float, float, float]  # 11, 12, 22
@@ -101,9 +104,25 @@ def change(
 
 
 def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
-    """Make all `blocks` the type `kind`; memory is found before the first one changes."""
+    """Make all `blocks` the type `kind`. Error 1 or 14, and nothing is changed, if one of them cannot."""
     changing = [ib for ib in blocks if iget(array.h, ib, HEAD) != kind]
     require(array, len(changing) * (size_of(array.h, NVSD) + size_of(array.h, NVFD)))
+    meshed = [ib for ib in changing if edge_points(array.h, ib)]
+    for ib in meshed:
+        check_straight(array.h, ib)
+    if not meshed:
+        _change_all(array, changing, kind)
+        return
+    with all_or_nothing(array):
+        for ib in meshed:
+            straighten(array.h, ib)
+        _change_all(array, changing, kind)
+        update_flagged(array)
+        if array.h.ci[MCTOT] > 0:
+            renew_forces(array)
+
+
+def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
     h = array.h
     rigid = [ib for ib in changing if iget(h, ib, HEAD) == MRIG]
     for ib in rigid:
@@ -161,10 +180,10 @@ def _lose_zones(h: Memory, ib: int) -> None:
     second = float(getr(h, ib, KBM)) * (jxx + jyy) / area
     putr(h, ib, KBI, second)
     putr(h, ib, KTD, turning / second if second else 0.0)
-    _renew_corners(h, ib)
+    renew_corners(h, ib)
 
 
-def _renew_corners(h: Memory, ib: int) -> None:
+def renew_corners(h: Memory, ib: int) -> None:
     """Velocities of the corners of block `ib` from those of the block."""
     x, y, td = (float(getr(h, ib, k)) for k in (KX, KY, KTD))
     for ip in items(h, ib):

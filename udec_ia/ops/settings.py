@@ -24,14 +24,19 @@ from offsets.generated import (
     GRAVX,
     GRAVY,
     JDIL,
+    KBEX,
     KBFIX,
+    KFG,
+    KG,
     KTD,
     KXD,
-    KXDP,
+    KXDG,
     KYD,
-    KYDP,
+    KYDG,
     LSAFE,
+    MFDEF,
     MFREE,
+    MSDEF,
     PAR1,
     PAR2,
     PAR3,
@@ -43,11 +48,14 @@ from offsets.generated import (
     UCRIT,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import puti, putr
+from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.lists import is_corner
+from udec_ia.kernels.motion import FIXED
+from udec_ia.kernels.sdef import put_strain_rate
+from udec_ia.ops.bounds import given_velocities
+from udec_ia.ops.change import renew_corners
 from udec_ia.ops.limits import finite, material_number, not_negative, positive, whole
-from udec_ia.ops.lists import items
+from udec_ia.ops.lists import chain
 from udec_ia.ops.ranges import Range, blocks_in
 
 DEFAULT_FRACTION = 0.1
@@ -143,21 +151,24 @@ def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
     h = array.h
     blocks = blocks_in(array, where)
     for ib in blocks:
-        puti(h, ib, KBFIX, int(fixed))
+        puti(h, ib, KBFIX, FIXED if fixed else given_velocities(h, ib))
         if fixed:
-            _stop(array, ib)
+            _stop(h, ib)
     return len(blocks)
 
 
-def _stop(array: MainArray, ib: int) -> None:
-    """Set the velocities of block `ib` and of its corners to zero."""
-    h = array.h
+def _stop(h: Memory, ib: int) -> None:
+    """Set all velocities of block `ib` to zero, those of corners and grid-points and strain rates, too."""
     for k in (KXD, KYD, KTD):
         putr(h, ib, k, 0.0)
-    for item in items(h, ib):
-        if is_corner(h, item):
-            putr(h, item, KXDP, 0.0)
-            putr(h, item, KYDP, 0.0)
+    renew_corners(h, ib)
+    ie = iget(h, ib, KBEX)
+    if iget(h, ib, HEAD) == MSDEF:
+        put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)
+    elif iget(h, ib, HEAD) == MFDEF:
+        for ig in chain(h, iget(h, ie, KFG), KG):
+            putr(h, ig, KXDG, 0.0)
+            putr(h, ig, KYDG, 0.0)
 
 
 def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:

@@ -228,9 +228,8 @@ class _Rows:
         bounds = addresses(h, int(h.ci[IBNPNT]), KU)
         cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
         blocks, points, corners = (_ints(h, bounds, k) for k in (KUB, KUG, KUP))
-        before = _ints(h, corners, KR)
         x, y = (
-            np.where(corners > 0, (_reals(h, corners, kp) + _reals(h, before, kp)) / 2, _reals(h, blocks, k))
+            np.where(corners > 0, _reals(h, corners, kp), _reals(h, blocks, k))
             for kp, k in ((KXP, KX), (KYP, KY))
         )
         at = self.row(np.where(points > 0, points, blocks))
@@ -284,7 +283,7 @@ def estimate(array: MainArray) -> Limit:
         least, soft = soft_step(h, stiffness)
         if float(least) < ratio:
             ratio, at = float(least), soft
-    limit = Limit(2 * math.sqrt(ratio), int(at))
+    limit = Limit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
     return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
 
 

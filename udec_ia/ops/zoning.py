@@ -1,8 +1,9 @@
 """GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1), here those of MANUAL.
 
 Grid-points within 0.9 D of a corner are placed on it, others within 0.9 D of an edge on the edge, where
-they become corners of the block; every corner must have one. What does not fit is refused before anything
-is changed, and a grid-point that does not stay where it was asked for is reported.
+they become corners of the block; every corner must have one. A flat corner is a point of an edge from then
+on, too. What does not fit is refused before anything is changed, and a grid-point that does not stay where it
+was asked for is reported.
 
 What AUTOMATIC divides a block into is found in automatic.py and put into IA() here, by `divide`.
 """
@@ -18,10 +19,8 @@ import numpy as np
 from offsets.generated import (
     DTOL,
     KBEX,
-    KCCOD,
+    KBI,
     KCOR,
-    KD1,
-    KD2,
     KFG,
     KFMIX,
     KFNG,
@@ -33,6 +32,8 @@ from offsets.generated import (
     KG,
     KGEDGE,
     KGP,
+    KGPM,
+    KRAD,
     KTD,
     KX,
     KXD,
@@ -63,19 +64,17 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
-from udec_ia.kernels.bridge import flag
-from udec_ia.kernels.ford import restart
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.masses import share_mass
 from udec_ia.kernels.shape import crad
 from udec_ia.kernels.split import corner_on_edge
-from udec_ia.kernels.touch import VIRTUAL
-from udec_ia.ops.change import change_types
+from udec_ia.ops.change import change_types, renew_corners
 from udec_ia.ops.forces import renew_forces
-from udec_ia.ops.lists import items
+from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
 from udec_ia.ops.rounding import update_flagged
+from udec_ia.ops.straighten import flag_around
 
 Point = tuple[float, float]
 Triple = tuple[int, int, int]
@@ -182,8 +181,9 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
         addresses = _make_gridpoints(h, ib, places)
         _make_zones(h, ib, addresses, zones, paired)
         share_mass(h, ib)
+        _set_in_motion(h, ib)
         h.ci[NSHORT] += crad(h, ib) - short
-        _flag_around(h, ib)
+        flag_around(h, ib)
         update_flagged(array)
         if h.ci[MCTOT] > 0:
             renew_forces(array)
@@ -310,20 +310,9 @@ def _make_corners(h: Memory, ib: int, places: list[Place]) -> None:
         place.corner = int(corner_on_edge(h, ib, place.corner, real(place.x), real(place.y)))
 
 
-def _flag_around(h: Memory, ib: int) -> None:
-    """Bring the contacts of block `ib` up to date with its new corners, and flag the domains around it."""
-    for ic in items(h, ib):
-        if not is_corner(h, ic):
-            if iget(h, ic, KCCOD) != VIRTUAL:
-                restart(h, ic)
-            flag(h, iget(h, ic, KD1))
-            flag(h, iget(h, ic, KD2))
-
-
 def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
-    """Grid-points at the given places, moving with the block; addresses in the order of `places`."""
+    """Grid-points at the given places, at rest; addresses in the order of `places`."""
     ie = iget(h, ib, KBEX)
-    x, y, xd, yd, td = (float(getr(h, ib, k)) for k in (KX, KY, KXD, KYD, KTD))
     addresses = []
     for place in reversed(places):
         ig = int(find(h, NVGP))
@@ -333,15 +322,37 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
         putr(h, ig, KYG, place.y)
         if place.corner:
             puti(h, ig, KCOR, place.corner)
-            puti(h, ig, KGEDGE, int(place.on_edge))
+            flat = place.on_edge or getr(h, place.corner, KRAD) == 0
+            puti(h, ig, KGEDGE, int(flat))
             puti(h, place.corner, KGP, ig)
             putr(h, ig, KXG, getr(h, place.corner, KXP))
             putr(h, ig, KYG, getr(h, place.corner, KYP))
-        putr(h, ig, KXDG, xd - td * (float(getr(h, ig, KYG)) - y))
-        putr(h, ig, KYDG, yd + td * (float(getr(h, ig, KXG)) - x))
         addresses.append(ig)
     puti(h, ie, KFNG, len(addresses))
     return addresses[::-1]
+
+
+def _set_in_motion(h: Memory, ib: int) -> None:
+    """Velocities of the grid-points and corners of block `ib`: those of the block.
+
+    Masses at grid-points have a greater moment of inertia than the block had. In a run the angular velocity
+    is less by as much, for the angular momentum to stay.
+    """
+    x, y, xd, yd, td = (float(getr(h, ib, k)) for k in (KX, KY, KXD, KYD, KTD))
+    points = [(ig, float(getr(h, ig, KXG)) - x, float(getr(h, ig, KYG)) - y) for ig in _gridpoints(h, ib)]
+    if h.ci[MCTOT] > 0:
+        second = sum(float(getr(h, ig, KGPM)) * (rx * rx + ry * ry) for ig, rx, ry in points)
+        td *= float(getr(h, ib, KBI)) / second
+        putr(h, ib, KTD, td)
+        putr(h, ib, KBI, second)
+    for ig, rx, ry in points:
+        putr(h, ig, KXDG, xd - td * ry)
+        putr(h, ig, KYDG, yd + td * rx)
+    renew_corners(h, ib)
+
+
+def _gridpoints(h: Memory, ib: int) -> list[int]:
+    return list(chain(h, iget(h, iget(h, ib, KBEX), KFG), KG))
 
 
 def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:

@@ -1,0 +1,273 @@
+"""CHANGE and GENERATE against sums by hand: what a change of type keeps, and what a refusal leaves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from grids import fan
+from mechanics import at, block, box, model, push, sound
+from naive.bodies import (
+    applied_stress,
+    area_and_moments,
+    block_forces,
+    by_address,
+    mean_stress,
+    momentum,
+    outlines,
+    points_of,
+    zone_forces,
+)
+
+import offsets.generated as g
+from udec_ia import Model
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
+
+KINDS = ("rigid", "sdef", "fdef", "zoned")
+CHANGES = [(old, new) for old in KINDS for new in KINDS if (old, new) != ("zoned", "zoned")]
+NUMBERS = {"rigid": g.MRIG, "sdef": g.MSDEF, "fdef": g.MFDEF, "zoned": g.MFDEF}
+EPS = float(np.finfo(float).eps)
+
+
+def become(m: Model, address: int, kind: str) -> None:
+    """Make the block at `address` rigid, simply-deformable, or fully-deformable with zones or without."""
+    row = at(m, "block", address)
+    x, y = float(row["KX"]), float(row["KY"])
+    m.change(x - 1e-6, x + 1e-6, y - 1e-6, y + 1e-6, type="fdef" if kind == "zoned" else kind)
+    if kind == "zoned":
+        fan(m, x, y, edge_points=1)
+
+
+def stack(kind: str, build: str = "i32r64", cycles: int = 60) -> tuple[Model, int]:
+    """A block of `kind` between a fixed one and a rigid one, all pressed and sheared; the block's address.
+
+    A block without zones cannot be cycled: it is rigid until the cycles are over.
+    """
+    m = model(*box(0, 2, -1, 3), d=0.1, stiffness=(1e8, 1e8), friction=0.5, build=build)
+    m.property(1, bulk=2e8, g=1e8)
+    m.split(-1, 0, 3, 0)
+    m.split(-1, 1, 3, 1.3)
+    m.fix(0, 2, -1, 0)
+    address = int(block(m, 1, 0.5)["address"])
+    if kind != "fdef":
+        become(m, address, kind)
+    if cycles:
+        m.cycle(1)
+        push(m, int(block(m, 1, 2)["address"]), 0.1, -0.2, 0.05)
+        m.cycle(cycles - 1)
+    if kind == "fdef":
+        become(m, address, kind)
+    return m, address
+
+
+def limited(m: Model, mtop: int) -> Model:
+    """`m` in a main array of `mtop` words, which cannot grow."""
+    other = Model()
+    other.start()
+    other.array = MainArray(m.array.scheme, mtop)
+    size = len(other.h.ia)
+    other.h.ia[:] = m.h.ia[:size]
+    other.h.ci[:], other.h.cr[:] = m.h.ci, m.h.cr
+    other.h.ci[g.MTOP] = size
+    return other
+
+
+def words(m: Model) -> tuple[bytes, bytes, bytes]:
+    """All words in use."""
+    return m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes()
+
+
+def soft_blocks(m: Model) -> int:
+    return int((m.table("block")["HEAD"] != g.MRIG).sum())
+
+
+@pytest.mark.parametrize(("old", "new"), CHANGES)
+def test_a_change_in_a_run(old: str, new: str) -> None:
+    """Momentum, angular momentum, mass and stress stay; force sums are those of the contacts and zones."""
+    m, address = stack(old)
+    m.property(1, density=5000.0)  # too late to count
+    mass = at(m, "block", address)["KBM"]
+    total, size = momentum(m)
+    if old == "rigid":
+        (s, area) = applied_stress(m, address)
+        stress = np.array([s[0, 0], (s[0, 1] + s[1, 0]) / 2, s[1, 1]]) / area
+    else:
+        stress = mean_stress(m, address)
+    assert np.abs(stress).max() > 1e3
+
+    become(m, address, new)
+    sound(m)
+    after, _ = momentum(m)
+    np.testing.assert_array_less(np.abs(after - total), 100 * EPS * size)
+    assert at(m, "block", address)["KBM"] == mass
+    assert int(m.h.ci[g.NSOFT]) == soft_blocks(m) == (new != "rigid")
+    if new != "rigid":
+        np.testing.assert_allclose(mean_stress(m, address), stress, atol=1e-10 * np.abs(stress).max())
+    check_masses(m, address)
+    check_forces(m)
+    if new != "fdef":
+        before, _ = momentum(m)
+        m.gravity(0, 0)
+        m.free(0, 2, -1, 0)
+        m.cycle(20)
+        sound(m)
+        after, size = momentum(m)
+        np.testing.assert_array_less(np.abs(after - before)[:2], 20 * 100 * EPS * size[:2] + 1e-9)
+
+
+def check_masses(m: Model, address: int) -> None:
+    """Masses of grid-points and Euler tensor are those of the block's mass spread over its area."""
+    row = at(m, "block", address)
+    ring = [(float(c["KXP"]), float(c["KYP"])) for c in outlines(m)[address]]
+    area, _, _, second = area_and_moments(ring)
+    density = float(row["KBM"]) / area
+    if row["HEAD"] == g.MFDEF and points_of(m)[address]:
+        points = points_of(m)[address]
+        masses = np.array([p["KGPM"] for p in points])
+        assert masses.sum() == pytest.approx(float(row["KBM"]), rel=1e-12)
+        assert (masses > 0).all()
+        for inner, of_block in (("KXG", "KX"), ("KYG", "KY")):
+            mean = (masses @ [float(p[inner]) for p in points]) / masses.sum()
+            assert mean == pytest.approx(float(row[of_block]), rel=1e-12)
+    elif row["HEAD"] == g.MSDEF:
+        ext = at(m, "sdef", int(row["KBEX"]))
+        found = np.array([[ext["KSJ11"], ext["KSJ12"]], [ext["KSJ12"], ext["KSJ22"]]])
+        np.testing.assert_allclose(found, density * second, rtol=1e-10, atol=1e-10 * density * second.max())
+    if row["HEAD"] != g.MFDEF:
+        assert row["KBI"] == pytest.approx(density * second.trace(), rel=1e-10)
+
+
+def check_forces(m: Model) -> None:
+    """Force sums are the sums of what contacts and zones exert."""
+    expected, blocks = block_forces(m), by_address(m.table("block"))
+    scale = max(np.abs(f).max() for f in expected.values())
+    for ib, force in expected.items():
+        found = [float(blocks[ib][k]) for k in ("KBFX", "KBFY", "KBFT")]
+        np.testing.assert_allclose(found, force, atol=1e-11 * scale)
+        if blocks[ib]["HEAD"] == g.MSDEF:
+            ext = at(m, "sdef", int(blocks[ib]["KBEX"]))
+            sums = np.array([[ext["KSA11"], ext["KSA12"]], [ext["KSA21"], ext["KSA22"]]])
+            np.testing.assert_allclose(sums, applied_stress(m, ib)[0], atol=1e-11 * scale)
+    zones = zone_forces(m)
+    for ib, points in points_of(m).items():
+        if points:
+            sums = sum(np.array((p["KGFX"], p["KGFY"]), float) for p in points)
+            np.testing.assert_allclose(sums, expected[ib][:2], atol=1e-11 * scale)
+            inner = next(p for p in points if p["KCOR"] == 0)
+            force = [float(inner["KGFX"]), float(inner["KGFY"])]
+            np.testing.assert_allclose(force, zones[int(inner["address"])], atol=1e-11 * scale)
+
+
+@pytest.mark.parametrize(("old", "new"), CHANGES)
+def test_a_change_before_the_run(old: str, new: str) -> None:
+    """It leaves no trace: the run is that of a block which has always been of the new type."""
+    m, address = stack("rigid", cycles=0)
+    for kind in (old, new):
+        become(m, address, kind)
+        sound(m)
+    if new == "fdef" and old != "zoned":
+        with pytest.raises(UdecError) as refused:
+            m.cycle(1)
+        assert refused.value.number == 26
+        return
+    straight, there = stack("rigid", cycles=0)
+    become(straight, there, "zoned" if old == "zoned" and new == "fdef" else new)
+    for one in (m, straight):
+        one.cycle(30)
+    for kind in ("block", "contact", "gridpoint", "zone", "sdef"):
+        here, other = m.table(kind), straight.table(kind)
+        for name in {"KXD", "KBI", "KCFN", "KXDG", "KZS22", "KED11"} & set(here.dtype.names):
+            np.testing.assert_array_equal(here[name], other[name])
+    sound(m)
+
+
+def test_numbers_follow_and_masses_are_protected() -> None:
+    m, address = stack("sdef", cycles=0)
+    m.property(2, density=3000.0, kn=1e8, ks=1e8, bulk=2e8, g=1e8)
+    area = applied_stress(m, address)[1]
+    m.change(0, 2, 0, 1.1, material=2)
+    m.cycle(1)
+    mass = float(at(m, "block", address)["KBM"])
+    assert mass == pytest.approx(3000 * area, rel=1e-12)
+    m.change(0, 2, -2, 4, material=1, constitutive=1)
+    m.cycle(1)
+    assert float(at(m, "block", address)["KBM"]) == mass
+    blocks, contacts = m.table("block"), m.table("contact")
+    assert set(blocks["KMAT"]) == {1}
+    assert set(contacts["KCM"]) == {1}
+    m.change(0, 2, 0, 1.1, material=2)
+    contacts = m.table("contact")
+    assert ((contacts["KCM"] == 2) == (contacts["KB1"] == address)).all()
+
+
+REFUSED: list[dict[str, Any]] = [
+    {"type": "soft"},
+    {"type": "sdef", "material": 0},
+    {"type": "sdef", "material": 51},
+    {"type": "fdef", "constitutive": 6},
+    {"material": 2, "constitutive": 0},
+    {"type": "rigid", "material": 1.5},
+]
+
+
+@pytest.mark.parametrize("asked", REFUSED, ids=str)
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_refused_changes_no_word(kind: str, asked: dict[str, Any]) -> None:
+    m, _ = stack(kind, cycles=10)
+    before = words(m)
+    with pytest.raises(UdecError):
+        m.change(0, 2, -2, 4, **asked)
+    assert words(m) == before
+
+
+def test_a_refused_mesh_changes_no_word() -> None:
+    """Wrong numbers, a corner without a grid-point, a gap, an overlap, a block that has zones."""
+    m, address = stack("rigid", cycles=10)
+    ring = [(float(c["KXP"]), float(c["KYP"])) for c in outlines(m)[address]]
+    x, y = float(at(m, "block", address)["KX"]), float(at(m, "block", address)["KY"])
+    points, full = [*reversed(ring), (x, y)], [(1, 2, 3), (1, 3, 4), (1, 4, 5), (1, 5, 2)]
+    near = x - 1e-6, x + 1e-6, y - 1e-6, y + 1e-6
+    before = words(m)
+    for number, given, zones in (
+        (25, points, [*full[:3], (1, 6, 2)]),
+        (26, points[1:], [(1, 2, 3)]),
+        (33, points, full[:3]),
+        (33, points, [*full, (1, 2, 3)]),
+        (33, points, [(2, 3, 4), (2, 4, 5)]),
+        (28, [*points, (x + 5, y)], full),
+    ):
+        with pytest.raises(UdecError) as refused:
+            m.generate(*near, "manual", given, zones)
+        assert refused.value.number == number
+        assert words(m) == before
+    m.generate(*near, "manual", points, full)
+    before = words(m)
+    with pytest.raises(UdecError) as refused:
+        m.generate(*near, "manual", points, full)
+    assert refused.value.number == 28
+    assert words(m) == before
+
+
+@pytest.mark.parametrize(("old", "new"), CHANGES)
+def test_too_little_memory_changes_no_word(old: str, new: str) -> None:
+    """With every size of IA() from what is there to what is needed: all or nothing."""
+    scene, address = stack(old, cycles=10)
+    used = int(scene.h.ci[g.MFREE]) - 1
+    refusals = []
+    for mtop in range(used, used + 1400, 52):
+        m = limited(scene, mtop)
+        before = words(m)
+        try:
+            if new == "zoned" and old != "fdef":
+                become(m, address, "fdef")
+                before = words(m)
+            become(m, address, new)
+        except UdecError as error:
+            refusals.append(error.number)
+            assert words(m) == before
+        assert m.check() == []
+    assert m.table("block")["HEAD"][m.table("block")["address"] == address] == NUMBERS[new]
+    assert set(refusals) <= {1}
+    assert bool(refusals) == (old != new and (old, new) != ("zoned", "fdef"))

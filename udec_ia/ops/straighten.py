@@ -1,0 +1,123 @@
+"""A block that loses its zones loses the corners that GENERATE has put on its edges, too.
+
+Such a corner is not rounded, and only a fully-deformable block stands on it. Its two edges become one, and
+error 14 leaves the block as it is if they are bent too far for that. The contact of another block's arc with
+the corner goes on with the edge; that of another block's edge goes, and its force with it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from offsets.generated import (
+    DTOL2,
+    KB1,
+    KBRO,
+    KCCOD,
+    KD1,
+    KD2,
+    KP,
+    KR,
+    KX,
+    KXP,
+    KY,
+    KYP,
+    NBROKE,
+    NSHORT,
+    NVCR,
+)
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
+from udec_ia.heap.memory import lose
+from udec_ia.kernels.bridge import delc, flag, to_virtual
+from udec_ia.kernels.ford import restart
+from udec_ia.kernels.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
+from udec_ia.kernels.segments import on_arc
+from udec_ia.kernels.shape import crad, is_edge_point
+from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.ops.lists import items
+
+
+def corners_of(h: Memory, ib: int) -> list[int]:
+    """Corners of block `ib`, clockwise."""
+    return [ip for ip in items(h, ib) if is_corner(h, ip)]
+
+
+def edge_points(h: Memory, ib: int) -> list[int]:
+    """The corners of block `ib` that GENERATE has put on its edges."""
+    return [ip for ip in corners_of(h, ib) if is_edge_point(h, ip)]
+
+
+def check_straight(h: Memory, ib: int) -> None:
+    """Error 14 if an edge of block `ib` is bent by more than the greatest overlap."""
+    ring = corners_of(h, ib)
+    first = next(k for k, ip in enumerate(ring) if not is_edge_point(h, ip))
+    ring = ring[first:] + ring[: first + 1]
+    start, between = ring[0], list[int]()
+    for ip in ring[1:]:
+        if is_edge_point(h, ip):
+            between.append(ip)
+            continue
+        for iq in between:
+            off = _off_line(h, iq, start, ip)
+            if off > h.cr[DTOL2]:
+                place = f"({getr(h, iq, KXP):g}, {getr(h, iq, KYP):g})"
+                detail = f"the edge of block@{ib} at {place} is bent by {off:g}, more than {h.cr[DTOL2]:g}"
+                raise UdecError(14, detail, "leave the block fully-deformable", group=ib)
+        start, between = ip, []
+
+
+def _off_line(h: Memory, ip: int, ia: int, iz: int) -> float:
+    """Distance of corner `ip` from the line through the corners `ia` and `iz`."""
+    (x, y), (ax, ay), (bx, by) = ((float(getr(h, i, KXP)), float(getr(h, i, KYP))) for i in (ip, ia, iz))
+    return abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / math.hypot(bx - ax, by - ay)
+
+
+def straighten(h: Memory, ib: int) -> None:
+    """Take the points of edges out of the outline of block `ib`, and flag the domains around it."""
+    points = edge_points(h, ib)
+    if not points:
+        return
+    short = crad(h, ib)
+    for ip in points:
+        _take_point_out(h, ib, ip)
+    h.ci[NSHORT] += crad(h, ib) - short
+    x, y = float(getr(h, ib, KX)), float(getr(h, ib, KY))
+    away = [math.hypot(getr(h, ip, KXP) - x, getr(h, ip, KYP) - y) for ip in corners_of(h, ib)]
+    putr(h, ib, KBRO, max(away))
+    flag_around(h, ib)
+
+
+def _take_point_out(h: Memory, ib: int, ip: int) -> None:
+    """Make the two edges at corner `ip` of block `ib` one."""
+    iq = next_corner(h, ib, ip)
+    for ic in [item for item in items(h, ib) if not is_corner(h, item) and corner_of(h, ib, item) == ip]:
+        set_corner_of(h, ib, ic, iq)
+        if iget(h, ic, KCCOD) == CORNER_CORNER:
+            puti(h, ic, KCCOD, EDGE_CORNER if iget(h, ic, KB1) == ib else CORNER_EDGE)
+        elif on_arc(h, ib, ic):
+            _give_up(h, ic)
+    take_out(h, ib, ip)
+    puti(h, iq, KR, iget(h, ip, KR))
+    puti(h, ib, KP, iq)
+    puti(h, ip, HEAD, 0)
+    lose(h, ip, NVCR)
+
+
+def _give_up(h: Memory, ic: int) -> None:
+    """Delete contact `ic`, or make it virtual if it is a bridge of the map."""
+    h.ci[NBROKE] += 1
+    if iget(h, ic, KD1) == iget(h, ic, KD2):
+        to_virtual(h, ic)
+    else:
+        delc(h, ic)
+
+
+def flag_around(h: Memory, ib: int) -> None:
+    """Bring the contacts of block `ib` up to date with its new corners, and flag the domains around it."""
+    for ic in items(h, ib):
+        if not is_corner(h, ic):
+            if iget(h, ic, KCCOD) != VIRTUAL:
+                restart(h, ic)
+            flag(h, iget(h, ic, KD1))
+            flag(h, iget(h, ic, KD2))
