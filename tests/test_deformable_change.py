@@ -271,3 +271,40 @@ def test_too_little_memory_changes_no_word(old: str, new: str) -> None:
     assert m.table("block")["HEAD"][m.table("block")["address"] == address] == NUMBERS[new]
     assert set(refusals) <= {1}
     assert bool(refusals) == (old != new and (old, new) != ("zoned", "fdef"))
+
+
+def test_a_fixed_block_with_zones_is_freed_without_a_kick() -> None:
+    """Its grid-points get the forces of the zones back, which they had before FIX."""
+    m, address = stack("zoned", cycles=200)
+    before = {int(p["address"]): (float(p["KGFX"]), float(p["KGFY"])) for p in m.table("gridpoint")}
+    m.fix(0, 2, 0, 1.1)
+    m.free(0, 2, 0, 1.1)
+    check_forces(m)
+    scale = max(abs(f) for force in before.values() for f in force)
+    for p in m.table("gridpoint"):
+        found = [float(p["KGFX"]), float(p["KGFY"])]
+        np.testing.assert_allclose(found, before[int(p["address"])], atol=1e-10 * scale)
+    m.fix(0, 2, 0, 1.1)
+    m.cycle(10)
+    m.free(0, 2, 0, 1.1)
+    check_forces(m)
+    assert not at(m, "block", address)["KBFIX"]
+
+
+@pytest.mark.parametrize("kind", ["rigid", "sdef"])
+def test_split_keeps_the_mass_in_a_run(kind: str) -> None:
+    """Neither a new density nor what the block has been strained changes its mass when it is cut."""
+    m, address = stack(kind, cycles=200)
+    mass, (_, area) = float(at(m, "block", address)["KBM"]), applied_stress(m, address)
+    m.property(1, density=5000.0)
+    m.split(0.7, -0.5, 1.1, 3.5)
+    halves = [row for row in m.table("block") if 0 < row["KY"] < 1.1]
+    assert len(halves) == 2
+    assert sum(float(row["KBM"]) for row in halves) == pytest.approx(mass, rel=1e-13)
+    for row in halves:
+        part = area_and_moments(
+            [(float(c["KXP"]), float(c["KYP"])) for c in outlines(m)[int(row["address"])]]
+        )[0]
+        assert float(row["KBM"]) == pytest.approx(mass * part / area, rel=1e-12)
+        check_masses(m, int(row["address"]))
+    sound(m)

@@ -39,7 +39,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find
 from udec_ia.kernels.fdef import zone_area
 from udec_ia.kernels.sdef import put_strain_rate, put_stress
-from udec_ia.kernels.shape import geo, makeb
+from udec_ia.kernels.shape import density_of, geo, makeb
 
 
 @kernel
@@ -102,7 +102,7 @@ def make_masses(h: Memory, soft: Any) -> None:
     """Masses and moments of inertia of all blocks from the densities as they are now."""
     ib = h.ci[IBPNT]
     while ib != 0:
-        makeb(h, ib)
+        makeb(h, ib, density_of(h, ib))
         if soft is not None:
             share_mass(h, ib)
         ib = iget(h, ib, KB)

@@ -75,12 +75,17 @@ def geo(h: Memory, ib: int) -> tuple[float, float, float, float, float, float]:
 
 
 @kernel
-def makeb(h: Memory, ib: int) -> None:
-    """Install centroid, mass, moment of inertia and greatest corner distance of block `ib` (MAKEB)."""
+def density_of(h: Memory, ib: int) -> float:
+    """Density of block `ib` as PROPERTY has given it to its material."""
+    return h.cr[DENS + iget(h, ib, KMAT) - 1]
+
+
+@kernel
+def makeb(h: Memory, ib: int, dens: float) -> None:
+    """Centroid, mass, moment of inertia and greatest corner distance of block `ib` of density `dens` (MAKEB)."""
     area, x, y, jxx, _, jyy = geo(h, ib)
     putr(h, ib, KX, x)
     putr(h, ib, KY, y)
-    dens = h.cr[DENS + iget(h, ib, KMAT) - 1]
     putr(h, ib, KBM, dens * area)
     putr(h, ib, KBI, dens * (jxx + jyy))
     ip0 = iget(h, ib, KP)

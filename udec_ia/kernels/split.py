@@ -21,6 +21,7 @@ from offsets.generated import (
     KB2,
     KBB,
     KBFIX,
+    KBM,
     KCCOD,
     KCONS,
     KDLOOP,
@@ -41,6 +42,7 @@ from offsets.generated import (
     KYDP,
     KYP,
     MCOR,
+    MCTOT,
     MRIG,
     NBLK,
     NVBL,
@@ -62,7 +64,7 @@ from udec_ia.kernels.lists import (
     to_front,
 )
 from udec_ia.kernels.segments import on_arc
-from udec_ia.kernels.shape import makeb
+from udec_ia.kernels.shape import density_of, geo, makeb
 from udec_ia.kernels.touch import CORNER_CORNER, VIRTUAL
 
 
@@ -240,8 +242,11 @@ def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     flag(h, idz)
     x, y = getr(h, ib, KX), getr(h, ib, KY)
     xd, yd, td = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KTD)
+    dens = density_of(h, ib)
+    if h.ci[MCTOT] > 0:  # masses do not change any more
+        dens = getr(h, ib, KBM) / (geo(h, ib)[0] + geo(h, jb)[0])
     for b in (ib, jb):
-        makeb(h, b)
+        makeb(h, b, dens)
         putr(h, b, KTD, td)
         putr(h, b, KXD, xd - td * (getr(h, b, KY) - y))
         putr(h, b, KYD, yd + td * (getr(h, b, KX) - x))

@@ -29,7 +29,6 @@ from offsets.generated import (
     KFG,
     KFZ,
     KG,
-    KGFIX,
     KGP,
     KGPM,
     KMAT,
@@ -105,7 +104,9 @@ def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
 
 @kernel
 def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
-    """Least mass over stiffness of all internal modes and grid-points that can move, and its address.
+    """Least mass over stiffness of all internal modes and grid-points of blocks that can move, and its address.
+
+    A grid-point with given velocities counts as any other: its zones must not strain too much in a step either.
 
     stiffness: one real for every word of IA() in use, all zero.
     """
@@ -127,7 +128,7 @@ def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
         if iget(h, ib, KBFIX) != FIXED and iget(h, ib, HEAD) == MFDEF:
             ig = iget(h, iget(h, ib, KBEX), KFG)
             while ig != 0:
-                if iget(h, ig, KGFIX) != 3 and getr(h, ig, KGPM) < least * stiffness[ig]:
+                if getr(h, ig, KGPM) < least * stiffness[ig]:
                     least, at = getr(h, ig, KGPM) / stiffness[ig], ig
                 ig = iget(h, ig, KG)
         ib = iget(h, ib, KB)

@@ -12,7 +12,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import maked
-from udec_ia.kernels.shape import makeb
+from udec_ia.kernels.shape import density_of, makeb
 from udec_ia.kernels.split import makep, new_block
 from udec_ia.kernels.tolerances import default_rounding, set_rounding
 from udec_ia.ops.limits import (
@@ -58,7 +58,7 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
         puti(h, following, KR, here)
     puti(h, ib, KP, ips[0])
     h.ci[IODPNT] = maked(h)
-    makeb(h, ib)
+    makeb(h, ib, density_of(h, ib))
     set_rounding(h, h.cr[DTOL] if h.ci[LROUND] else default_rounding(h))
     return int(ib)
 

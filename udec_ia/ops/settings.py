@@ -34,6 +34,7 @@ from offsets.generated import (
     KYD,
     KYDG,
     LSAFE,
+    MCTOT,
     MFDEF,
     MFREE,
     MSDEF,
@@ -54,6 +55,7 @@ from udec_ia.kernels.motion import FIXED
 from udec_ia.kernels.sdef import put_strain_rate
 from udec_ia.ops.bounds import given_velocities
 from udec_ia.ops.change import renew_corners
+from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import finite, material_number, not_negative, positive, whole
 from udec_ia.ops.lists import chain
 from udec_ia.ops.ranges import Range, blocks_in
@@ -154,6 +156,8 @@ def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
         puti(h, ib, KBFIX, FIXED if fixed else given_velocities(h, ib))
         if fixed:
             _stop(h, ib)
+    if not fixed and h.ci[MCTOT] > 0 and any(iget(h, ib, HEAD) == MFDEF for ib in blocks):
+        renew_forces(array)  # a fixed block has none at its grid-points
     return len(blocks)
 
 
