@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from grids import fan
 from handmade import two_blocks
+from mechanics import box, model
 
 import offsets.generated as g
 from offsets.table import read_table
@@ -113,3 +115,20 @@ def test_wrong_parameters(what: tuple[str, ...], number: int) -> None:
     with pytest.raises(UdecError) as error:
         printout(two_blocks().h, *what)
     assert error.value.number == number
+
+
+def test_zones_are_printed_with_their_strain_rates() -> None:
+    """Velocities that are linear in x and y strain all zones alike; before the first step, in their place."""
+    m = model(*box(0, 2, 0, 1), d=0.1)
+    m.change(0, 2, 0, 1, type="fdef")
+    fan(m, 1, 0.5, edge_points=1)
+    for row in m.table("gridpoint"):
+        x, y = float(row["KXG"]), float(row["KYG"])
+        putr(m.h, int(row["address"]), g.KXDG, 0.25 * x + 0.75 * y)
+        putr(m.h, int(row["address"]), g.KYDG, 0.5 * x - 0.125 * y)
+    printed = cells(printout(m.h, "zones").split("\n\n")[1])
+    zones = [str(address) for address in m.table("zone")["address"]]
+    assert len(zones) == 8
+    for zone in zones:
+        found = [float(printed[zone, name]) for name in ("e11", "e12", "e22")]
+        assert found == pytest.approx([0.25, 0.625, -0.125], rel=1e-5)

@@ -194,7 +194,7 @@ def test_what_is_in_balance_is_left_alone(tmp_path: Path) -> None:
 def test_blocks_without_weight_are_in_balance_at_once(tmp_path: Path) -> None:
     m = on_base(1.0, 1.0, 0.1, 4.0, gravity=(0.0, 0.0))
     m.out = tmp_path
-    assert m.solve(0) == (True, 0, 0.0, 0)
+    assert m.solve(0) == (True, 0, 0.0, 0, "")
 
 
 def test_a_block_in_the_air_is_not_in_balance(tmp_path: Path) -> None:
@@ -205,7 +205,10 @@ def test_a_block_in_the_air_is_not_in_balance(tmp_path: Path) -> None:
     m.cycle(1)
     solution = m.solve(0.5, limit=25)
     assert (solution.reached, solution.cycles, solution.ratio) == (False, 25, math.inf)
-    assert "NOT REACHED: it is inf after 25 cycles" in str(solution)
+    assert solution.worst in {f"block@{address}" for address in m.table("block")["address"]}
+    assert str(solution).endswith(
+        f"NOT REACHED: it is inf after 25 cycles, most out of balance is {solution.worst}"
+    )
 
 
 def test_a_limit_that_is_met_is_no_error_but_is_said(
@@ -242,3 +245,30 @@ def test_an_error_on_the_way_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as caught:
         m.solve(1e-3)
     assert caught.value.number == 15
+
+
+def test_what_is_out_of_balance_is_named(tmp_path: Path) -> None:
+    """A simply-deformable block that breathes, far from anything, is out of balance in its strain alone."""
+    m = on_base(1.0, 1.0, 0.1, 4.0, gravity=(0.0, 0.0))
+    m.out = tmp_path
+    m.property(1, bulk=2e8, g=1e8)
+    m.change(-1, 1, 0, 1, type="sdef")
+    m.cycle(0)
+    address = int(block(m, 0, 0.5)["address"])
+    m.insitu(-1, 1, 0, 1, -1e5, 0, -1e5)
+    push(m, address, yd=10.0)
+    solution = m.solve(1e-6, limit=40)
+    assert solution.worst == f"the strain of block@{address}"
+    assert str(solution).endswith("; see DAMPING ... INTERNAL")
+
+
+def test_conditions_that_go_with_a_mesh_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    deck = tmp_path / "mesh.dat"
+    deck.write_text(
+        "START\nPROP MAT=1 DENS=1000 KN=1E8 KS=1E8 BULK=2E8 G=1E8\nBLOCK 0 0 0 2 1 2 1 0\nSPLIT -1 1 2 1\n"
+        "FIX 0 1 0 1\nBOUNDARY -1 2 1.9 3 STRESS 0 0 -1E3\nGENERATE 0 1 1 2 AUTOMATIC EDGE 0.5\n"
+        "BOUNDARY -1 2 1.9 3 STRESS 0 0 -1E3\nCHANGE 0 1 1 2 RIGID\nCHANGE 0 1 1 2 RIGID\nSTOP\n"
+    )
+    assert main(["run", str(deck), "--out", str(tmp_path)]) == 0
+    told = [line for line in capsys.readouterr().out.splitlines() if "went with what" in line]
+    assert [line.split(" boundary")[0] for line in told] == [" GENERATE: 2", " CHANGE: 3"]

@@ -27,11 +27,11 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import is_cached, note_cached
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.kernels.rest import force_ratio
+from udec_ia.kernels.rest import force_ratio, unbalanced
 from udec_ia.ops import settings
 from udec_ia.ops.arrange import arrange
 from udec_ia.ops.automatic import generate_automatically
-from udec_ia.ops.bounds import ZERO, Triple, boundary, set_function
+from udec_ia.ops.bounds import ZERO, Triple, boundary, number_of_conditions, set_function
 from udec_ia.ops.change import change
 from udec_ia.ops.create import create
 from udec_ia.ops.cycle import cycle
@@ -44,7 +44,7 @@ from udec_ia.ops.limits import not_negative, whole
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.soft import soft
 from udec_ia.ops.split import Boxes, split
-from udec_ia.ops.timestep import describe, instability
+from udec_ia.ops.timestep import describe, instability, kind_of
 from udec_ia.ops.watch import Series, Solution, Watch
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
 from udec_ia.recorder import Recorder
@@ -89,6 +89,7 @@ class Model:
         self.progress: TextIO | None = None
         self.animate = False
         self.tell: Callable[[str], None] = log.warning
+        self.inform: Callable[[str], None] = log.info
         self.started = False
         self._files: list[Path] = []
         self._recorder = Recorder()
@@ -245,7 +246,19 @@ class Model:
     ) -> int:
         """CHANGE: attributes of the blocks in the range. Returns their number."""
         self._ready()
-        return change(self.array, (x1, x2, y1, y2), type, material, constitutive)
+        conditions = number_of_conditions(self.h)
+        changed = change(self.array, (x1, x2, y1, y2), type, material, constitutive)
+        self._tell_lost(conditions)
+        return changed
+
+    def _tell_lost(self, conditions: int) -> None:
+        """Tell if there are less than `conditions` boundary conditions now."""
+        lost = conditions - number_of_conditions(self.h)
+        if lost > 0:
+            self.tell(
+                f"{lost} boundary condition{'s' if lost > 1 else ''} went with what "
+                f"{'they' if lost > 1 else 'it'} acted on: give them again with BOUNDARY"
+            )
 
     def generate(
         self,
@@ -267,6 +280,7 @@ class Model:
         self._ready()
         self._boxes.forget()
         where = (x1, x2, y1, y2)
+        conditions = number_of_conditions(self.h)
         ib = block_to_zone(self.array, where)
         if mode.lower() == "manual":
             if not gridpoints or not zones:
@@ -286,9 +300,10 @@ class Model:
                 raise UdecError(
                     7, "EDGE d", "AUTOMATIC EDGE d makes zones with sides of about d", parameter="mode"
                 )
-            self.tell(generate_automatically(self.array, ib, edge, mixed))
+            self.inform(generate_automatically(self.array, ib, edge, mixed))
         else:
             raise UdecError(22, mode, "take manual or automatic", parameter="mode")
+        self._tell_lost(conditions)
         return ib
 
     def boundary(
@@ -470,7 +485,10 @@ class Model:
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
         watch = Watch(self.array, self._recorder.series, ratio)
         cycles = self._cycle(limit, watch)
-        solution = Solution(watch.reached, ratio, float(force_ratio(self.h, soft(self.array))), cycles)
+        ends = float(force_ratio(self.h, soft(self.array)))
+        _, worst = unbalanced(self.h, soft(self.array))
+        named = kind_of(self.h, int(worst)) if worst else ""
+        solution = Solution(watch.reached, ratio, ends, cycles, named)
         self._recorder.solutions.append(solution)
         return solution
 

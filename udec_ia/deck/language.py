@@ -127,7 +127,8 @@ COMMANDS = (
         "Conditions on the grid-points and block centroids in x1<x<x2, y1<y<y2: velocities or forces; on the "
         "edges with both ends there: stresses (tension positive, growing with x and y by XGrad and YGrad) or "
         "viscous, non-reflecting edges. A sine (frequency, duration) or a FUNCTION of time multiplies loads "
-        "and velocities. Free takes all conditions away.",
+        "and velocities. Loads add to those that are there, a velocity takes the place of the last one. Free "
+        "takes all conditions away.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -273,7 +274,8 @@ COMMANDS = (
         "PLot",
         "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
         "contacts with their forces, domains, addresses, principal stresses, velocities, displacements since "
-        "the frame began, and deformable blocks coloured by a stress (11, 12, 22), pressure or shear stress. "
+        "the frame began (so with PLOT 1), and deformable blocks coloured by a stress (11, 12, 22), pressure "
+        "or shear stress. "
         "WINDOW is the range that the picture shows. HISTORY alone plots what was recorded instead.",
         "PLOT 0 CONTACTS",
         optional="n",
@@ -293,7 +295,7 @@ COMMANDS = (
     Command(
         "Print",
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones, boundary conditions, the account of the energy, or what histories have "
+        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or what histories have "
         "recorded.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(

@@ -118,11 +118,13 @@ class Monitor:
         named = dict(call.named)
         if "path" in named:  # files named in a deck are in the folder for files
             named["path"] = self.model.out / named["path"]
-        tell, self.model.tell = self.model.tell, lambda text: self._write(f" {name.upper()}: {text}")
+        model = self.model
+        before = model.tell, model.inform
+        model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
-            return getattr(self.model, name)(*call.positional, **named)
+            return getattr(model, name)(*call.positional, **named)
         finally:
-            self.model.tell = tell
+            model.tell, model.inform = before
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""

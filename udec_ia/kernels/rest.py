@@ -92,33 +92,40 @@ def strain_force(h: Memory, ib: int) -> float:
 
 
 @kernel
-def point_force(h: Memory, ib: int) -> float:
-    """Greatest unbalanced force on a grid-point of block `ib`."""
-    most = real(h, 0.0)
+def point_force(h: Memory, ib: int) -> tuple[float, int]:
+    """Greatest unbalanced force on a grid-point of block `ib`, and the grid-point; 0 if there is none."""
+    most, at = real(h, 0.0), int64(0)
     ig = int64(0) if iget(h, ib, KBFIX) == FIXED else iget(h, iget(h, ib, KBEX), KFG)
     while ig != 0:
         fix, m = iget(h, ig, KGFIX), getr(h, ig, KGPM)
         fx = real(h, 0.0) if fix & 1 else getr(h, ig, KGFX) + m * h.cr[GRAVX]
         fy = real(h, 0.0) if fix & 2 else getr(h, ig, KGFY) + m * h.cr[GRAVY]
-        most = max(most, np.sqrt(fx * fx + fy * fy))
+        force = np.sqrt(fx * fx + fy * fy)
+        if force > most:
+            most, at = force, ig
         ig = iget(h, ig, KG)
-    return most
+    return most, at
 
 
 @kernel
-def greatest(h: Memory, soft: Any) -> float:
-    """Greatest unbalanced force in the model, of the force sums as they are."""
-    most = real(h, 0.0)
+def greatest(h: Memory, soft: Any) -> tuple[float, int]:
+    """Greatest unbalanced force in the model, of the force sums as they are, and what it acts on.
+
+    That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
+    """
+    most, at = real(h, 0.0), int64(0)
     ib = int64(h.ci[IBPNT])
     while ib != 0:
         if soft is not None and iget(h, ib, HEAD) == MFDEF:
-            most = max(most, point_force(h, ib))
+            force, on = point_force(h, ib)
         else:
-            most = max(most, block_force(h, ib))
-            if soft is not None and iget(h, ib, HEAD) == MSDEF:
-                most = max(most, strain_force(h, ib))
+            force, on = block_force(h, ib), ib
+        if soft is not None and iget(h, ib, HEAD) == MSDEF and strain_force(h, ib) > force:
+            force, on = strain_force(h, ib), iget(h, ib, KBEX)
+        if force > most:
+            most, at = force, on
         ib = iget(h, ib, KB)
-    return most
+    return most, at
 
 
 @kernel
@@ -150,8 +157,8 @@ def put_sums_back(h: Memory, iu: int, words: Any) -> None:
 
 
 @kernel
-def greatest_under_loads(h: Memory) -> float:
-    """Greatest unbalanced force with the loads of all boundary conditions."""
+def greatest_under_loads(h: Memory) -> tuple[float, int]:
+    """Greatest unbalanced force with the loads of all boundary conditions, and what it acts on."""
     n = 0
     iu = int64(h.ci[IBNPNT])
     while iu != 0:
@@ -165,15 +172,15 @@ def greatest_under_loads(h: Memory) -> float:
         fx, fy, x, y = load(h, iu)
         push_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, KU)
-    most = greatest(h, True)
+    most, at = greatest(h, True)
     for i in range(n - 1, -1, -1):
         put_sums_back(h, conditions[i], words[i])
-    return most
+    return most, at
 
 
 @kernel
-def unbalanced(h: Memory, soft: Any) -> float:
-    """Greatest unbalanced force; soft as in run_cycles."""
+def unbalanced(h: Memory, soft: Any) -> tuple[float, int]:
+    """Greatest unbalanced force, and what it acts on as in `greatest`; soft as in run_cycles."""
     if soft is not None:
         return greatest_under_loads(h)
     return greatest(h, soft)
@@ -186,12 +193,14 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
     if iget(h, ib, HEAD) == MSDEF:
         ie = iget(h, ib, KBEX)
         s11, s12, s22 = getr(h, ie, KS111), getr(h, ie, KS112), getr(h, ie, KS122)
-        return np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * getr(h, ie, KSAREA)), real(h, 1.0)
+        size = np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * getr(h, ie, KSAREA))
+        return size, real(h, 1.0) if size > 0 else real(h, 0.0)
     iz = iget(h, iget(h, ib, KBEX), KFZ) if iget(h, ib, HEAD) == MFDEF else int64(0)
     while iz != 0:
         s11, s12, s22 = getr(h, iz, KZS11), getr(h, iz, KZS12), getr(h, iz, KZS22)
-        total += np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * abs(zone_area(h, iz)))
-        count += real(h, 1.0)
+        if s11 != 0 or s12 != 0 or s22 != 0:
+            total += np.sqrt((s11 * s11 + s12 * s12 * real(h, 2.0) + s22 * s22) * abs(zone_area(h, iz)))
+            count += real(h, 1.0)
         iz = iget(h, iz, KZ)
     return total, count
 
@@ -200,7 +209,7 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 def force_ratio(h: Memory, soft: Any) -> float:
     """Greatest unbalanced force over the mean of the forces that are carried.
 
-    What carries is a contact with a normal force, a zone, and a simply-deformable block.
+    What carries is a contact with a normal force, and a zone or simply-deformable block with a stress.
     0 if nothing is unbalanced, infinite if something is and no force is carried.
     """
     total, count = real(h, 0.0), real(h, 0.0)
@@ -218,7 +227,7 @@ def force_ratio(h: Memory, soft: Any) -> float:
             total += inner
             count += stressed
             ib = iget(h, ib, KB)
-    most = unbalanced(h, soft)
+    most, _ = unbalanced(h, soft)
     if most == 0:
         return most
     return most * count / total if total > 0 else real(h, np.inf)

@@ -82,7 +82,7 @@ def density_of(h: Memory, ib: int) -> float:
 
 @kernel
 def makeb(h: Memory, ib: int, dens: float) -> None:
-    """Centroid, mass, moment of inertia and greatest corner distance of block `ib` of density `dens` (MAKEB)."""
+    """Centroid, mass, moment of inertia and farthest corner of block `ib` of density `dens` (MAKEB)."""
     area, x, y, jxx, _, jyy = geo(h, ib)
     putr(h, ib, KX, x)
     putr(h, ib, KY, y)

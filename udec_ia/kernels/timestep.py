@@ -104,10 +104,9 @@ def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
 
 @kernel
 def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
-    """Least mass over stiffness of all internal modes and grid-points of blocks that can move, and its address.
+    """Least mass over stiffness of the internal modes and grid-points of blocks not fixed, and its address.
 
-    A grid-point with given velocities counts as any other: its zones must not strain too much in a step either.
-
+    A grid-point with given velocities counts as any other, lest its zones strain too much in one step.
     stiffness: one real for every word of IA() in use, all zero.
     """
     least, at = real(h, np.inf), int64(0)

@@ -27,7 +27,7 @@ UNBALANCED, RATIO, KINETIC, STRAIN = 0, 1, 2, 3
 def quantity(h: Memory, which: int, soft: Any) -> float:
     """Quantity `which` of the whole model, in the order of ops.recordable.QUANTITIES."""
     if which == UNBALANCED:
-        return float(unbalanced(h, soft))
+        return float(unbalanced(h, soft)[0])
     if which == RATIO:
         return float(force_ratio(h, soft))
     if which == KINETIC:

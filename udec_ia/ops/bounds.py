@@ -279,6 +279,11 @@ def _release(h: Memory, target: Target, fix: int) -> None:
                 drop(h, iu)
 
 
+def number_of_conditions(h: Memory) -> int:
+    """How many boundary conditions there are."""
+    return sum(1 for _ in chain(h, int(h.ci[IBNPNT]), KU))
+
+
 def drop(h: Memory, iu: int) -> None:
     """Take condition `iu` out of the list and give its group back."""
     before = 0

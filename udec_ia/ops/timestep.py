@@ -372,10 +372,12 @@ def describe(array: MainArray) -> str:
 
 
 def kind_of(h: Memory, address: int) -> str:
-    """What sets a limit: `block@163`, or `grid-point@5917 of block@163`."""
+    """What sets a limit or is out of balance: `block@163`, or `grid-point@5917 of block@163`."""
     for ib in chain(h, int(h.ci[IBPNT]), KB):
         if ib == address:
             return f"block@{ib}"
+        if iget(h, ib, HEAD) == MSDEF and address == iget(h, ib, KBEX):
+            return f"the strain of block@{ib}"
         if iget(h, ib, HEAD) == MFDEF and address in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
             return f"grid-point@{address} of block@{ib}"
     return f"@{address}"

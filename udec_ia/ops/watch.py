@@ -75,19 +75,33 @@ class Series:
 
 
 class Solution(NamedTuple):
-    """How a SOLVE ended. wanted: force ratio asked for; ratio: at the end; cycles: how many it took."""
+    """How a SOLVE ended.
+
+    wanted: force ratio asked for; ratio: at the end; cycles: how many it took. worst: what is farthest from
+    balance, "" if nothing is out of it.
+    """
 
     reached: bool
     wanted: float
     ratio: float
     cycles: int
+    worst: str
 
     def __bool__(self) -> bool:
         return self.reached
 
     def __str__(self) -> str:
-        state = "reached" if self.reached else "NOT REACHED"
-        return f"force ratio {self.wanted:g} {state}: it is {self.ratio:.3g} after {self.cycles} cycles"
+        if self.reached:
+            return f"force ratio {self.wanted:g} reached: it is {self.ratio:.3g} after {self.cycles} cycles"
+        return (
+            f"force ratio {self.wanted:g} NOT REACHED: it is {self.ratio:.3g} after {self.cycles} cycles, "
+            f"most out of balance is {self.worst}{self._advice}"
+        )
+
+    @property
+    def _advice(self) -> str:
+        """What else to look at: strains that only DAMPING ... INTERNAL brings to rest."""
+        return "; see DAMPING ... INTERNAL" if "strain" in self.worst else ""
 
 
 class Watch:

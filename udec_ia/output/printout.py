@@ -21,6 +21,7 @@ from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, members, point
+from udec_ia.kernels.fdef import strain_rates
 from udec_ia.ops.energy import Balance, balance
 from udec_ia.ops.watch import Series
 
@@ -41,6 +42,7 @@ TABLES = {
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES = "energy", "histories"
+RATES = ("e11", "e12", "e22")
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
 
@@ -189,6 +191,8 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
         else:
             column = _field_column(h, addresses, field)
             (described if field.role in ("data", "host") else linked).append(column)
+    if kind == "zone":
+        described += _strain_rates(h, addresses)
     code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
     address = Column("address", "", [str(iad) for iad in addresses])
     title = f"{name.capitalize()}s: {len(addresses)}{code}"
@@ -197,6 +201,12 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
         *(_stacked(f"{name.capitalize()}s: links", address, linked) if linked else []),
         *complaint,
     ]
+
+
+def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:
+    """Strain rates of zones in the last step, which are not stored but follow from their grid-points."""
+    rates = [strain_rates(h, iz) for iz in zones]
+    return [Column(name, "1/s", [f"{rate[i]:.6g}" for rate in rates]) for i, name in enumerate(RATES)]
 
 
 def _field_column(h: Memory, addresses: Iterable[int], field: Field) -> Column:

@@ -45,7 +45,7 @@ class Report:
             tdel, frac = float(h.cr[TDEL]), float(h.cr[FRAC])
             self.progress = Progress(self.stream, self.total, tdel, frac, self.started)
         made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
-        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h, soft_in(h))), made, broken)
+        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
 
     def close(self) -> None:
         """Take the progress off the screen."""
