@@ -295,8 +295,8 @@ COMMANDS = (
     Command(
         "Print",
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or what histories have "
-        "recorded.",
+        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or what "
+        "histories have recorded.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(
             Word(keyword, sets=SEVERAL)
