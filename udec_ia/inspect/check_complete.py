@@ -51,7 +51,10 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     for k, (one, two, (x, y), overlap) in enumerate(
         zip(*blocks, point.tolist(), depth.tolist(), strict=True)
     ):
-        points = [*joined.get((min(one, two), max(one, two)), []), *_thin_tips(state, o, joined, one, two)]
+        points = joined.get((min(one, two), max(one, two)), [])
+        if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
+            continue
+        points = _thin_tips(state, o, joined, one, two)
         if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
             continue
         reach = -overlap / 2 + o.fine[arc[k]]
@@ -80,10 +83,11 @@ def _thin_tips(
     """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together."""
     found = []
     near = state.tolerance("DTOL")
-    for third in {block for pair in joined if one in pair for block in pair} - {one, two}:
+    thirds = {block for pair in joined if one in pair for block in pair} - {one, two}
+    for third in thirds & {block for pair in joined if two in pair for block in pair}:
         tips = np.flatnonzero((o.block[o.owner] == third) & (o.r > 0))
         for x, y, overlap in joined[min(one, third), max(one, third)]:
-            for u, v, depth in joined.get((min(two, third), max(two, third)), []):
+            for u, v, depth in joined[min(two, third), max(two, third)]:
                 at = np.hypot(*(o.c[tips] - (x, y)).T) <= near
                 thin = at & (2 * o.r[tips] < overlap + depth)
                 if hypot(x - u, y - v) <= near and thin.any():

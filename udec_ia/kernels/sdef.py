@@ -8,6 +8,7 @@ Euler tensor, the integral of density times r r about the centroid, A the area, 
     motion     1/2 (de/dt J + J de/dt) = sym(SA) - A S
     damping    e := (C1B e + dt de/dt) C2B     DAMPING ... INTERNAL; nothing else damps e
 
+The centrifugal force of the block's own spin is left out of the motion, as in the report.
 In one step the corners are carried along by r := (1 - G/2)^-1 (1 + G/2) r with G = (w + e) dt: for a pure
 rotation that is the rigid block's rotation, and length is kept to rounding. Stress and strain rate turn
 with the block, so that spinning leaves their invariants as they are. The angular momentum stays when the
