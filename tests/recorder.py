@@ -19,7 +19,7 @@ class Recorder:
     def __init__(self) -> None:
         self.out = Path("results")
         self.started = False
-        self.tell = print
+        self.tell = self.inform = print
         self.deck_log: list[str] = []
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
         self.answers: dict[str, object] = {"save": Path("results/rescue.h5")}

@@ -53,7 +53,7 @@ def test_grid_points_stand_on_the_edges(outline: list[Any], mixed: bool, build: 
         / 2
     )
     said: list[str] = []
-    m.tell = said.append
+    m.inform = said.append
     assert m.generate(0, 3, 0, 3, "automatic", edge=0.45, mixed=mixed) == ib
     sound(m)
     corners, points = outline_of(m, ib)

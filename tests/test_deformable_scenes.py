@@ -24,7 +24,7 @@ from udec_ia.model import Model
 SCENES = 100
 BATCH = 10
 SHORT = (2, 8)
-SEEDS = [3, 11, 17, 24, 40]
+SEEDS = [3, 24, 40]
 
 
 class Unsound(AssertionError):

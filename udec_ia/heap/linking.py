@@ -20,6 +20,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
+from udec_ia.heap.kept import keep_code
+
 
 class _NoEnvironment:
     """Keeps no Python objects for a function: a part has no use for any."""
@@ -78,6 +80,7 @@ class Kernel:
     def __init__(self, function: Callable[..., Any], **flags: Any) -> None:
         update_wrapper(self, function)
         self.whole = njit(cache=True, no_cfunc_wrapper=True, pipeline_class=_WholeCompiler, **flags)(function)
+        keep_code(self.whole)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
         )(function)

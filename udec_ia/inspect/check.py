@@ -41,32 +41,36 @@ __all__ = ["Violation", "check", "check_links"]
 
 def check_links(array: MainArray) -> list[Violation]:
     """The violations that would mislead a routine that follows pointers: invariants 1 to 6, and codes."""
+    state = State(array)
     with np.errstate(all="ignore"):
-        state = State(array)
-        check_memory(state)
-        check_pointers(state)
-        check_codes(state)
-        check_histories(state)
-        check_map(state)
+        _check_links(state)
     return state.violations()
 
 
 def check(array: MainArray) -> list[Violation]:
     """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound."""
+    state = State(array)
     with np.errstate(all="ignore"):
-        state = State(array)
-        check_memory(state)
-        check_pointers(state)
-        check_codes(state)
-        check_histories(state)
-        check_map(state)
+        _check_links(state)
         check_numbers(state)
-        shapes = outlines(state)
-        if shapes is not None:
-            check_outlines(state, shapes)
-            check_pieces(state, shapes)
-            touching = touches(state, shapes)
-            check_contacts(state, shapes, touching)
-            check_places(state, shapes, touching)
-            check_complete(state, shapes, touching)
+        _check_shapes(state)
     return state.violations()
+
+
+def _check_links(state: State) -> None:
+    check_memory(state)
+    check_pointers(state)
+    check_codes(state)
+    check_histories(state)
+    check_map(state)
+
+
+def _check_shapes(state: State) -> None:
+    shapes = outlines(state)
+    if shapes is not None:
+        check_outlines(state, shapes)
+        check_pieces(state, shapes)
+        touching = touches(state, shapes)
+        check_contacts(state, shapes, touching)
+        check_places(state, shapes, touching)
+        check_complete(state, shapes, touching)
