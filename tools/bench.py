@@ -19,9 +19,10 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 import numpy as np
+import zones
 from soa import EVENTS, Slab, extract, run_soa
 
-from offsets.generated import CON1, CON2, DTOL, HTOL, KXD, KYD, NBLK, NCON, TDEL, UPEND
+from offsets.generated import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.inspect.table import table
@@ -160,6 +161,67 @@ def measure(model: Model) -> str:
     return f"{loaded:.0%} | {pace} | {heap:.1f} | {soa:.1f} | {ratio:.2f}"
 
 
+def plate(cells: int) -> Model:
+    """A square block of `cells` squared cells of two zones each, above a base, its grid-points in unrest."""
+    model = Model()
+    model.start()
+    model.property(1, density=2000, kn=1e9, ks=1e9, bulk=1e9, g=6e8)
+    model.gravity(0, -10)
+    model.damping(0.01, 1)
+    model.round(0.1)
+    model.block(0, -1, 0, cells, cells, cells, cells, -1)
+    model.split(-1, 0, cells + 1, 0)
+    model.fix(0, cells, -1, 0)
+    row = cells + 1
+    points = [(float(i), float(j)) for j in range(row) for i in range(row)]
+    first = [j * row + i + 1 for j in range(cells) for i in range(cells)]
+    triangles = [zone for k in first for zone in ((k, k + row, k + 1), (k + 1, k + row, k + row + 1))]
+    model.change(0, cells, 0, cells, "fdef")
+    model.generate(0, cells, 0, cells, "manual", gridpoints=points, zones=triangles)
+    model.cycle(1)
+    unrest = np.random.default_rng(1).normal(size=(row * row, 2)) * 1e-3
+    for ig, (xd, yd) in zip(table(model.array, "gridpoint")["address"], unrest, strict=True):
+        putr(model.h, int(ig), KXDG, float(xd))
+        putr(model.h, int(ig), KYDG, float(yd))
+    return model
+
+
+def bench_zones(sizes: list[int]) -> None:
+    """The pass of a fully-deformable block against the same arithmetic over a structure of arrays."""
+    print("| zones | program, ns a zone | arrays, ns a zone | ratio |\n|---|---|---|---|")
+    for size in sizes:
+        model = plate(round(math.sqrt(size / 2)))
+        (ib,) = (int(row["address"]) for row in table(model.array, "block") if row["KBEX"])
+        body = zones.extract(model.array)
+        count = len(body.zones.a)
+        n, times = max(1, WORK // (count * TURNS)), []
+        zones.run_arrays(body, 0)
+        zones.run_heap(model.h, ib, 0)
+        for _ in range(TURNS):
+            start = process_time()
+            zones.run_heap(model.h, ib, n)
+            between = process_time()
+            zones.run_arrays(body, n)
+            times.append((between - start, process_time() - between))
+        heap, arrays = np.array(times).T * 1e9 / (n * count)
+        line = f"{np.median(heap):.1f} | {np.median(arrays):.1f} | {np.median(heap / arrays):.2f}"
+        print(f"| {count} | {same_zones(model, body) or line} |", flush=True)
+
+
+def same_zones(model: Model, body: zones.Body) -> str:
+    """Nothing if program and yardstick have come to the same stresses and places, to rounding."""
+    for kind, arrays, names in (
+        ("gridpoint", body.points, "KXG:x KYG:y KXDG:xd KYDG:yd KGFX:fx KGFY:fy"),
+        ("zone", body.zones, "KZS11:s11 KZS12:s12 KZS22:s22"),
+    ):
+        rows = table(model.array, kind)
+        for ours, theirs in (name.split(":") for name in names.split()):
+            a, b = rows[ours], getattr(arrays, theirs)
+            if not np.abs(a - b).max() <= 1e-9 * np.abs(a).max():
+                return f"void: {ours} differs | | "
+    return ""
+
+
 def bench_split(sizes: list[int]) -> None:
     """Cutting slabs by SPLIT. Targets: 30,000 blocks in 10 s; at 300,000 half as much again per block."""
     slab(100)
@@ -176,27 +238,32 @@ def bench_split(sizes: list[int]) -> None:
 
 def bench_ball() -> None:
     """The ball from the command line: first run with nothing compiled, and the second run."""
-    print("| ball-rolling.dat | s of wall time |\n|---|---|")
+    print("| ball-rolling.dat | s of wall time | s of processor time |\n|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "udec_ia", "run", "examples/ball-rolling.dat", "--out", folder]
         env = {**os.environ, "UDEC_CACHE": str(Path(folder) / "cache")}
         for name in ("first run", "second run", "third run"):
-            start = perf_counter()
+            start, before = perf_counter(), os.times()
             subprocess.run(command, cwd=ROOT, env=env, check=True, capture_output=True)
-            print(f"| {name} | {perf_counter() - start:.1f} |", flush=True)
+            wall, after = perf_counter() - start, os.times()
+            cpu = after.children_user + after.children_system - before.children_user - before.children_system
+            print(f"| {name} | {wall:.1f} | {cpu:.1f} |", flush=True)
 
 
 def main() -> None:
     """Run what the command line asks for."""
     parser = argparse.ArgumentParser(description="Measure the speed of cycles, of SPLIT and of the ball.")
-    parser.add_argument("what", nargs="*", help="any of: cycle, split, ball; all of them if left off")
+    parser.add_argument("what", nargs="*", help="any of: cycle, zones, split, ball; all of them if left off")
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
+    parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--cut", type=int, nargs="+", default=[30_000, 300_000])
     parser.add_argument("--skew", type=float, default=0.0, help="lean of the second joint set, dx to dy")
     args = parser.parse_args()
-    what = args.what or ["cycle", "split", "ball"]
+    what = args.what or ["cycle", "zones", "split", "ball"]
     if "cycle" in what:
         bench_cycles(args.blocks, args.skew)
+    if "zones" in what:
+        bench_zones(args.zones)
     if "split" in what:
         bench_split(args.cut)
     if "ball" in what:
