@@ -41,16 +41,16 @@ __all__ = ["Violation", "check", "check_links"]
 
 def check_links(array: MainArray) -> list[Violation]:
     """The violations that would mislead a routine that follows pointers: invariants 1 to 6, and codes."""
-    state = State(array)
     with np.errstate(all="ignore"):
+        state = State(array)
         _check_links(state)
     return state.violations()
 
 
 def check(array: MainArray) -> list[Violation]:
     """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound."""
-    state = State(array)
     with np.errstate(all="ignore"):
+        state = State(array)
         _check_links(state)
         check_numbers(state)
         _check_shapes(state)
