@@ -33,6 +33,7 @@ from offsets.generated import (
     KCCOD,
     KD,
     KDLOOP,
+    KL,
     KL1,
     KL2,
     KUMAX,
@@ -50,7 +51,6 @@ from offsets.generated import (
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.bridge import nextd
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.points import velocity_at
 from udec_ia.kernels.segments import loop_start
@@ -69,17 +69,22 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
     item, block = start, first
     far = real(h, np.inf)
     lx, ly, hx, hy = far, far, -far, -far
+    one, two = iget(h, item, KB1), iget(h, item, KB2)
     while True:
-        item, block = nextd(h, item, block)
-        if is_corner(h, item):
+        if iget(h, item, KCCOD) != VIRTUAL:
+            x, y = getr(h, item, KXC), getr(h, item, KYC)
+            vx, vy = velocity_at(h, one, item, x, y, soft)
+            wx, wy = velocity_at(h, two, item, x, y, soft)
+            lx, ly = min(lx, min(vx, wx)), min(ly, min(vy, wy))
+            hx, hy = max(hx, max(vx, wx)), max(hy, max(vy, wy))
+        after_one, after_two = iget(h, item, KL1), iget(h, item, KL2)  # both: to guess which costs more
+        item = after_one if block == one else after_two
+        while is_corner(h, item):
             vx, vy = getr(h, item, KXDP), getr(h, item, KYDP)
             lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
-        elif iget(h, item, KCCOD) != VIRTUAL:
-            x, y = getr(h, item, KXC), getr(h, item, KYC)
-            vx, vy = velocity_at(h, iget(h, item, KB1), item, x, y, soft)
-            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
-            vx, vy = velocity_at(h, iget(h, item, KB2), item, x, y, soft)
-            lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
+            item = iget(h, item, KL)
+        one, two = iget(h, item, KB1), iget(h, item, KB2)
+        block = two if block == one else one
         if item == start and block == first:
             return max(hx - lx, hy - ly)
 
@@ -95,6 +100,8 @@ def look_ahead(h: Memory, idm: int) -> int:
     if ic != 0:
         fetch(h, iget(h, ic, KL1), NVCR)
         fetch(h, iget(h, ic, KL2), NVCR)
+        fetch(h, iget(h, ic, KB1), NVDO)  # the first words hold the velocities
+        fetch(h, iget(h, ic, KB2), NVDO)
     return iget(h, idm, KD)
 
 

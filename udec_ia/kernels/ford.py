@@ -52,6 +52,7 @@ from offsets.generated import (
     NERR,
     NVCN,
     NVCR,
+    NVDO,
     TDEL,
     UPEND,
     WFRIC,
@@ -253,11 +254,11 @@ def look_ahead(h: Memory, ic: int) -> int:
     fetch(h, ic, NVCN, LEAD)
     fetch(h, iget(h, ic, KCP1), NVCR)
     fetch(h, iget(h, ic, KCP2), NVCR)
-    if getr(h, ic, KCFN) == 0:  # it may look at its neighbours
-        fetch(h, iget(h, ic, KL1), NVCR)
-        fetch(h, iget(h, ic, KL2), NVCR)
-        fetch(h, iget(h, ic, KLB1), NVCR)
-        fetch(h, iget(h, ic, KLB2), NVCR)
+    if getr(h, ic, KCFN) == 0:  # it may look at the first words of its neighbours
+        fetch(h, iget(h, ic, KL1), NVDO)
+        fetch(h, iget(h, ic, KL2), NVDO)
+        fetch(h, iget(h, ic, KLB1), NVDO)
+        fetch(h, iget(h, ic, KLB2), NVDO)
     return iget(h, ic, KC)
 
 
