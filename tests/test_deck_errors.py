@@ -17,7 +17,13 @@ from udec_ia.deck.monitor import run_deck
 
 DECKS = sorted((Path(__file__).parent / "decks").glob("err*.dat"))
 EXPECT = re.compile(r"\* expect (\d+):(\d+) error (\d+)(?: with mtop=(\d+))?(?: without (\w+))?")
-NOTHING_TO_SAVE = {"err02-nothing-to-continue", "err03", "err20", "err29"}  # not started, or damaged
+NOTHING_TO_SAVE = {
+    "err02-nothing-to-continue",
+    "err03",
+    "err20",
+    "err20-plot",
+    "err29",
+}  # not started, or damaged
 OF_1980 = {*range(1, 27)} - {21}  # those of 1980; 21 is not raised, DELETE takes fully-deformable blocks
 
 

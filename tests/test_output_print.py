@@ -132,3 +132,14 @@ def test_zones_are_printed_with_their_strain_rates() -> None:
     for zone in zones:
         found = [float(printed[zone, name]) for name in ("e11", "e12", "e22")]
         assert found == pytest.approx([0.25, 0.625, -0.125], rel=1e-5)
+
+
+def test_a_zone_that_points_anywhere_has_no_strain_rates() -> None:
+    m = model(*box(0, 2, 0, 1), d=0.1)
+    m.change(0, 2, 0, 1, type="fdef")
+    fan(m, 1, 0.5)
+    first, *others = (int(address) for address in m.table("zone")["address"])
+    puti(m.h, first, g.KZG, 10**9, 1)
+    printed = cells(printout(m.h, "zones").split("\n\n")[1])
+    assert [printed[str(first), name] for name in ("e11", "e12", "e22")] == ["nan"] * 3
+    assert all(printed[str(zone), "e11"] == "0" for zone in others)

@@ -626,6 +626,7 @@ class Model:
             self._note(files)
             return files
 
+        self._ready()
         if self._plots is None:
             self._plots = Plots(self.out, self.name)
         self._plots.draw(self.h, n or 0, what)

@@ -1,7 +1,8 @@
 """Where a line crosses a block, and whether the block can be split there.
 
-The line is given by its start (x1, y1), its unit vector (c, s) and its length z; the sixth number is the
-shortest edge that a cut may leave. Corners count as on the line when they are so to rounding. The crossings
+The line is given by its start (x1, y1), its unit vector (c, s) and its length z, by the shortest edge that a
+cut may leave, and by the distance from it that counts as zero, some roundings of the coordinates. That is one
+distance for all blocks: those that share a corner must agree whether the line goes through it. The crossings
 are ordered along the line; between the first and the second, the third and the fourth ... the line runs
 inside the block. The block is split there if both ends lie within the given line: a line that ends inside a
 block leaves it whole.
@@ -17,23 +18,17 @@ from typing import Any
 import numpy as np
 
 from offsets.generated import KP, KR, KXP, KYP, LROUND, MCTOT
-from udec_ia.heap.accessors import Memory, getr, iget, real, rounding
+from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import next_corner
 
 MOST = 64  # crossings of one block that can be handled
 OK, TOO_CLOSE, TOO_SHORT = 0, 1, 2
-ROUNDINGS = 32.0  # that the distance of a corner from a line may have gone through
 GRAZING = 0.01  # sine of the smallest angle between a cut and an edge
 SHORTEST = 1.0e-3  # shortest new edge, as a part of the cut edge, while the rounding length is still open
+LEAST, SLACK = 5, 6  # columns of a line
 T, X, Y = 0, 1, 2
 CORNER, AT = 0, 1
-
-
-@kernel
-def slack(h: Memory, x: float, y: float) -> float:
-    """Distance that counts as zero at (x, y): some roundings of the coordinates."""
-    return (abs(x) + abs(y)) * real(h, ROUNDINGS) * rounding(h)
 
 
 @kernel
@@ -43,12 +38,12 @@ def rounding_is_open(h: Memory) -> bool:
 
 
 @kernel
-def side(h: Memory, ip: int, line: Any, eps: float) -> int:
+def side(h: Memory, ip: int, line: Any) -> int:
     """-1, 0 or 1: corner `ip` lies to the right of the line, on it, or to the left."""
     d = (getr(h, ip, KYP) - line[1]) * line[2] - (getr(h, ip, KXP) - line[0]) * line[3]
-    if d > eps:
+    if d > line[SLACK]:
         return 1
-    if d < -eps:
+    if d < -line[SLACK]:
         return -1
     return 0
 
@@ -80,14 +75,14 @@ def _edge_crossing(h: Memory, ip: int, line: Any) -> tuple[float, float, float]:
 
 
 @kernel
-def _corner_crosses(h: Memory, ib: int, ip: int, line: Any, eps: float) -> int:
+def _corner_crosses(h: Memory, ib: int, ip: int, line: Any) -> int:
     """Corner `ip` lies on the line: 1 if the line goes into the block or out of it here.
 
     0 if it does not, -1 if it touches a reflex corner from inside. Where an edge along the line begins or
     ends, the line leaves the inside of the block if that is on both sides of it: at a reflex corner.
     """
     ia, iq = iget(h, ip, KR), next_corner(h, ib, ip)
-    before, after = side(h, ia, line, eps), side(h, iq, line, eps)
+    before, after = side(h, ia, line), side(h, iq, line)
     if before != 0 and after != 0:
         if before != after:
             return 1
@@ -108,15 +103,14 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
     that ends at it). Returns their number, or -1 if the block cannot be treated (the place is in row 0).
     """
     ip0 = iget(h, ib, KP)
-    eps = slack(h, getr(h, ip0, KXP), getr(h, ip0, KYP)) + slack(h, line[0], line[1])
     n = 0
     ip = ip0
     while True:
-        here, before = side(h, ip, line, eps), side(h, iget(h, ip, KR), line, eps)
+        here, before = side(h, ip, line), side(h, iget(h, ip, KR), line)
         at = here == 0
         hit = here * before < 0
         if at:
-            what = _corner_crosses(h, ib, ip, line, eps)
+            what = _corner_crosses(h, ib, ip, line)
             x, y = getr(h, ip, KXP), getr(h, ip, KYP)
             if what < 0:
                 where[0, X], where[0, Y] = x, y
@@ -144,9 +138,9 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
 
 
 @kernel
-def is_cut(line: Any, where: Any, k: int, eps: float) -> bool:
+def is_cut(line: Any, where: Any, k: int) -> bool:
     """True if crossings `k` and `k` + 1 both lie within the line."""
-    return where[k, T] >= -eps and where[k + 1, T] <= line[4] + eps
+    return where[k, T] >= -line[SLACK] and where[k + 1, T] <= line[4] + line[SLACK]
 
 
 @kernel
@@ -156,7 +150,7 @@ def first_cut(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
     if n < 0:
         return -2
     for k in range(0, n - 1, 2):
-        if is_cut(line, where, k, slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])):
+        if is_cut(line, where, k):
             return k
     return -1
 
@@ -170,14 +164,14 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
         ia = iget(h, iend, KR)
         ux, uy = getr(h, iend, KXP) - getr(h, ia, KXP), getr(h, iend, KYP) - getr(h, ia, KYP)
         z = np.sqrt(ux * ux + uy * uy)
-        along = at == 1 and abs(ux * line[3] - uy * line[2]) <= slack(h, x, y) * real(h, 4.0)
+        along = at == 1 and abs(ux * line[3] - uy * line[2]) <= line[SLACK] + line[SLACK]
         if abs(ux * line[3] - uy * line[2]) < z * real(h, GRAZING) and not along:
             return TOO_CLOSE
         if at == 0:
             vx, vy = x - getr(h, ia, KXP), y - getr(h, ia, KYP)
             part = np.sqrt(vx * vx + vy * vy)
             least = min(part, z - part)
-            if least < line[5]:
+            if least < line[LEAST]:
                 return TOO_SHORT
             if rounding_is_open(h) and least < z * real(h, SHORTEST):
                 return TOO_CLOSE
@@ -193,7 +187,7 @@ def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
         if what != OK:
             where[0, X], where[0, Y] = x, y
             return what
-    if where[k + 1, T] - where[k, T] < line[5]:
+    if where[k + 1, T] - where[k, T] < line[LEAST]:
         where[0, X], where[0, Y] = where[k, X], where[k, Y]
         return TOO_SHORT
     return OK
@@ -210,7 +204,7 @@ def try_cuts(h: Memory, ib: int, line: Any, where: Any, which: Any) -> tuple[int
         return TOO_CLOSE, 0
     cuts = 0
     for k in range(0, n - 1, 2):
-        if is_cut(line, where, k, slack(h, where[k, X], where[k, Y]) + slack(h, line[0], line[1])):
+        if is_cut(line, where, k):
             what = _fits(h, ib, line, where, which, k)
             if what != OK:
                 return what, 0

@@ -10,13 +10,15 @@ from offsets.generated import DTOL, KBEX, KFG, MCTOT, MFDEF, NBLK
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.cross import MOST, X, Y, rounding_is_open
+from udec_ia.kernels.cross import LEAST, MOST, X, Y, rounding_is_open
 from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import update_flagged
 from udec_ia.ops.soft import soft
+
+ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
 
 
 class Boxes:
@@ -62,7 +64,11 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
     before = int(array.h.ci[NBLK])
     if before == 0:
         return 0
-    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, 0], array.h.cr.dtype)
+    boxes.enter(array)
+    digit = last_digit(array, boxes.size)
+    least = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[DTOL] - digit)
+    slack = ROUNDINGS * (digit + last_digit(array, abs(x1) + abs(y1)))
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, least, slack], array.h.cr.dtype)
     while not _cut(array, boxes, line):
         boxes.forget()
     if array.h.ci[MCTOT] > 0:
@@ -75,12 +81,10 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     keep_spare(array)
     boxes.enter(array)
     h = array.h
-    digit = last_digit(array, boxes.size)
-    line[5] = EDGE_DIGITS * digit if rounding_is_open(h) else 2 * (h.cr[DTOL] - digit)
     rows, where = np.empty(boxes.n, np.int64), np.empty((MOST, 3), h.cr.dtype)
     status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
     if status != DONE:
-        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[5]))
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[LEAST]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)

@@ -205,7 +205,12 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
 
 def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:
     """Strain rates of zones in the last step, which are not stored but follow from their grid-points."""
-    rates = [strain_rates(h, iz) for iz in zones]
+    points = set(_until_broken(_all(h, "gridpoint"))[0])
+    triples = [{iget(h, iz, g.KZG, i) for i in range(3)} for iz in zones]
+    rates = [
+        strain_rates(h, iz) if triple <= points else (np.nan,) * 3
+        for iz, triple in zip(zones, triples, strict=True)
+    ]
     return [Column(name, "1/s", [f"{rate[i]:.6g}" for rate in rates]) for i, name in enumerate(RATES)]
 
 
