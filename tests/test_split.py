@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from math import hypot
+
 import pytest
+from mechanics import sound
 from naive.geometry import Outline, Point, centroid
 from naive.geometry import split as naive_split
 
@@ -59,3 +62,27 @@ def test_along_an_edge(
         for here, there in zip(found, wanted, strict=True):
             assert here == pytest.approx(there, abs=DIGITS)
         assert model.check() == []
+
+
+def test_neighbours_agree_whether_a_line_goes_through_their_corner() -> None:
+    """Far from the origin of 32-bit reals, where a corner is 110 last digits from the line: on it, for all.
+
+    If one of its blocks saw it beside the line, an edge of these 110 digits would be left.
+    """
+    m = Model(build="i32r32")
+    m.block(-5, 100, -5, 106, 3, 106, 3, 100)
+    for line in (
+        (12.725288765601249, 103.18117306386678, -12.317607059713801, 100.13861561671055),
+        (2.1661295806292014, 90.027018088278552, 2.1661295806292014, 111.02701808827855),
+        (8.3725118246375541, 92.159029425755662, -7.2063822355567435, 111.84097057424434),
+        (-0.20779716683294414, 92.804297808143048, -0.20779716683294414, 113.80429780814305),
+        (-3.5, 101, 6.9663181702823671, 109.96985583676484),
+        (-15, 103, 13, 103),
+    ):
+        m.split(*line)
+    sound(m)
+    corners = m.table("corner")
+    before = dict(zip(corners["address"].tolist(), corners, strict=True))
+    for end in corners:
+        start = before[int(end["KR"])]
+        assert hypot(float(end["KXP"] - start["KXP"]), float(end["KYP"] - start["KYP"])) > 0.1
