@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parent.parent
@@ -22,3 +24,12 @@ settings.load_profile("udec_ia")
 # A shell that starts the tests in the background has them ignore Ctrl-C, and every process that they start.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _nothing_is_written_here() -> Iterator[None]:
+    """A test that runs a model with pictures or histories gives it a folder of its own."""
+    here = Path.cwd()
+    before = set(here.glob("udec-*"))
+    yield
+    assert set(here.glob("udec-*")) == before

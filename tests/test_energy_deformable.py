@@ -141,9 +141,10 @@ def test_a_pulse_brings_its_energy_and_takes_it_away_through_a_viscous_edge() ->
     assert abs(left.residual) < DIGITS * inside.throughput
 
 
-def test_velocities_loads_and_dashpots_of_all_kinds_of_blocks_balance() -> None:
+def test_velocities_loads_and_dashpots_of_all_kinds_of_blocks_balance(tmp_path: Path) -> None:
     """Sines, functions, viscous edges, on every kind of block, which slide and lift off."""
     m = every_kind()
+    m.out = tmp_path
     m.damping(0.05, 20.0)
     m.energy("on")
     for _ in range(10):
@@ -217,8 +218,9 @@ def test_the_deformable_collapse_closes(damping: str) -> None:
     assert abs(balance.yielding) + abs(balance.shape) < 0.05 * balance.throughput
 
 
-def test_the_account_changes_no_bit_and_costs_nothing_when_it_is_off() -> None:
+def test_the_account_changes_no_bit_and_costs_nothing_when_it_is_off(tmp_path: Path) -> None:
     plain, counted = every_kind(), every_kind()
+    plain.out = counted.out = tmp_path
     counted.energy("on")
     for m in (plain, counted):
         m.damping(0.05, 20.0)
