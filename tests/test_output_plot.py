@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -197,6 +198,25 @@ def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
         with Image.open(path) as picture:
             assert min(picture.size) > 300
     assert all("</svg>" in path.read_text() for path in files[1::2])
+
+
+def test_words_add_up_over_a_frame(tmp_path: Path) -> None:
+    """A new contour or window replaces the one before; a new frame begins with nothing."""
+    h = two_blocks().h
+    plots = Plots(tmp_path, "deck")
+    plots.draw(h, 0, What(contacts=True, stresses=True, contour="s22", window=(0.0, 1.0, 0.0, 1.0)))
+    plots.draw(h, 1, What(velocities=True))
+    assert plots.frame is not None
+    was = What(contacts=True, stresses=True, velocities=True, contour="s22", window=(0.0, 1.0, 0.0, 1.0))
+    assert plots.frame.what == was
+    plots.draw(h, 1, What(contour="s11", window=(0.0, 1.0, 0.0, 2.0)))
+    assert plots.frame.what == replace(was, contour="s11", window=(0.0, 1.0, 0.0, 2.0))
+    assert plots.frame.states[-1].field is not None  # for the velocities that were asked for before
+    notes = "".join(text.get_text() for text in plots.frame.figure().texts)
+    assert "largest contact force" in notes
+    assert "velocity" in notes
+    plots.draw(h, 0)
+    assert plots.frame.what == What()
 
 
 def test_addresses_are_written_in_the_picture(tmp_path: Path) -> None:

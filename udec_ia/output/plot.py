@@ -1,13 +1,14 @@
 """PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
 
-PLOT 0 starts a frame and PLOT 1 draws the present state over the last one; a frame is written when the
-next one starts or the run ends. A block is drawn again only when it has moved visibly: what stands still
-has the colour of its material, what moves gets a shade for each state, the darker the later.
+PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for; a
+frame is written when the next one starts or the run ends. A block is drawn again only when it has moved
+visibly: what stands still has the colour of its material, what moves gets a shade for each state, the darker
+the later.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +63,10 @@ class What:
     contour: str = ""
     window: tuple[float, float, float, float] | None = None
 
+    def with_more(self, more: What) -> What:
+        """What is shown when `more` is asked for, too: words add up, a new contour or window replaces one."""
+        return What(*(getattr(more, one.name) or getattr(self, one.name) for one in fields(self)))
+
     @property
     def notes(self) -> int:
         """Number of notes on scales."""
@@ -104,7 +109,8 @@ class Plots:
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
-        inside = bool(h.ci[g.NSOFT]) or what.velocities or what.displacements
+        shown = self.frame.what.with_more(what)
+        inside = bool(h.ci[g.NSOFT]) or shown.velocities or shown.displacements
         self.frame.add(snapshot(h, what.contacts, what.domains, inside), what, float(h.cr[g.PSCALE]))
 
     def renumber(self, moved: Any) -> None:
@@ -124,6 +130,7 @@ class Plots:
 class Frame:
     """States of the block system that are drawn over each other.
 
+    what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
     scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture.
     """
 
@@ -136,7 +143,7 @@ class Frame:
     def add(self, state: State, what: What = BARE, scale: float = 0.0) -> None:
         """Draw one more state over those before it, at the plot scale now in force."""
         self.states.append(state)
-        self.what = what
+        self.what = self.what.with_more(what)
         self.scale = scale
 
     def save(self, base: Path) -> list[Path]:
@@ -193,9 +200,9 @@ class Frame:
 
     def _notes(self) -> list[str]:
         """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""
-        last = self.states[-1]
-        outer = [f"outer domain: {domain.address}" for domain in last.domains if domain.outer]
-        if last.contacts is None:
+        outer = [f"outer domain: {domain.address}" for domain in self.states[-1].domains if domain.outer]
+        contacts = [state.contacts for state in self.states if state.contacts is not None]
+        if not contacts:
             return outer
-        force = np.hypot(*last.contacts.force.T).max(initial=0.0)
+        force = np.hypot(*contacts[-1].force.T).max(initial=0.0)
         return [*outer, f"largest contact force (resultant): {force:.4g} N/m"]
