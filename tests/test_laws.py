@@ -268,6 +268,22 @@ def test_a_restart_file_knows_its_laws(tmp_path: Path, caplog: pytest.LogCapture
     assert model.laws.recorded == {}
 
 
+def test_a_law_of_a_restart_file_is_asked_for_first(tmp_path: Path) -> None:
+    """Blocks and contacts have number 3; the blocks have followed a law, the contacts are elastic."""
+    law = tmp_path / "law_ok.py"
+    law.write_text(BLOCK.replace("cl2", "cl3") + "    return de11, de12, de22\n")
+    model = Model(constitutive=law, out=tmp_path)
+    model.round(0.05)
+    model.property(1, density=1e3, kn=1e8, ks=1e8, bulk=1e8, g=5e7)
+    model.block(0, 0, 0, 2, 2, 2, 2, 0, constitutive=3)
+    model.split(-1, 1, 3, 1)
+    model.change(0, 2, 0, 2, type="sdef")
+    again = Model.restore(model.save())
+    with pytest.raises(UdecError, match=r"block@\d+ follows cl3 of law_ok\.py, which is not given") as caught:
+        again.cycle(0)
+    assert caught.value.advice == "give it again: --constitutive law_ok.py"
+
+
 def test_a_law_that_cannot_be_used_ends_a_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     law = tmp_path / "law.py"
     law.write_text(JOINT + "    return fn\n")

@@ -60,14 +60,21 @@ class LawBook:
         """The laws and materials for a CYCLE of the model in `array`; see `pack`.
 
         Error 9 if a constitutive number is in use for which there is no law, or not the one it was used with.
+        A law that a restart file names is asked for first: it is known what is to be given.
         """
         user = np.zeros((2, NCONS + 1), np.int64)
         numbers_in_use(array.h, user)
-        followed = [self._demand(array, n, f"clj{n}", int(user[AT_JOINTS, n])) for n in NUMBERS]
-        for n in NUMBERS:
-            self._demand(array, n, f"cl{n}", int(user[IN_BLOCKS, n]))
+        wanted = [
+            (f"{law}{n}", n, int(user[where, n]))
+            for where, law in ((AT_JOINTS, "clj"), (IN_BLOCKS, "cl"))
+            for n in NUMBERS
+            if user[where, n]
+        ]
+        for law, n, group in sorted(wanted, key=lambda one: one[0] not in self.recorded):
+            self._demand(array, n, law, group)
         laws = self.pack(array)
-        return Bound(laws if user[IN_BLOCKS].any() else None, laws if any(followed) else None)
+        followed = any(user[AT_JOINTS, n] and f"clj{n}" in self.given for n in NUMBERS)
+        return Bound(laws if user[IN_BLOCKS].any() else None, laws if followed else None)
 
     def pack(self, array: MainArray) -> Laws:
         """The laws as kernels take them, with the materials of `array` as they are now.
@@ -81,10 +88,10 @@ class LawBook:
         self._calls[:], self._materials[:] = calls, rows
         return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
 
-    def _demand(self, array: MainArray, n: int, law: str, group: int) -> bool:
-        """True if block or contact `group`, of number `n`, follows `law`; error 9 if it should and cannot."""
-        if group == 0 or law in self.given:
-            return group != 0
+    def _demand(self, array: MainArray, n: int, law: str, group: int) -> None:
+        """Error 9 if block or contact `group`, of number `n`, should follow `law` and cannot."""
+        if law in self.given:
+            return
         who = f"{'contact' if iget(array.h, group, HEAD) == MCON else 'block'}@{group}"
         if law in self.recorded:
             origin = self.recorded[law][0]
@@ -94,7 +101,6 @@ class LawBook:
             detail = f"{who} has number {n}, for which there is no law"
             advice = f"use number 1, or give a file with a function {law}: --constitutive law.py"
             raise UdecError(9, detail, advice, group=group)
-        return False
 
 
 def failure(array: MainArray, group: int) -> UdecError:
