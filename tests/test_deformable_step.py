@@ -16,7 +16,7 @@ import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
-from udec_ia.ops.timestep import bound, estimate
+from udec_ia.ops.timestep import Limit, bound, estimate
 
 D = 0.05
 JOINTS = (3e8, 1e8)
@@ -147,3 +147,45 @@ def moving(m: Model) -> float:
     """The greatest speed of a corner."""
     ring = m.table("corner")
     return float(np.hypot(ring["KXDP"], ring["KYDP"]).max())
+
+
+def test_after_a_zone_has_turned_inside_out_the_limits_are_numbers() -> None:
+    """Grid-points thrown through their blocks: the error says where, and no warning of NumPy's follows."""
+    m = model(*box(0, 2, -1, 1), d=D, stiffness=JOINTS)
+    m.property(1, bulk=1e8, g=5e7)
+    m.split(-1, 0, 3, 0)
+    m.fix(0, 2, -1, 0)
+    fan(m, 1, 0.5)
+    m.boundary(-0.1, 2.1, 0.9, 1.1, viscous=True)
+    m.cycle(1)
+    row = m.table("gridpoint")[0]
+    putr(m.h, int(row["address"]), g.KXDG, 1e6 if row["KXG"] < 1 else -1e6)
+    with pytest.raises(UdecError) as caught:
+        m.cycle(3)
+    zones, points = m.table("zone"), m.table("gridpoint")
+    (zone,) = zones[zones["address"] == caught.value.group]
+    corners = points[np.isin(points["address"], zone["KZG"])]
+    x, y = corners["KXG"].mean(), corners["KYG"].mean()
+    (block,) = m.table("block")["address"][m.table("block")["KBEX"] > 0]
+    assert f"zone@{caught.value.group} of block@{block} at ({x:g}, {y:g}) in cycle" in str(caught.value)
+    assert "smaller loads" in str(caught.value)
+    limits = m.step_limits().split(" s, ", 1)[1]
+    shares = [float(word) for word in limits.replace(",", "").split() if word[0].isdigit()]
+    assert len(shares) == 4
+    assert all(share > 0 for share in shares)
+
+
+def test_what_is_squashed_flat_sets_a_step_of_nothing() -> None:
+    m = model(*box(0, 2, -1, 1), d=D, stiffness=JOINTS)
+    m.property(1, bulk=1e8, g=5e7)
+    m.split(-1, 0, 3, 0)
+    m.fix(0, 2, -1, 0)
+    fan(m, 1, 0.5)
+    m.fraction(0.1, safe=True)
+    m.cycle(1)
+    point = int(m.table("gridpoint")["address"][0])
+    putr(m.h, point, g.KGPM, 0.0)
+    assert bound(m.array) == Limit(0.0, point)
+    assert "inf of the safe bound 0 s" in m.step_limits()
+    with pytest.raises(UdecError, match="error 28"):
+        m.cycle(1)

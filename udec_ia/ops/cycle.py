@@ -35,8 +35,11 @@ from offsets.generated import (
     KMAT,
     KX,
     KXC,
+    KXG,
     KY,
     KYC,
+    KYG,
+    KZG,
     MCON,
     MCTOT,
     MDOM,
@@ -49,7 +52,7 @@ from offsets.generated import (
     TDEL,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
@@ -61,7 +64,7 @@ from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
 from udec_ia.ops.soft import soft
-from udec_ia.ops.timestep import time_step
+from udec_ia.ops.timestep import kind_of, time_step
 from udec_ia.ops.watch import Watch
 
 REPORT_SECONDS = 0.2
@@ -162,6 +165,13 @@ def _run(
     return done
 
 
+def _zone(h: Memory, iz: int) -> str:
+    """Zone `iz`, its block and its centroid, as a message names them."""
+    corners = [iget(h, iz, KZG, i) for i in range(3)]
+    x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (KXG, KYG))
+    return f"{kind_of(h, iz)} at ({x:g}, {y:g})"
+
+
 def _raise_error(array: MainArray) -> None:
     """Find memory if that is what a kernel stopped for; else raise the error it left behind."""
     h = array.h
@@ -178,8 +188,7 @@ def _raise_error(array: MainArray) -> None:
     group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
     if number == ZONE_INSIDE_OUT:
-        detail = f"zone@{group} in cycle {int(h.ci[MCTOT])}"
-        raise UdecError(number, detail, "take stiffer zones, a smaller FRACTION or fewer loads", group=group)
+        raise UdecError(number, f"{_zone(h, group)} in cycle {int(h.ci[MCTOT])}", group=group)
     if number == LAW_FAILED:
         raise failure(array, group)
     if iget(h, group, HEAD) == MDOM:

@@ -145,7 +145,7 @@ class _Rows:
         square = self.length[rows] ** 2
         self.mass[rows, 3:] = (np.linalg.eigvalsh(tensor)[:, 0] / square)[:, None]
         self.free[rows, 3:] = 1
-        one, two = h.cr[ALAM1 + mat], h.cr[ALAM2 + mat]
+        one, two, area = h.cr[ALAM1 + mat], h.cr[ALAM2 + mat], np.abs(area)
         self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
         self.sum[rows, 5] = area * 2 * (one - two) / square
 
@@ -162,7 +162,7 @@ class _Rows:
         x, y = (_reals(h, corner, k) for k in (KXG, KYG))
         b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
         corner = self.row(corner)
-        twice = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
+        twice = np.abs(b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])  # a zone may have turned inside out
         one, two = (float(h.cr[k + iget(h, ib, KMAT) - 1]) for k in (ALAM1, ALAM2))
         shear = (one - two) / 2
         free = self.free[corner, :2]
@@ -173,8 +173,8 @@ class _Rows:
                 fx, fy = free[:, j].T
                 row_x = np.abs(one * bb + shear * cc) * fx + np.abs(two * bc + shear * cb) * fy
                 row_y = np.abs(two * cb + shear * bc) * fx + np.abs(one * cc + shear * bb) * fy
-                np.add.at(self.sum[:, 0], corner[:, i], row_x / (2 * twice))
-                np.add.at(self.sum[:, 1], corner[:, i], row_y / (2 * twice))
+                np.add.at(self.sum[:, 0], corner[:, i], _over(row_x, 2 * twice))
+                np.add.at(self.sum[:, 1], corner[:, i], _over(row_y, 2 * twice))
 
     def add_contacts(self) -> None:
         """The stiffness of all contacts that are not virtual."""
@@ -206,7 +206,9 @@ class _Rows:
         before = _ints(h, corners, KR)
         xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
         dx, dy = _reals(h, corners, KXP) - xa, _reals(h, corners, KYP) - ya
-        part = np.clip(((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy), 0, 1)
+        square = dx * dx + dy * dy
+        along = (x - xa) * dx + (y - ya) * dy
+        part = np.clip(np.divide(along, square, out=np.ones_like(along), where=square > 0), 0, 1)
         part = np.where(np.isin(_ints(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
         point = _point(len(body[0]))
         here = self.row(np.where(meshed, _ints(h, corners, KGP), blocks))
@@ -241,7 +243,7 @@ class _Rows:
 
     def limit(self) -> Limit:
         """The bound, and who sets it."""
-        rate = _rate(self.sum / self.mass, self.drag / self.mass) * (self.free > 0)
+        rate = np.where(self.free > 0, _rate(self.sum, self.drag, self.mass), 0.0)
         at = int(rate.max(axis=1).argmax())
         fastest = float(rate[at].max())
         return Limit(2 / fastest if fastest else math.inf, int(self.address[at]))
@@ -254,9 +256,15 @@ def _point(n: int) -> Array:
     return moves
 
 
-def _rate(stiffness: Array, drag: Array) -> Array:
-    """2 over the greatest stable step (1/s), of stiffness over mass and drag over mass."""
-    return np.sqrt(stiffness + drag * drag / 4) + drag / 2
+def _over(total: Array, mass: Array) -> Array:
+    """`total` over `mass`; infinite where something acts on what has been squashed flat, and has no mass."""
+    return np.divide(total, mass, out=np.where(total > 0, np.inf, 0.0), where=mass > 0)
+
+
+def _rate(stiffness: Array, drag: Array, mass: Array) -> Array:
+    """2 over the greatest stable step (1/s). A negative stiffness, of a zone inside out, makes no wave."""
+    square, half = _over(np.maximum(stiffness, 0), mass), _over(drag, mass) / 2
+    return np.sqrt(square + half * half) + half
 
 
 def bound(array: MainArray) -> Limit:
@@ -298,7 +306,7 @@ def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
     cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
     np.add.at(drag, at, np.maximum(cxx, cyy) + cxy)
     mass = np.where(points > 0, _reals(h, points, KGPM), _reals(h, blocks, KBM))
-    rate = _rate(np.where(points > 0, stiffness[at], joints) / mass, drag[at] / mass) * (drag[at] > 0)
+    rate = np.where(drag[at] > 0, _rate(np.where(points > 0, stiffness[at], joints), drag[at], mass), 0.0)
     fastest = int(rate.argmax())
     return Limit(2 / float(rate[fastest]) if rate[fastest] else math.inf, int(at[fastest]))
 
@@ -338,6 +346,8 @@ def damped(step: float, beta: float) -> float:
     A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
     damping at the frequency w.
     """
+    if step == 0:
+        return 0.0
     share = beta / step
     return step / (math.hypot(1, share) + share)
 
@@ -364,7 +374,8 @@ def describe(array: MainArray) -> str:
     """One line: the time-step, its shares of estimate and bound, and which groups set these."""
     step = float(array.h.cr[TDEL])
     parts = [
-        f"{step / limit.step:.3g} of the {name} {limit.step:.4g} s ({kind_of(array.h, limit.address)})"
+        f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "
+        f"({kind_of(array.h, limit.address)})"
         for name, limit in (("estimate", estimate(array)), ("safe bound", bound(array)))
         if math.isfinite(limit.step)
     ]
@@ -372,14 +383,16 @@ def describe(array: MainArray) -> str:
 
 
 def kind_of(h: Memory, address: int) -> str:
-    """What sets a limit or is out of balance: `block@163`, or `grid-point@5917 of block@163`."""
+    """What a message is about: `block@163`, or `grid-point@5917 of block@163`, or one of its zones."""
     for ib in chain(h, int(h.ci[IBPNT]), KB):
         if ib == address:
             return f"block@{ib}"
         if iget(h, ib, HEAD) == MSDEF and address == iget(h, ib, KBEX):
             return f"the strain of block@{ib}"
-        if iget(h, ib, HEAD) == MFDEF and address in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
-            return f"grid-point@{address} of block@{ib}"
+        if iget(h, ib, HEAD) == MFDEF:
+            for what, first, following in (("grid-point", KFG, KG), ("zone", KFZ, KZ)):
+                if address in chain(h, iget(h, iget(h, ib, KBEX), first), following):
+                    return f"{what}@{address} of block@{ib}"
     return f"@{address}"
 
 
