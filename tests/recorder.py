@@ -20,6 +20,7 @@ class Recorder:
         self.out = Path("results")
         self.started = False
         self.tell = self.inform = print
+        self.explain_step = False
         self.deck_log: list[str] = []
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
         self.answers: dict[str, object] = {"save": Path("results/rescue.h5")}
@@ -38,10 +39,6 @@ class Recorder:
             return self.answers.get(name)
 
         return method
-
-    def step_limits(self) -> str:
-        """What sets the time-step: nothing here."""
-        return "no time-step"
 
     def fails(self, name: str, number: int) -> None:
         """Let the method `name` raise the error `number`."""

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,6 +32,12 @@ WRONG: list[tuple[str, int, Callable[[Model], object]]] = [
     ("half a material", 10, lambda m: m.property(1.5)),  # type: ignore[arg-type]
     ("damping of what", 10, lambda m: m.damping(0.1, 1, "all")),
     ("type", 10, lambda m: m.change(0, 1, 0, 1, type="soft")),
+    ("force in words", 10, lambda m: m.boundary(0, 1, 0, 1, xforce="much")),  # type: ignore[arg-type]
+    ("pressure", 10, lambda m: m.boundary(0, 1, 0, 1, stress=1e5)),  # type: ignore[arg-type]
+    ("stress in words", 10, lambda m: m.boundary(0, 1, 0, 1, stress="111")),  # type: ignore[arg-type]
+    ("two stresses", 26, lambda m: m.boundary(0, 1, 0, 1, stress=(1e5, 0))),  # type: ignore[arg-type]
+    ("sine without end", 10, lambda m: m.boundary(0, 1, 0, 1, xforce=1.0, sine=5.0)),  # type: ignore[arg-type]
+    ("two gradients", 26, lambda m: m.insitu(0, 1, 0, 1, 1, 0, 1, (1, 0))),  # type: ignore[arg-type]
     ("no stiffness", 11, lambda m: (m.block(*SQUARE) and m.property(1, density=1.0)) or m.cycle(1)),
     ("no mass", 12, lambda m: m.block(*SQUARE) and m.cycle(1)),
     ("long rounding", 14, lambda m: m.block(*SQUARE) and m.round(0.6)),
@@ -66,6 +73,41 @@ WRONG: list[tuple[str, int, Callable[[Model], object]]] = [
     ("odd address", 30, lambda m: m.rset(1, 2, 1)),
     ("dump", 30, lambda m: m.dump(3, 2)),
 ]
+
+CORNERS = [(0, 0), (0, 1), (1, 1), (1, 0)]
+GENERATED: list[tuple[str, int, dict[str, Any]]] = [
+    ("zone of two", 26, {"zones": [(1, 2), (1, 3, 4)]}),
+    ("zone of four", 10, {"zones": [(1, 2, 3, 4)]}),
+    ("half a grid-point", 10, {"zones": [(1, 1.5, 3)]}),
+    ("zones in one row", 10, {"zones": [1, 2, 3]}),
+    ("a number of zones", 10, {"zones": 2}),
+    ("grid-points in space", 10, {"gridpoints": [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]}),
+    ("grid-points in words", 10, {"gridpoints": ["ab", "cd"]}),
+    ("edge in words", 10, {"mode": "automatic", "gridpoints": None, "zones": None, "edge": "a"}),
+]
+
+
+@pytest.mark.parametrize(("what", "number", "wrong"), GENERATED)
+def test_what_has_another_shape_is_refused(what: str, number: int, wrong: dict[str, Any]) -> None:
+    m = Model()
+    m.block(*SQUARE)
+    given: dict[str, Any] = {"mode": "manual", "gridpoints": CORNERS, "zones": [(1, 2, 3), (1, 3, 4)]} | wrong
+    with pytest.raises(UdecError) as caught:
+        m.generate(0, 1, 0, 1, **given)
+    assert caught.value.number == number
+    assert caught.value.parameter in wrong
+    assert str(caught.value).endswith(caught.value.advice)
+
+
+def test_arrays_of_numpy_are_lists_and_words_have_any_case() -> None:
+    m = Model()
+    m.round(0.05)
+    ib = m.block(*SQUARE)
+    assert m.change(0, 1, 0, 1, type="SDEF") == 1
+    assert len(m.table("sdef")) == 1
+    zones = np.array([(1, 2, 3), (1, 3, 4)])
+    assert m.generate(0, 1, 0, 1, "MANUAL", np.array(CORNERS, float), zones) == ib  # type: ignore[arg-type]
+    assert len(m.table("zone")) == 2
 
 
 @pytest.mark.parametrize(("number", "wrong"), [row[1:] for row in WRONG], ids=[row[0] for row in WRONG])

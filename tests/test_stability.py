@@ -63,3 +63,19 @@ def test_python_hears_of_it_in_the_log(caplog: pytest.LogCaptureFixture) -> None
     m.damping(0.5, 1.0)
     m.cycle(0)
     assert len(heard) == 1
+
+
+def test_a_deck_says_what_set_the_step_in_the_state_it_was_found_for() -> None:
+    """Before the run, in Python only if it is asked for: at the end another group may be the one."""
+    deck = (DECK.parent / "collapse.dat").read_text().partition("CYCLE")[0]
+    m = Model()
+    found = m.run(deck + "CYCLE 0").split("\n CYCLE: ")[1].strip()
+    assert found == m.step_limits()
+    printed = m.run("CYCLE 400")
+    assert f"\n CYCLE: {found}\n" in printed
+    assert found != m.step_limits()
+    assert m.run("SOLVE 0 LIMIT=1").count("\n SOLVE: time-step") == 1
+    told: list[str] = []
+    m.inform = told.append
+    m.cycle(1)
+    assert told == []

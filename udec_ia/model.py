@@ -40,7 +40,7 @@ from udec_ia.ops.energy import Balance, balance, switch
 from udec_ia.ops.insitu import insitu
 from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
-from udec_ia.ops.limits import not_negative, whole
+from udec_ia.ops.limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.soft import soft
 from udec_ia.ops.split import Boxes, split
@@ -70,7 +70,8 @@ class Model:
     made when the first file is written.
     constitutive: laws of constitutive numbers 2 to 5 (udec_ia.laws): a file, the name of a law that comes
     with the program, a mapping from names to functions, or several of these; error 34 if one cannot be used.
-    tell: takes what CYCLE has to warn of.
+    tell: takes what CYCLE has to warn of. explain_step: CYCLE and SOLVE say before they run what sets the
+    time-step, as a deck has them do.
     """
 
     def __init__(
@@ -90,6 +91,7 @@ class Model:
         self.animate = False
         self.tell: Callable[[str], None] = log.warning
         self.inform: Callable[[str], None] = log.info
+        self.explain_step = False
         self.started = False
         self._files: list[Path] = []
         self._recorder = Recorder()
@@ -247,7 +249,8 @@ class Model:
         """CHANGE: attributes of the blocks in the range. Returns their number."""
         self._ready()
         conditions = number_of_conditions(self.h)
-        changed = change(self.array, (x1, x2, y1, y2), type, material, constitutive)
+        kind = None if type is None else str(type).lower()
+        changed = change(self.array, (x1, x2, y1, y2), kind, material, constitutive)
         self._tell_lost(conditions)
         return changed
 
@@ -279,28 +282,29 @@ class Model:
         """
         self._ready()
         self._boxes.forget()
-        where = (x1, x2, y1, y2)
+        points = rows(2, gridpoints=gridpoints)
+        triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
         conditions = number_of_conditions(self.h)
-        ib = block_to_zone(self.array, where)
+        ib = block_to_zone(self.array, (x1, x2, y1, y2))
         if mode.lower() == "manual":
-            if not gridpoints or not zones:
+            if not points or not triples:
                 raise UdecError(
                     26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
                 )
             if edge is not None:
                 raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
             near = NEAR * float(self.h.cr[DTOL])
-            for remark in generate(self.array, ib, gridpoints, zones, near, mixed):
+            for remark in generate(self.array, ib, [(x, y) for x, y in points], triples, near, mixed):
                 self.tell(remark)
         elif mode.lower() == "automatic":
-            if gridpoints or zones:
-                blamed = "gridpoints" if gridpoints else "zones"
+            if points or triples:
+                blamed = "gridpoints" if points else "zones"
                 raise UdecError(10, f"{blamed.upper()} are for MANUAL zones", parameter=blamed)
             if edge is None:
                 raise UdecError(
                     7, "EDGE d", "AUTOMATIC EDGE d makes zones with sides of about d", parameter="mode"
                 )
-            self.inform(generate_automatically(self.array, ib, edge, mixed))
+            self.inform(generate_automatically(self.array, ib, real(edge=edge), mixed))
         else:
             raise UdecError(22, mode, "take manual or automatic", parameter="mode")
         self._tell_lost(conditions)
@@ -334,11 +338,11 @@ class Model:
             yvel=yvel,
             xforce=xforce,
             yforce=yforce,
-            stress=stress,
-            xgrad=xgrad,
-            ygrad=ygrad,
+            stress=reals(3, stress=stress),
+            xgrad=reals(3, xgrad=xgrad),
+            ygrad=reals(3, ygrad=ygrad),
             viscous=viscous,
-            sine=sine,
+            sine=None if sine is None else reals(2, sine=sine),
             function=function,
             free=free,
         )
@@ -364,6 +368,7 @@ class Model:
     ) -> int:
         """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
         self._ready()
+        xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
         return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
 
     def round(self, d: float) -> None:
@@ -520,11 +525,19 @@ class Model:
         return done
 
     def step_limits(self) -> str:
-        """One line: the time-step of the last CYCLE, its shares of estimate and bound, what sets these."""
+        """One line: the time-step of the last CYCLE, its shares of estimate and bound, what sets these.
+
+        Estimate and bound are those of the present state, which the cycles since then have made.
+        """
         return describe(self.array)
 
     def _judge_step(self) -> None:
-        """Tell if stiffness damping may make the time-step unstable, once for each damping and step."""
+        """Explain the time-step if that is asked for, in the state in which it was found, and judge it.
+
+        If stiffness damping may make it unstable is told once for each damping and step.
+        """
+        if self.explain_step:
+            self.inform(describe(self.array))
         judged = (float(self.h.cr[BETA]), float(self.h.cr[TDEL]))
         if judged != self._judged:
             self._judged = judged

@@ -92,8 +92,6 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if name in COUNTED and isinstance(result, int):
             self._write(counted(name, result, self.model))
-        if name in ("cycle", "solve"):
-            self._write(f" {name.upper()}: {self.model.step_limits()}")
         self._show(result)
         self.model.deck_log += [
             line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
@@ -119,12 +117,13 @@ class Monitor:
         if "path" in named:  # files named in a deck are in the folder for files
             named["path"] = self.model.out / named["path"]
         model = self.model
-        before = model.tell, model.inform
+        before = model.tell, model.inform, model.explain_step
+        model.explain_step = True
         model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
             return getattr(model, name)(*call.positional, **named)
         finally:
-            model.tell, model.inform = before
+            model.tell, model.inform, model.explain_step = before
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""

@@ -7,7 +7,8 @@ names the number, and its caret in a deck stands at it.
 from __future__ import annotations
 
 import operator
-from typing import SupportsIndex
+from numbers import Real
+from typing import Any, SupportsIndex
 
 import numpy as np
 
@@ -53,11 +54,43 @@ def whole(**number: SupportsIndex) -> int:
     return integer
 
 
+def real(**number: Any) -> Any:
+    """The only number given, if it is one, else error 10."""
+    ((name, value),) = number.items()
+    if not isinstance(value, Real):
+        raise UdecError(10, f"{value!r} is not a number", f"{name} takes numbers", parameter=name)
+    return value
+
+
+def reals(n: int, **row: Any) -> Any:
+    """The only row given, if it is one of `n` numbers. Error 26 if there are fewer, else 10."""
+    ((name, value),) = row.items()
+    numbers = _items(name, value, f"{n} numbers")
+    if len(numbers) != n:
+        detail = f"{name} has {len(numbers)} number{'s' * (len(numbers) != 1)} in {value!r}"
+        raise UdecError(26 if len(numbers) < n else 10, detail, f"{name} takes {n} numbers", parameter=name)
+    return tuple(real(**{name: one}) for one in numbers)
+
+
+def rows(n: int, **table: Any) -> list[Any]:
+    """The only list given, if it is one of rows of `n` numbers; none is an empty one. Errors as of reals."""
+    ((name, value),) = table.items()
+    return [reals(n, **{name: row}) for row in _items(name, () if value is None else value, "a list")]
+
+
+def _items(name: str, value: Any, what: str) -> list[Any]:
+    """What stands in `value`; error 10 if nothing can."""
+    try:
+        return list(value)
+    except TypeError:
+        raise UdecError(10, f"{value!r} is not {what}", f"{name} takes {what}", parameter=name) from None
+
+
 def finite(array: MainArray, **numbers: float) -> None:
     """Error 28 unless the reals of the word scheme can hold all numbers."""
     largest = float(np.finfo(array.scheme.real_type).max)
     for name, value in numbers.items():
-        if not abs(value) <= largest:
+        if not abs(real(**{name: value})) <= largest:
             advice = f"{array.scheme.real_bits}-bit reals end at {largest:.2g}"
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
 
