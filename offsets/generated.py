@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "ad88d62c716e293791962dfd11cee4a74e3a538990ea1619f54b3e657b07dbd6"
+DIGEST = "9ae91880a5dc155b9669560deca0ebcf3eddeb76566b6a600a7a243b9d287dee"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -152,25 +152,27 @@ KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int: block that it acts on; never 0
 KUG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
 KUP = (4, 4, 4)  # int: corner of the block that it acts on; 0 if it does not act on a corner
-KUS = (5, 5, 5)  # int: signal that load and velocity are multiplied by; 0 if constant
-KUFIX = (6, 6, 6)  # int: velocities that are given: 1 in x, 2 in y, 3 both
-KUFX = (8, 5, 3)  # real: force in x
-KUFY = (9, 6, 4)  # real: force in y
-KUVX = (10, 7, 5)  # real: velocity in x
-KUVY = (11, 8, 6)  # real: velocity in y
-KUCXX = (12, 9, 7)  # real: viscous resistance in x to velocity in x
-KUCXY = (13, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
-KUCYY = (14, 11, 9)  # real: viscous resistance in y to velocity in y
-NVBN = (14, 22, 36)
+KUQ = (5, 5, 5)  # int: other end of the edge whose load it carries; 0 if it is not on an edge
+KUS = (6, 6, 6)  # int: signal that load and velocity are multiplied by; 0 if constant
+KUFIX = (7, 7, 7)  # int: velocities that are given: 1 in x, 2 in y, 3 both
+KUFX = (9, 5, 3)  # real: force in x
+KUFY = (10, 6, 4)  # real: force in y
+KUVX = (11, 7, 5)  # real: velocity in x
+KUVY = (12, 8, 6)  # real: velocity in y
+KUCXX = (13, 9, 7)  # real: viscous resistance in x to velocity in x
+KUCXY = (14, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
+KUCYY = (15, 11, 9)  # real: viscous resistance in y to velocity in y
+NVBN = (15, 22, 36)
 
 # a factor that changes with time: a sine or a FUNCTION (page ours)
 KT = (1, 1, 1)  # int: next signal in the list; 0 at the end of the list
 KTNUM = (2, 2, 2)  # int: number of the FUNCTION; 0 for a sine
 KTP = (3, 3, 3)  # int: first point of the function; 0 for a sine
 KTFREQ = (5, 3, 2)  # real: frequency of the sine
-KTLAST = (6, 4, 3)  # real: time for which the sine lasts
-KTNOW = (7, 5, 4)  # real: the factor in the present cycle
-NVSG = (7, 10, 16)
+KTBEG = (6, 4, 3)  # real: time at which the sine began
+KTLAST = (7, 5, 4)  # real: time for which the sine lasts
+KTNOW = (8, 6, 5)  # real: the factor in the present cycle
+NVSG = (8, 12, 20)
 
 # one point of a FUNCTION (page ours)
 KTPN = (0, 0, 0)  # int: next point, later in time; 0 at the end of the function

@@ -87,7 +87,7 @@ def test_forces_give_the_impulse_of_their_history(kind: str, name: str) -> None:
     m = lone(kind, SKEW)
     m.fraction(0.05)
     m.cycle(0)
-    many = sum(bool(row["KCOR"]) for row in m.table("gridpoint")) or 1
+    many = len(m.table("gridpoint")) or 1
     assert m.boundary(*EVERYWHERE, xforce=3e4, yforce=-1e4, **history(m, name)) == many
     n = int(6e-3 / float(m.h.cr[g.TDEL]))
     impulse = (factors(name, halfway(m, n)) * float(m.h.cr[g.TDEL])).sum()
@@ -99,14 +99,18 @@ def test_forces_give_the_impulse_of_their_history(kind: str, name: str) -> None:
     )
 
 
-def tractions(ring: list[tuple[float, float]], stress: Any, xgrad: Any, ygrad: Any) -> tuple[Any, Any]:
+def tractions(
+    ring: list[tuple[float, float]], stress: Any, xgrad: Any, ygrad: Any, edges: int | None = None
+) -> tuple[Any, Any]:
     """Resultant and moment about the origin of the tractions all around a clockwise outline.
+
+    edges: number of edges that count, or all of them.
 
     By three points of Gauss on each edge, which are exact for any polynomial of the fifth degree.
     """
     nodes, weights = np.polynomial.legendre.leggauss(3)
     force, moment = np.zeros(2), 0.0
-    for (ax, ay), (bx, by) in pairwise([*ring, ring[0]]):
+    for (ax, ay), (bx, by) in [*pairwise([*ring, ring[0]])][:edges]:
         normal = np.array((-(by - ay), bx - ax))  # outwards, times the length
         for s, w in zip((1 + nodes) / 2, weights / 2, strict=True):
             x, y = ax + s * (bx - ax), ay + s * (by - ay)
@@ -316,11 +320,13 @@ def test_conditions_on_a_block_that_is_cut(kind: str) -> None:
     assert len(m.table("bound")) == 0
 
 
-def load_sums(m: Model) -> Any:
-    """Resultant and moment about the origin of all loads."""
+def load_sums(m: Model, only: int = 0) -> Any:
+    """Resultant and moment about the origin of all loads, or of those on the block at the address `only`."""
     corners, blocks = by_address(m.table("corner")), by_address(m.table("block"))
     total = np.zeros(3)
     for row in m.table("bound"):
+        if only and row["KUB"] != only:
+            continue
         fx, fy = float(row["KUFX"]), float(row["KUFY"])
         if row["KUP"]:
             x, y = (float(corners[int(row["KUP"])][k]) for k in ("KXP", "KYP"))
@@ -330,6 +336,64 @@ def load_sums(m: Model) -> Any:
             assert int(row["KUB"]) in blocks
         total += (fx, fy, x * fy - y * fx)
     return total
+
+
+@pytest.mark.parametrize("kind", ["rigid", "sdef"])
+def test_an_edge_that_is_cut_carries_its_traction_on(kind: str) -> None:
+    """Each new edge has the resultant and the moment of the traction on it, however often it is cut."""
+    m = model(*box(0, 10, 0, 3), d=D, gravity=(0.0, 0.0), density=RHO)
+    m.property(1, bulk=K, g=G)
+    if kind == "sdef":
+        m.change(*EVERYWHERE, type="sdef")
+    stress, xgrad = (2e4, 1e4, -1e5), (0.0, 5e2, -3e4)
+    m.boundary(-1, 11, 2.9, 3.1, stress=stress, xgrad=xgrad)
+    m.boundary(-1, 11, 2.9, 3.1, viscous=True)
+    m.split(-1, 1, 11, 1)  # touches no loaded edge
+    m.split(2, 0.5, 2, 4)
+    m.split(8, -1, 10, 3)  # through the corner where the load ends
+    m.split(5, 4, 7, -1)
+    sound(m)
+    loaded = 0
+    for ib, ring in outlines(m).items():
+        points = [(float(c["KXP"]), float(c["KYP"])) for c in ring]
+        force, moment = np.zeros(2), 0.0
+        length = 0.0
+        for (ax, ay), (bx, by) in pairwise([*points, points[0]]):
+            if ay == by == 3:
+                edge, turn = tractions([(ax, ay), (bx, by), (ax, ay)], stress, xgrad, (0, 0, 0), edges=1)
+                force, moment, length = force + edge, moment + turn, length + abs(bx - ax)
+        np.testing.assert_allclose(load_sums(m, ib), [*force, moment], atol=1e-7)
+        normal = sum(float(row["KUCYY"]) for row in m.table("bound") if row["KUB"] == ib)
+        assert normal == pytest.approx(RHO * CP * length, rel=1e-12)
+        loaded += length > 0
+    assert loaded == 3
+
+
+def test_a_sine_begins_with_its_command() -> None:
+    """After 0.1 s of settling, for its own duration, and from zero."""
+    m = lone("rigid", box(0, 2, 0, 1))
+    m.cycle(1)
+    dt = float(m.h.cr[g.TDEL])
+    m.cycle(int(0.1 / dt))
+    begun = float(m.h.cr[g.TIME])
+    m.boundary(*EVERYWHERE, xvel=1.0, sine=(50.0, 0.01))
+    lasts = int(0.01 / dt)
+    for _ in range(lasts + 3):
+        t = float(m.h.cr[g.TIME]) - begun + dt / 2
+        m.cycle(1)
+        expected = np.sin(2 * np.pi * 50 * t) if t <= 0.01 else 0.0
+        assert m.table("block")["KXD"][0] == pytest.approx(expected, abs=1e-9)
+    assert lasts > 3
+
+
+def test_a_grid_point_inside_takes_velocities_and_forces() -> None:
+    m = lone("zoned", box(0, 2, 0, 1))
+    (inner,) = (row for row in m.table("gridpoint") if not row["KCOR"])
+    x, y = float(inner["KXG"]), float(inner["KYG"])
+    assert m.boundary(x - 0.01, x + 0.01, y - 0.01, y + 0.01, xvel=0.5, yvel=0.0) == 1
+    m.cycle(10)
+    held = at(m, "gridpoint", int(inner["address"]))
+    assert (held["KGFIX"], held["KXDG"], held["KYDG"]) == (3, 0.5, 0)
 
 
 def all_kinds() -> Model:
@@ -361,7 +425,7 @@ def test_conditions_go_with_what_they_act_on() -> None:
         (lambda: m.change(2, 3, 0, 1, type="rigid"), (2.5, 3)),
         (lambda: m.delete(3, 4, 0, 1), (3.5, 2)),
         (lambda: m.change(1, 2, 0, 1, type="fdef"), (1.5, 2)),
-        (lambda: m.change(0, 1, 0, 1, type="sdef"), (0.5, 1)),
+        (lambda: m.change(0, 1, 0, 1, type="fdef"), (0.5, 1)),
     ):
         ib = int(block(m, x, 0.5)["address"])
         others = sorted(m.table("bound")["address"][m.table("bound")["KUB"] != ib].tolist())

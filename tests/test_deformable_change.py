@@ -23,6 +23,7 @@ from naive.bodies import (
 import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
 
 KINDS = ("rigid", "sdef", "fdef", "zoned")
@@ -307,4 +308,47 @@ def test_split_keeps_the_mass_in_a_run(kind: str) -> None:
         )[0]
         assert float(row["KBM"]) == pytest.approx(mass * part / area, rel=1e-12)
         check_masses(m, int(row["address"]))
+    sound(m)
+
+
+@pytest.mark.parametrize("then", ["split", "zoned", "sdef"])
+def test_momentum_of_a_block_that_was_deformed(then: str) -> None:
+    """Masses at grid-points have another centroid than the area, once the block has been bent."""
+    m, address = stack("zoned", cycles=60)
+    points = m.table("gridpoint")
+    for p in points:  # a strong and lopsided strain, and a motion
+        putr(m.h, int(p["address"]), g.KXDG, 30 * float(p["KYG"]) ** 2)
+        putr(m.h, int(p["address"]), g.KYDG, -4 * float(p["KXG"]) ** 2)
+    m.cycle(4)
+    total, size = momentum(m)
+    become(m, address, "rigid")
+    if then == "split":
+        row = at(m, "block", address)
+        x, y = float(row["KX"]), float(row["KY"])
+        m.split(x - 0.3, y - 0.9, x + 0.3, y + 0.9)
+    else:
+        become(m, address, then)
+    after, _ = momentum(m)
+    np.testing.assert_array_less(np.abs(after - total), 1000 * EPS * size)
+    sound(m)
+
+
+def test_a_loaded_block_becomes_deformable_at_rest() -> None:
+    """Its stress is that of what presses on it, but for 2 mm of overlap below; its load stays."""
+    m = model(*box(0, 4, -1, 3), d=0.1, stiffness=(1e9, 1e9), friction=0.5)
+    m.property(1, bulk=2e8, g=1e8)
+    m.split(-1, 0, 5, 0)
+    m.fix(0, 4, -1, 0)
+    m.boundary(-1, 5, 2.9, 3.1, stress=(0, 0, -1e6))
+    m.damping(0.5, 20, "mass")
+    m.cycle(2000)
+    address = int(block(m, 2, 1.5)["address"])
+    become(m, address, "sdef")
+    weight = float(at(m, "block", address)["KBM"]) * 10
+    assert mean_stress(m, address)[2] == pytest.approx(-1e6 - weight / 8, rel=2e-3 / 3)
+    assert len(m.table("bound")) == 2
+    m.cycle(200)
+    assert abs(float(at(m, "block", address)["KYD"])) < 1e-4
+    become(m, address, "rigid")
+    assert len(m.table("bound")) == 2
     sound(m)

@@ -55,11 +55,8 @@ def loads(m: Model) -> Any:
             assert owner["HEAD"] == g.MRIG
             r = np.zeros(2)
             if row["KUP"]:
-                ends = [
-                    subjects["corner"][row["KUP"]],
-                    subjects["corner"][subjects["corner"][row["KUP"]]["KR"]],
-                ]
-                r = np.mean([(e["KXP"], e["KYP"]) for e in ends], axis=0) - (owner["KX"], owner["KY"])
+                corner = subjects["corner"][row["KUP"]]
+                r = np.array([corner["KXP"] - owner["KX"], corner["KYP"] - owner["KY"]])
             v = np.array([owner["KXD"] - owner["KTD"] * r[1], owner["KYD"] + owner["KTD"] * r[0]])
         c = np.array([[row["KUCXX"], row["KUCXY"]], [row["KUCXY"], row["KUCYY"]]])
         yield row, np.array([row["KUFX"], row["KUFY"]]) * factor - c @ v

@@ -125,10 +125,11 @@ COMMANDS = (
     Command(
         "BOundary",
         "Conditions on the grid-points and block centroids in x1<x<x2, y1<y<y2: velocities or forces; on the "
-        "edges with both ends there: stresses (tension positive, growing with x and y by XGrad and YGrad) or "
-        "viscous, non-reflecting edges. A sine (frequency, duration) or a FUNCTION of time multiplies loads "
-        "and velocities. Loads add to those that are there, a velocity takes the place of the last one. Free "
-        "takes all conditions away.",
+        "edges with both ends there, those of joints too: stresses (tension positive, growing with x and y "
+        "by XGrad and YGrad) or viscous, non-reflecting edges, with the properties of now. A sine "
+        "(frequency, duration), which begins now, or a FUNCTION of the time of the model multiplies loads "
+        "and velocities. Loads add to those that are there, a velocity takes the place of the last one. "
+        "Free takes all conditions away.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -197,7 +198,7 @@ COMMANDS = (
     ),
     Command(
         "FUnction",
-        "Function number n of time for BOUNDARY: factors f at the times t, linear between them.",
+        "Function number n for BOUNDARY: factors f at the times t of the model, linear between them.",
         "FUNCTION 1 0 0 0.5 1",
         numbers="n",
         list="t f",
@@ -206,7 +207,7 @@ COMMANDS = (
     Command(
         "FRaction",
         "Use the fraction f of the critical time-step: of the estimate of 1980, which is only approximate, "
-        "or of the bound that is always safe.",
+        "or of a bound that no mode of the contacts and zones of now exceeds.",
         "FRAC 0.1",
         numbers="f",
         words=(Word("Safe"),),
@@ -264,7 +265,7 @@ COMMANDS = (
     Command(
         "INsitu",
         "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2, tension positive; "
-        "they grow with x and y by XGrad and YGrad.",
+        "they grow with x and y by XGrad and YGrad. Joints begin without force and close under them.",
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),

@@ -35,8 +35,8 @@ from offsets.generated import (
     KGFX,
     KGFY,
     KGPM,
-    KNB,
     KT,
+    KTBEG,
     KTD,
     KTFREQ,
     KTLAST,
@@ -67,18 +67,15 @@ from offsets.generated import (
     KYDG,
     KYP,
     MSDEF,
-    NVBN,
     TDEL,
     TIME,
     WBOUND,
 )
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find
 from udec_ia.kernels.fdef import putfdf
 from udec_ia.kernels.motion import FIXED, GIVEN_X, GIVEN_Y
 from udec_ia.kernels.sdef import putstr
-from udec_ia.kernels.shape import geo
 
 
 @kernel
@@ -104,8 +101,8 @@ def set_signals(h: Memory) -> None:
         factor = real(h, 0.0)
         if iget(h, isg, KTP) != 0:
             factor = _function(h, isg, t)
-        elif t <= getr(h, isg, KTLAST):
-            factor = np.sin(real(h, 2 * np.pi) * getr(h, isg, KTFREQ) * t)
+        elif t - getr(h, isg, KTBEG) <= getr(h, isg, KTLAST):
+            factor = np.sin(real(h, 2 * np.pi) * getr(h, isg, KTFREQ) * (t - getr(h, isg, KTBEG)))
         putr(h, isg, KTNOW, factor)
         isg = iget(h, isg, KT)
 
@@ -201,18 +198,9 @@ def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
 
 
 @kernel
-def apply_bounds(h: Memory, energy: Any) -> None:
-    """Apply all boundary conditions for the step that begins. energy: as in run_cycles."""
+def push_loads(h: Memory) -> None:
+    """Add the loads of all boundary conditions to the force sums."""
     zero = real(h, 0.0)
-    set_signals(h)
-    iu = h.ci[IBNPNT]
-    while iu != 0:
-        if iget(h, iu, KUFIX) != 0:
-            factor = real(h, 1.0)
-            if iget(h, iu, KUS) != 0:
-                factor = getr(h, iget(h, iu, KUS), KTNOW)
-            _give_velocity(h, iu, factor, energy)
-        iu = iget(h, iu, KU)
     iu = h.ci[IBNPNT]
     while iu != 0:
         fx, fy, x, y = load(h, iu)
@@ -222,36 +210,15 @@ def apply_bounds(h: Memory, energy: Any) -> None:
 
 
 @kernel
-def on_blocks(h: Memory) -> int:
-    """Number of conditions that act on blocks at their centroids."""
-    n = 0
+def apply_bounds(h: Memory, energy: Any) -> None:
+    """Apply all boundary conditions for the step that begins. energy: as in run_cycles."""
+    set_signals(h)
     iu = h.ci[IBNPNT]
     while iu != 0:
-        n += iget(h, iu, KUG) == 0 and iget(h, iu, KUP) == 0
+        if iget(h, iu, KUFIX) != 0:
+            factor = real(h, 1.0)
+            if iget(h, iu, KUS) != 0:
+                factor = getr(h, iget(h, iu, KUS), KTNOW)
+            _give_velocity(h, iu, factor, energy)
         iu = iget(h, iu, KU)
-    return n
-
-
-@kernel
-def share_bounds(h: Memory, ib: int, jb: int) -> None:
-    """Share the conditions on block `ib` with block `jb`, which has been cut from it.
-
-    What acts at a corner goes with the corner. Of what acts on the whole block both get the velocity, and of
-    the load each its part by area, so that the resultant stays.
-    """
-    area, other = geo(h, ib)[0], geo(h, jb)[0]
-    iu = h.ci[IBNPNT]
-    while iu != 0:
-        following = iget(h, iu, KU)
-        if iget(h, iu, KUB) == ib and iget(h, iu, KUP) != 0:
-            puti(h, iu, KUB, iget(h, iget(h, iu, KUP), KNB))
-        elif iget(h, iu, KUB) == ib:
-            ju = find(h, NVBN)
-            for i in range(size_of(h, NVBN)):
-                puti(h, ju, HEAD, iget(h, iu, HEAD, i), i)
-            puti(h, iu, KU, ju)
-            puti(h, ju, KUB, jb)
-            for k, part in ((iu, area / (area + other)), (ju, other / (area + other))):
-                putr(h, k, KUFX, getr(h, k, KUFX) * part)
-                putr(h, k, KUFY, getr(h, k, KUFY) * part)
-        iu = following
+    push_loads(h)

@@ -50,13 +50,13 @@ from offsets.generated import (
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
-from udec_ia.kernels.bounds import on_blocks, share_bounds
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.ford import restart, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.masses import share_extension
 from udec_ia.kernels.shape import crad, zcs
+from udec_ia.kernels.sharing import off_grid, share_bounds
 from udec_ia.kernels.split import corner_on_edge, spli
 from udec_ia.kernels.tolerances import set_rounding
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL
@@ -230,7 +230,7 @@ def cut_path(
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 6 * size_of(h, NVCN) + 5 * size_of(h, NVDO)
     if soft is not None:
-        need += size_of(h, NVSD) + on_blocks(h) * size_of(h, NVBN)
+        need += size_of(h, NVSD) + off_grid(h) * size_of(h, NVBN)
     cuts = 0
     for r in range(found):
         cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]

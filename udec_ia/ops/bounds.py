@@ -25,7 +25,6 @@ from offsets.generated import (
     KB,
     KBEX,
     KBFIX,
-    KCOR,
     KFG,
     KG,
     KGFIX,
@@ -33,6 +32,7 @@ from offsets.generated import (
     KMAT,
     KR,
     KT,
+    KTBEG,
     KTFREQ,
     KTLAST,
     KTNUM,
@@ -50,6 +50,7 @@ from offsets.generated import (
     KUFY,
     KUG,
     KUP,
+    KUQ,
     KUS,
     KUVX,
     KUVY,
@@ -65,6 +66,7 @@ from offsets.generated import (
     NVBN,
     NVSG,
     NVTP,
+    TIME,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
@@ -78,7 +80,7 @@ from udec_ia.ops.memory import require
 from udec_ia.ops.ranges import Range, check_range
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
-Target = tuple[int, int, int]  # block; grid-point or 0; corner of a block without grid-points, or 0
+Target = tuple[int, int, int, int]  # as KUB, KUG, KUP and KUQ of a condition
 ZERO: Triple = (0.0, 0.0, 0.0)
 
 
@@ -120,8 +122,8 @@ def boundary(
 
     xvel, yvel: given velocities, m/s. xforce, yforce: N/m on each grid-point or block. stress, with xgrad and
     ygrad its growth per metre: 11, 12, 22. viscous: non-reflecting edges. sine: frequency (Hz) and how long
-    it lasts (s), or function: number of a FUNCTION; loads and velocities are multiplied by it. Errors 24, 26,
-    28.
+    it lasts (s), from now on, or function: number of a FUNCTION; loads and velocities are multiplied by it.
+    Errors 24, 26, 28.
     """
     check_range(array, where)
     finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
@@ -180,14 +182,14 @@ def _inside(where: Range, x: float, y: float) -> bool:
 
 
 def _points(h: Memory, where: Range) -> Iterator[Target]:
-    """Grid-points on outlines in the range, and other blocks with their centroids in it."""
+    """Grid-points in the range, and other blocks with their centroids in it."""
     for ib in chain(h, int(h.ci[IBPNT]), KB):
         if iget(h, ib, HEAD) == MFDEF:
             for ig in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
-                if iget(h, ig, KCOR) and _inside(where, float(getr(h, ig, KXG)), float(getr(h, ig, KYG))):
-                    yield ib, ig, 0
+                if _inside(where, float(getr(h, ig, KXG)), float(getr(h, ig, KYG))):
+                    yield ib, ig, 0, 0
         elif _inside(where, float(getr(h, ib, KX)), float(getr(h, ib, KY))):
-            yield ib, 0, 0
+            yield ib, 0, 0, 0
 
 
 def _awaits_zones(h: Memory, ib: int) -> bool:
@@ -228,15 +230,15 @@ def _load_edge(
     cn, cs = _impedances(h, ib) if viscous else (0.0, 0.0)
     c = (cn * nx * nx + cs * ny * ny, (cn - cs) * nx * ny, cn * ny * ny + cs * nx * nx)
     half = (c[0] * length / 2, c[1] * length / 2, c[2] * length / 2)
-    start, end = (loads.setdefault(_corner_target(h, ib, i), Load()) for i in (ia, ip))
+    start, end = (loads.setdefault(_corner_target(h, ib, i, j), Load()) for i, j in ((ia, ip), (ip, ia)))
     start.add(length * (2 * tax + tbx) / 6, length * (2 * tay + tby) / 6, half)
     end.add(length * (tax + 2 * tbx) / 6, length * (tay + 2 * tby) / 6, half)
 
 
-def _corner_target(h: Memory, ib: int, ip: int) -> Target:
-    """Where a load on corner `ip` of block `ib` acts: at its grid-point, if there is one."""
+def _corner_target(h: Memory, ib: int, ip: int, iq: int) -> Target:
+    """Where a load on the edge from corner `ip` to `iq` acts at `ip`: at its grid-point, if there is one."""
     ig = iget(h, ip, KGP)
-    return (ib, ig, 0) if ig else (ib, 0, ip)
+    return (ib, ig, 0, 0) if ig else (ib, 0, ip, iq)
 
 
 def _impedances(h: Memory, ib: int) -> tuple[float, float]:
@@ -253,10 +255,11 @@ def _make(
     h: Memory, target: Target, load: Load, fix: int, velocity: tuple[float, float], signal: int
 ) -> None:
     """A condition at the head of the list."""
-    ib, ig, ip = target
+    ib, ig, ip, iq = target
     iu = int(find(h, NVBN))
     puti(h, iu, HEAD, MBND)
-    for k, n in ((KU, int(h.ci[IBNPNT])), (KUB, ib), (KUG, ig), (KUP, ip), (KUS, signal), (KUFIX, fix)):
+    where = ((KUB, ib), (KUG, ig), (KUP, ip), (KUQ, iq))
+    for k, n in ((KU, int(h.ci[IBNPNT])), *where, (KUS, signal), (KUFIX, fix)):
         puti(h, iu, k, n)
     reals = ((KUFX, load.fx), (KUFY, load.fy), (KUCXX, load.cxx), (KUCXY, load.cxy), (KUCYY, load.cyy))
     for kr, value in (*reals, (KUVX, velocity[0]), (KUVY, velocity[1])):
@@ -270,7 +273,7 @@ def _make(
 
 def _release(h: Memory, target: Target, fix: int) -> None:
     """Earlier conditions no longer give the velocities `fix` of the target; those left with nothing go."""
-    ib, ig, _ = target
+    ib, ig, _, _ = target
     for iu in chain(h, int(h.ci[IBNPNT]), KU):
         if iget(h, iu, KUFIX) & fix and iget(h, iu, KUB) == ib and iget(h, iu, KUG) == ig:
             puti(h, iu, KUFIX, iget(h, iu, KUFIX) & ~fix)
@@ -347,7 +350,7 @@ def _set_free(h: Memory, where: Range) -> int:
     gone = [
         iu
         for iu in chain(h, int(h.ci[IBNPNT]), KU)
-        if (iget(h, iu, KUB), iget(h, iu, KUG), iget(h, iu, KUP)) in points
+        if tuple(iget(h, iu, k) for k in (KUB, KUG, KUP, KUQ)) in points
         or (iget(h, iu, KUP) and _inside(where, *_corner(h, iget(h, iu, KUP))))
     ]
     for iu in gone:
@@ -359,6 +362,7 @@ def _make_sine(h: Memory, frequency: float, lasts: float) -> int:
     """A signal that is a sine of the given frequency for a time."""
     isg = _make_signal(h)
     putr(h, isg, KTFREQ, frequency)
+    putr(h, isg, KTBEG, float(h.cr[TIME]))
     putr(h, isg, KTLAST, lasts)
     return isg
 

@@ -1,11 +1,11 @@
 """CHANGE: type, material and constitutive numbers of blocks (report 4.2, 4.3).
 
 What a change of type keeps. Momentum and angular momentum: always. Stress: a rigid block that becomes
-deformable in a run begins with the mean stress of the contact forces on it, so that a block at rest stays
-at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
+deformable in a run begins with the mean stress of contact forces and loads on it, so that a block at rest
+stays at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
 simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
-lost, and so are boundary conditions on the block and the corners that GENERATE has put on its edges. Masses
-never change after the first cycle.
+lost, and so are, with its zones or for them, boundary conditions on the block and the corners that GENERATE
+has put on its edges. Masses never change after the first cycle.
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
+from udec_ia.kernels.bounds import push_loads
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.masses import share_mass, zone_means
 from udec_ia.kernels.sdef import put_stress
@@ -69,7 +70,7 @@ from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
 from udec_ia.ops.rounding import update_flagged
-from udec_ia.ops.straighten import check_straight, edge_points, straighten
+from udec_ia.ops.straighten import check_straight, edge_points, renew_reach, straighten
 
 TYPES = {"rigid": MRIG, "sdef": MSDEF, "fdef": MFDEF}
 Stress = tuple[float, float, float]  # 11, 12, 22
@@ -129,6 +130,7 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
         become(h, ib, MSDEF)
     if h.ci[MCTOT] > 0:
         renew_forces(array)
+        push_loads(h)
         for ib in rigid:
             _put_stress(h, ib, applied_stress(h, ib))
     for ib in changing:
@@ -140,7 +142,8 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
 
 def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> None:
     """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one."""
-    forget_block(h, ib)
+    if MFDEF in (iget(h, ib, HEAD), kind):
+        forget_block(h, ib)
     if iget(h, ib, HEAD) == MFDEF:
         _lose_zones(h, ib)
     if iget(h, ib, HEAD) != MRIG:
@@ -166,7 +169,10 @@ def _put_stress(h: Memory, ib: int, stress: Stress) -> None:
 
 
 def _lose_zones(h: Memory, ib: int) -> None:
-    """Give back zones and grid-points of block `ib`, which goes on as a rigid body with their momentum."""
+    """Give back zones and grid-points of block `ib`, which goes on as a rigid body with their momentum.
+
+    Its centroid is that of its area then, no more that of the masses at the grid-points.
+    """
     ie = iget(h, ib, KBEX)
     turning = float(getr(h, ib, KBI)) * float(getr(h, ib, KTD))
     for item in items(h, ib):
@@ -176,10 +182,13 @@ def _lose_zones(h: Memory, ib: int) -> None:
         lose(h, ig, NVGP)
     for iz in chain(h, iget(h, ie, KFZ), KZ):
         lose(h, iz, NVZO)
-    area, _, _, jxx, _, jyy = geo(h, ib)
-    second = float(getr(h, ib, KBM)) * (jxx + jyy) / area
-    putr(h, ib, KBI, second)
-    putr(h, ib, KTD, turning / second if second else 0.0)
+    area, x, y, jxx, _, jyy = (float(n) for n in geo(h, ib))
+    mass, xd, yd = (float(getr(h, ib, k)) for k in (KBM, KXD, KYD))
+    second = mass * (jxx + jyy) / area
+    turning += mass * ((float(getr(h, ib, KX)) - x) * yd - (float(getr(h, ib, KY)) - y) * xd)
+    for k, value in ((KX, x), (KY, y), (KBI, second), (KTD, turning / second if second else 0.0)):
+        putr(h, ib, k, value)
+    renew_reach(h, ib)
     renew_corners(h, ib)
 
 

@@ -82,10 +82,15 @@ def straighten(h: Memory, ib: int) -> None:
     for ip in points:
         _take_point_out(h, ib, ip)
     h.ci[NSHORT] += crad(h, ib) - short
+    renew_reach(h, ib)
+    flag_around(h, ib)
+
+
+def renew_reach(h: Memory, ib: int) -> None:
+    """Distance of the farthest corner of block `ib` from its centroid as they are now."""
     x, y = float(getr(h, ib, KX)), float(getr(h, ib, KY))
     away = [math.hypot(getr(h, ip, KXP) - x, getr(h, ip, KYP) - y) for ip in corners_of(h, ib)]
     putr(h, ib, KBRO, max(away))
-    flag_around(h, ib)
 
 
 def _take_point_out(h: Memory, ib: int, ip: int) -> None:

@@ -1,4 +1,4 @@
-"""The critical time-step: the 1980 estimate, and a bound that is always safe (report 4.6).
+"""The critical time-step: the 1980 estimate, and a bound that no mode exceeds (report 4.6).
 
 Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stiffness), the internal modes of
 simply-deformable blocks and the grid-points (kernels.timestep). It is only approximate: a mass on several
