@@ -463,7 +463,7 @@ class Model:
         return balance(self.h)
 
     def fraction(self, f: float, safe: bool = False) -> None:
-        """FRACTION: fraction of the critical time-step to be used; safe: of the bound that no mode exceeds."""
+        """FRACTION: fraction of the critical time-step to be used; safe: of a bound on all modes."""
         self._ready(sound=False)
         settings.set_fraction(self.array, f, safe)
 
