@@ -22,6 +22,7 @@ NOTHING_TO_SAVE = {
     "err03",
     "err20",
     "err20-plot",
+    "err20-split",
     "err29",
 }  # not started, or damaged
 OF_1980 = {*range(1, 27)} - {21}  # those of 1980; 21 is not raised, DELETE takes fully-deformable blocks

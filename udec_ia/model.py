@@ -98,7 +98,7 @@ class Model:
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
-        self._touched = False  # RSET has changed a word since the heap was last known to be sound
+        self._touched = self._suspect = False  # RSET has changed a word since links, or all, were sound
         self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
@@ -117,7 +117,7 @@ class Model:
         self.laws.note({})
         self._recorder.series = []
         self._boxes.forget()
-        self._touched = False
+        self._touched = self._suspect = False
         self._judged = (0.0, 0.0)
         self.started = True
 
@@ -147,7 +147,7 @@ class Model:
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched = False
+        self._touched = self._suspect = False
         self.started = True
 
     @classmethod
@@ -185,11 +185,12 @@ class Model:
             [one for one in self._recorder.solutions if not one],
         )
 
-    def _ready(self, sound: bool = True) -> None:
+    def _ready(self, sound: bool = True, shapes: bool = False) -> None:
         """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
 
-        A routine that follows pointers must never meet one that RSET has damaged: error 20. Such routines are
-        compiled ones, too: the first one of a process says so if nobody has compiled them before.
+        A routine that follows pointers must never meet one that RSET has damaged, nor one that cuts outlines
+        (`shapes`) an outline that crosses itself: error 20. Such routines are compiled ones, too: the first of
+        a process says so if nobody has compiled them before.
         """
         if not self.started:
             self.start()
@@ -198,13 +199,20 @@ class Model:
             announced.add(name)
             log.warning("compiling once for this machine, up to a minute ...")
         if sound and self._touched:
-            from udec_ia.inspect.check import check_links
-
-            broken = check_links(self.array)
-            if broken:
-                advice = "RSET has damaged the main array: put the old value back, or RESTART"
-                raise UdecError(20, str(broken[0]), advice)
+            self._prove(whole=False)
             self._touched = False
+        if shapes and self._suspect:
+            self._prove(whole=True)
+            self._suspect = False
+
+    def _prove(self, whole: bool) -> None:
+        """Error 20 with the first violation of the links of the main array, or of the whole of it."""
+        from udec_ia.inspect.check import check, check_links
+
+        broken = check(self.array) if whole else check_links(self.array)
+        if broken:
+            advice = "RSET has damaged the main array: put the old value back, or RESTART"
+            raise UdecError(20, str(broken[0]), advice)
 
     # ---- the block system
 
@@ -217,7 +225,7 @@ class Model:
 
     def split(self, x1: float, y1: float, x2: float, y2: float) -> int:
         """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks."""
-        self._ready()
+        self._ready(shapes=True)
         return split(self.array, self._boxes, x1, y1, x2, y2)
 
     def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:
@@ -381,7 +389,7 @@ class Model:
         self._ready(sound=False)
         settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
-        self._touched = True
+        self._touched = self._suspect = True
 
     # ---- numbers
 
