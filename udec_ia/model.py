@@ -189,8 +189,8 @@ class Model:
         """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
 
         A routine that follows pointers must never meet one that RSET has damaged, nor one that cuts outlines
-        (`shapes`) an outline that crosses itself: error 20. Such routines are compiled ones, too: the first of
-        a process says so if nobody has compiled them before.
+        (`shapes`) an outline that crosses itself: error 20. Such routines are compiled ones, too: the first
+        of a process says so if nobody has compiled them before.
         """
         if not self.started:
             self.start()
