@@ -83,6 +83,7 @@ def _outline(o: Outlines, chosen: Any) -> Curve:
 def draw_principal(axes: Axes, now: Field, size: float) -> str:
     """Crosses along the principal stresses; returns a note on their scale."""
     from matplotlib.collections import LineCollection
+    from matplotlib.patheffects import withStroke
 
     s11, s12, s22 = now.stress.T
     angle = np.arctan2(2 * s12, s11 - s22) / 2
@@ -93,7 +94,9 @@ def draw_principal(axes: Axes, now: Field, size: float) -> str:
         half = along * (np.abs(value) / most * size * LONGEST / 2)[:, None]
         for chosen, colour in ((value > 0, TENSION), (value < 0, COMPRESSION)):
             lines = np.stack([now.middle - half, now.middle + half], axis=1)[chosen]
-            axes.add_collection(LineCollection(list(lines), colors=colour, linewidths=0.9, zorder=4))
+            crosses = LineCollection(list(lines), colors=colour, linewidths=0.9, zorder=4)
+            crosses.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
+            axes.add_collection(crosses)
     return f"largest principal stress: {most:.4g} Pa (red: tension)"
 
 
@@ -117,5 +120,5 @@ def _arrows(axes: Axes, place: Any, vector: Any, size: float) -> float:
     if most > 0:
         reach = vector * (size * LONGEST / most)
         style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0025}
-        axes.quiver(*place.T, *reach.T, color=ARROW, zorder=5, **style)
+        axes.quiver(*place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style)
     return most

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
-KEY_WIDTH = 1.35  # inches for the key on the right
+KEY_WIDTH = 1.55  # inches for the key on the right
 DPI = 150
 
 
