@@ -40,7 +40,7 @@ from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal
 
 BATCH = 250  # cases to a process
-FIRST_CASE, NEXT_CASE = 600.0, 60.0  # seconds of silence after which a process hangs; the first case compiles
+FIRST_CASE, NEXT_CASE = 600.0, 180.0  # seconds of silence after which a process hangs; any may compile
 MOST_CYCLES = 20
 MOST_COMMANDS = 40
 UNTIDY = (15, 32)  # the errors that leave blocks deeper in each other than any contact can be
