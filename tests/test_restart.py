@@ -14,9 +14,11 @@ import h5py
 import numpy as np
 import pytest
 from handmade import two_blocks
+from mechanics import box, model
 
 from offsets import generated as g
 from offsets.table import lay_out, read_table
+from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
@@ -166,6 +168,7 @@ KILLED = """
 import os, signal, sys
 sys.path.insert(0, sys.argv[2])
 from handmade import two_blocks
+from mechanics import box, model
 from udec_ia.restart import save
 os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)
 save(two_blocks(), sys.argv[1])
@@ -233,3 +236,19 @@ def test_info(name: str, tmp_path: Path) -> None:
     assert lines["model"] == "2 blocks, 2 contacts (0 virtual), 2 domains"
     assert lines["run"].startswith("1234 cycles, time 0.5 s")
     assert lines["deck"] == "4 command lines"
+
+
+def test_what_rset_has_bent_is_not_cut_after_a_restart(tmp_path: Path) -> None:
+    """An outline that crosses itself would lead SPLIT astray; put right again, it is cut."""
+    m = model(*box(0, 4, 0, 2), d=0.1)
+    m.split(-1, 1, 5, 1)
+    corner = m.table("corner")[0]
+    offset = g.KXP[m.array.scheme.ratio >> 1]
+    m.rset(float(corner["KXP"]) + 9, int(corner["address"]), offset)
+    other = Model.restore(m.save(tmp_path / "bent.h5"))
+    for one in (m, other):
+        with pytest.raises(UdecError) as refused:
+            one.split(2, -1, 2, 3)
+        assert refused.value.number == 20
+        one.rset(float(corner["KXP"]), int(corner["address"]), offset)
+        assert one.split(2, -1, 2, 3) == 2

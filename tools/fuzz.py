@@ -35,6 +35,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.model import RESTART_FILE, Model
+from udec_ia.ops.watch import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal
@@ -97,6 +98,9 @@ class Tame(Model):
 
     def cycle(self, n: int) -> int:
         return super().cycle(min(n, MOST_CYCLES))
+
+    def solve(self, ratio: float, limit: int = MOST_CYCLES) -> Solution:
+        return super().solve(ratio, min(limit, MOST_CYCLES))
 
     def save(self, path: str | Path | None = None) -> Path:
         return super().save(None)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
 import numba
 import numpy as np
 
-from offsets.generated import BETA, DTOL, IHPNT, MCTOT, NBLK, NCON, TDEL, TIME
+from offsets.generated import BETA, DTOL, IHPNT, LRSET, MCTOT, NBLK, NCON, TDEL, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -98,7 +98,7 @@ class Model:
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
-        self._touched = self._suspect = False  # RSET has changed a word since links, or all, were sound
+        self._touched = False  # RSET has changed a word since the links were last known to be sound
         self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
@@ -117,7 +117,7 @@ class Model:
         self.laws.note({})
         self._recorder.series = []
         self._boxes.forget()
-        self._touched = self._suspect = False
+        self._touched = False
         self._judged = (0.0, 0.0)
         self.started = True
 
@@ -147,7 +147,7 @@ class Model:
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched = self._suspect = False
+        self._touched = False
         self.started = True
 
     @classmethod
@@ -201,9 +201,9 @@ class Model:
         if sound and self._touched:
             self._prove(whole=False)
             self._touched = False
-        if shapes and self._suspect:
+        if shapes and self.h.ci[LRSET]:
             self._prove(whole=True)
-            self._suspect = False
+            self.h.ci[LRSET] = 0
 
     def _prove(self, whole: bool) -> None:
         """Error 20 with the first violation of the links of the main array, or of the whole of it."""
@@ -389,7 +389,8 @@ class Model:
         self._ready(sound=False)
         settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
-        self._touched = self._suspect = True
+        self._touched = True
+        self.h.ci[LRSET] = 1
 
     # ---- numbers
 
