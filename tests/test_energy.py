@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from mechanics import G, at, block, box, model, on_base, push, sound, step
 
-from offsets.generated import ALPHA
+from offsets.generated import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND
 from udec_ia import Model
 from udec_ia.ops.energy import Balance
 
@@ -276,3 +276,14 @@ def test_print_energy() -> None:
     assert printed[-12:] == pytest.approx([*balance, balance.residual], rel=1e-5)
     assert f"of {balance.throughput:.6g} that passed through" in text
     assert "= 0 % of 0 that passed" in counted(Model()).print("energy")
+
+
+def test_off_leaves_no_numbers_behind() -> None:
+    """Nor does it look at any: a weight beyond all reals is nothing to it."""
+    m = on_base(1.0, 1.0, 0.1, 4.0)
+    m.energy("on")
+    m.cycle(3)
+    m.gravity(0, -1e308)
+    m.energy("off")
+    assert not any(m.h.cr[name] for name in (EPUT, ESTOR, EREF, EPOT, WBOUND))
+    assert m.check() == []

@@ -74,8 +74,8 @@ def switch(array: MainArray, on: bool) -> None:
     h.ci[LENER] = int(on)
     for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
         h.cr[name] = 0
-    h.cr[EPUT] = h.cr[ESTOR] = _stored(h)
-    h.cr[EREF] = float(height(h))
+    h.cr[EPUT] = h.cr[ESTOR] = _stored(h) if on else 0.0
+    h.cr[EREF] = float(height(h)) if on else 0.0
 
 
 def balance(h: Memory) -> Balance:
