@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "5a2489458841fb8b4ded63395f3efdd9729712ee45352bb74509a2f71dfef6ae"
+DIGEST = "9ae91880a5dc155b9669560deca0ebcf3eddeb76566b6a600a7a243b9d287dee"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -214,13 +214,12 @@ NSHORT = 20  # edges that hold little more than their two roundings
 LSAFE = 21  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
 LENER = 22  # 1 if an account of the energy is kept (ENERGY ON), else 0
 LROUND = 23  # 1 if the rounding length was given by ROUND, 0 if it is our default
-LRSET = 24  # 1 if RSET has changed a word since all was last proved sound, else 0
-IERAD = 25  # address of the group that raised error NERR; 0 when there is none
-NWANT = 26  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 27  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 28  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 29  # pass of the cycle to be resumed after memory was found; 0 for none
-NCOMI = 30
+IERAD = 24  # address of the group that raised error NERR; 0 when there is none
+NWANT = 25  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 26  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 27  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 28  # pass of the cycle to be resumed after memory was found; 0 for none
+NCOMI = 29
 
 # Reals of the common block: index of the variable, or of its first element
 TDEL = 0  # time-step

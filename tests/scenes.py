@@ -10,7 +10,7 @@ cycles and an overlap too great stays the exception.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import cos, hypot, pi, sin, sqrt
 from typing import Any
@@ -517,11 +517,22 @@ def play(
     pull(scene, rng)
     if rng.random() < 0.5:
         damp(scene, rng)
+    return carry_on(scene, rng, LATER, 2, cycles)
+
+
+def carry_on(
+    scene: Scene,
+    rng: np.random.Generator,
+    later: Sequence[Callable[[Scene, np.random.Generator], Any]],
+    most: int,
+    cycles: tuple[int, int],
+) -> Scene:
+    """Runs of `cycles` (from, to) cycles, with one to `most` of the commands `later` before each."""
     scene.cycle(1)
     for _ in range(int(rng.integers(2, 6))):
         if scene.ended:
             break
-        for _ in range(int(rng.integers(1, 3))):
-            LATER[int(rng.integers(len(LATER)))](scene, rng)
+        for _ in range(int(rng.integers(1, most + 1))):
+            later[int(rng.integers(len(later)))](scene, rng)
         scene.cycle(int(rng.integers(cycles[0], cycles[1] + 1)))
     return scene

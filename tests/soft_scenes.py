@@ -150,14 +150,7 @@ def play(
         scenes.damp(scene, rng)
     if rng.random() < 0.7:
         load_some(scene, rng)
-    scene.cycle(1)
-    for _ in range(int(rng.integers(2, 6))):
-        if scene.ended:
-            break
-        for _ in range(int(rng.integers(1, 4))):
-            LATER[int(rng.integers(len(LATER)))](scene, rng)
-        scene.cycle(int(rng.integers(cycles[0], cycles[1] + 1)))
-    return scene
+    return scenes.carry_on(scene, rng, LATER, 3, cycles)
 
 
 def types(scene: Scene) -> list[int]:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections import Counter
 from collections.abc import Callable
 from itertools import chain
@@ -14,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from interpreted import digests
 from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, replay
 from soft_scenes import play, types
@@ -209,37 +207,8 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
             assert max(gap.min(axis=1).max(), gap.min(axis=0).max()) <= 1e-9 * np.abs(here).max()
 
 
-PRINT_STATE = """
-import hashlib, sys
-sys.path[:0] = sys.argv[3:]
-from naive.relocate import essence
-from soft_scenes import play
-from udec_ia.model import Model
-state = essence(play(int(sys.argv[2]), Model(sys.argv[1]), cycles=(2, 4)).model.array)
-digest = hashlib.sha256()
-for name, value in state.items():
-    digest.update(name.encode() + (value.tobytes() if hasattr(value, "tobytes") else str(value).encode()))
-print(digest.hexdigest())
-"""
-
-
 @pytest.mark.parametrize("build", ["i32r64", "i32r32"])
 def test_interpreted_kernels_give_the_same_bits(build: str) -> None:
-    found = []
-    for disabled in ("0", "1"):
-        arguments = [
-            sys.executable,
-            "-W",
-            "ignore",
-            "-c",
-            PRINT_STATE,
-            build,
-            "11",
-            str(Path(__file__).parent),
-        ]
-        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
-        run = subprocess.run(
-            arguments, env=environment, capture_output=True, text=True, timeout=600, check=True
-        )
-        found.append(run.stdout)
-    assert found[0] == found[1] != ""
+    """The same source without the compiler."""
+    compiled, interpreted = digests("soft_scenes", build, 11)
+    assert compiled == interpreted != ""

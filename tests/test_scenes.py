@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections import Counter
 from collections.abc import Callable
 from itertools import chain, count, pairwise
@@ -13,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interpreted import digests
 from naive.compare import disagreements
 from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, blocks, outline, play, replay
@@ -310,46 +308,11 @@ def test_growing_word_by_word_does_not_change_a_bit(seed: int, monkeypatch: pyte
 # ---- interpreted
 
 
-PRINT_STATE = """
-import hashlib, sys
-sys.path[:0] = sys.argv[3:]
-from naive.relocate import essence
-from scenes import play
-from udec_ia.model import Model
-state = essence(play(int(sys.argv[2]), Model(sys.argv[1]), cycles=(2, 4)).model.array)
-digest = hashlib.sha256()
-for name, value in state.items():
-    digest.update(name.encode() + (value.tobytes() if hasattr(value, "tobytes") else str(value).encode()))
-print(digest.hexdigest())
-"""
-
-
 @pytest.mark.parametrize("build", ["i32r64", "i32r32"])
 def test_interpreted_kernels_give_the_same_bits(build: str) -> None:
     """The same source without the compiler."""
-    found = []
-    for disabled in ("0", "1"):
-        arguments = [
-            sys.executable,
-            "-W",
-            "ignore",
-            "-c",
-            PRINT_STATE,
-            build,
-            "12",
-            str(Path(__file__).parent),
-        ]
-        found.append(
-            subprocess.run(
-                arguments,
-                env=os.environ | {"NUMBA_DISABLE_JIT": disabled},
-                capture_output=True,
-                text=True,
-                timeout=600,
-                check=True,
-            ).stdout
-        )
-    assert found[0] == found[1] != ""
+    compiled, interpreted = digests("scenes", build, 12)
+    assert compiled == interpreted != ""
 
 
 # ---- blocks that fly

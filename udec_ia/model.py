@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
 import numba
 import numpy as np
 
-from offsets.generated import BETA, DTOL, IHPNT, LRSET, MCTOT, NBLK, NCON, TDEL, TIME
+from offsets.generated import BETA, DTOL, IHPNT, MCTOT, NBLK, NCON, TDEL, TIME
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -99,6 +99,7 @@ class Model:
         self._animation: Animation | None = None
         self._boxes = Boxes()
         self._touched = False  # RSET has changed a word since the links were last known to be sound
+        self._bent = False  # RSET or a restart file may have bent outlines since they were last proved
         self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
@@ -117,7 +118,7 @@ class Model:
         self.laws.note({})
         self._recorder.series = []
         self._boxes.forget()
-        self._touched = False
+        self._touched = self._bent = False
         self._judged = (0.0, 0.0)
         self.started = True
 
@@ -147,7 +148,7 @@ class Model:
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched = False
+        self._touched, self._bent = False, True  # load has proved the links
         self.started = True
 
     @classmethod
@@ -198,21 +199,19 @@ class Model:
         if sound and not (name in announced or is_cached(name) or numba.config.DISABLE_JIT):
             announced.add(name)
             log.warning("compiling once for this machine, up to a minute ...")
-        if sound and self._touched:
-            self._prove(whole=False)
-            self._touched = False
-        if shapes and self.h.ci[LRSET]:
-            self._prove(whole=True)
-            self.h.ci[LRSET] = 0
+        if (sound and self._touched) or (shapes and self._bent):
+            self._prove(shapes)
 
-    def _prove(self, whole: bool) -> None:
-        """Error 20 with the first violation of the links of the main array, or of the whole of it."""
-        from udec_ia.inspect.check import check, check_links
+    def _prove(self, shapes: bool) -> None:
+        """Error 20 with the first violation of the links of the main array, with `shapes` of outlines too."""
+        from udec_ia.inspect.check import check_links, check_shapes
 
-        broken = check(self.array) if whole else check_links(self.array)
+        broken = check_shapes(self.array) if shapes else check_links(self.array)
         if broken:
-            advice = "RSET has damaged the main array: put the old value back, or RESTART"
+            advice = "the main array is damaged: put back what RSET has changed, or RESTART from a sound file"
             raise UdecError(20, str(broken[0]), advice)
+        self._touched = False
+        self._bent = self._bent and not shapes
 
     # ---- the block system
 
@@ -389,8 +388,7 @@ class Model:
         self._ready(sound=False)
         settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
-        self._touched = True
-        self.h.ci[LRSET] = 1
+        self._touched = self._bent = True
 
     # ---- numbers
 

@@ -46,6 +46,11 @@ def iget(h: Memory, iad: Address, k: Offset, i: int = 0) -> int:
     return int(h.ia[iad + k[_which(h)] + i - 1])
 
 
+def integers(h: Memory, iads: Any, k: Offset, i: int = 0) -> Any:
+    """iget for an array of addresses, and not for kernels; getr takes such an array itself."""
+    return h.ia[iads + k[_which(h)] + i - 1].astype(np.int64)
+
+
 def puti(h: Memory, iad: Address, k: Offset, n: int, i: int = 0) -> None:
     """IA(iad + k + i) := n."""
     h.ia[iad + k[_which(h)] + i - 1] = n
@@ -71,11 +76,6 @@ def size_of(h: Memory, nv: Offset) -> int:
 def real(h: Memory, value: float) -> Any:
     """`value` as a real of the scheme at hand: a bare literal would widen 32-bit arithmetic."""
     return h.cr.dtype.type(value)
-
-
-def rounding(h: Memory) -> Any:
-    """Distance from 1 to the next real of the scheme at hand."""
-    return np.finfo(h.cr.dtype).eps
 
 
 @overload(iget)
@@ -134,16 +134,5 @@ def _real(h, value):
 
     def impl(h, value):
         return kind(value)
-
-    return impl
-
-
-@overload(rounding)
-def _rounding(h):
-    kind = h.dtypes[3]
-    eps = float(np.finfo(str(kind)).eps)
-
-    def impl(h):
-        return kind(eps)
 
     return impl

@@ -36,7 +36,7 @@ from udec_ia.inspect.check_memory import check_memory
 from udec_ia.inspect.check_pieces import check_pieces
 from udec_ia.inspect.check_place import check_places
 
-__all__ = ["Violation", "check", "check_links"]
+__all__ = ["Violation", "check", "check_links", "check_shapes"]
 
 
 def check_links(array: MainArray) -> list[Violation]:
@@ -47,13 +47,32 @@ def check_links(array: MainArray) -> list[Violation]:
     return state.violations()
 
 
+def check_shapes(array: MainArray) -> list[Violation]:
+    """Those that would mislead a routine that cuts outlines: of the links, of numbers and of the outlines."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        _check_links(state)
+        check_numbers(state)
+        shapes = outlines(state)
+        if shapes is not None:
+            check_outlines(state, shapes)
+    return state.violations()
+
+
 def check(array: MainArray) -> list[Violation]:
     """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound."""
     with np.errstate(all="ignore"):
         state = State(array)
         _check_links(state)
         check_numbers(state)
-        _check_shapes(state)
+        shapes = outlines(state)
+        if shapes is not None:
+            check_outlines(state, shapes)
+            check_pieces(state, shapes)
+            touching = touches(state, shapes)
+            check_contacts(state, shapes, touching)
+            check_places(state, shapes, touching)
+            check_complete(state, shapes, touching)
     return state.violations()
 
 
@@ -63,14 +82,3 @@ def _check_links(state: State) -> None:
     check_codes(state)
     check_histories(state)
     check_map(state)
-
-
-def _check_shapes(state: State) -> None:
-    shapes = outlines(state)
-    if shapes is not None:
-        check_outlines(state, shapes)
-        check_pieces(state, shapes)
-        touching = touches(state, shapes)
-        check_contacts(state, shapes, touching)
-        check_places(state, shapes, touching)
-        check_complete(state, shapes, touching)

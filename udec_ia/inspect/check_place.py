@@ -112,9 +112,9 @@ def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
     """Contacts between two corners follow each other clockwise.
 
     Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
-    the program compares them along its chord. Only two closed contacts with
-    different blocks can be made up to ETOL out of order: one block is so thin a wedge there that the overlap
-    lets the other one through, and an open contact would be given up.
+    the program compares them along its chord. Only two closed contacts with different blocks can be made up
+    to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
+    an open contact would be given up.
     """
     virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
     close = neighbours(state, set(virtual.tolist()))

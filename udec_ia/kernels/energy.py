@@ -52,10 +52,6 @@ from offsets.generated import (
     KS111,
     KS112,
     KS122,
-    KSA11,
-    KSA12,
-    KSA21,
-    KSA22,
     KSAREA,
     KSJ11,
     KSJ12,
@@ -79,16 +75,15 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.fdef import zone_area
 from udec_ia.kernels.motion import FIXED
+from udec_ia.kernels.sdef import straining_force
 
 
 @kernel
 def _kinetic_of_strain(h: Memory, ie: int) -> float:
     """Twice the kinetic energy of the strain rates of extension `ie`."""
-    dt, half, area = np.float64(h.cr[TDEL]), np.float64(0.5), np.float64(getr(h, ie, KSAREA))
+    dt = np.float64(h.cr[TDEL])
     e11, e12, e22 = np.float64(getr(h, ie, KED11)), np.float64(getr(h, ie, KED12)), getr(h, ie, KED22)
-    f11 = getr(h, ie, KSA11) - area * getr(h, ie, KS111)
-    f22 = getr(h, ie, KSA22) - area * getr(h, ie, KS122)
-    f12 = (getr(h, ie, KSA12) + getr(h, ie, KSA21)) * half - area * getr(h, ie, KS112)
+    f11, f12, f22 = straining_force(h, ie)
     return float(inertia(h, ie, e11, e12, e22) + dt * (e11 * f11 + 2 * e12 * f12 + e22 * f22))
 
 

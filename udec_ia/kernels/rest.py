@@ -59,6 +59,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bounds import load, push_load
 from udec_ia.kernels.fdef import zone_area
 from udec_ia.kernels.motion import FIXED, GIVEN_X, GIVEN_Y
+from udec_ia.kernels.sdef import straining_force
 
 BLOCK_SUMS = (KBFX, KBFY, KBFT)
 POINT_SUMS = (KGFX, KGFY)
@@ -83,11 +84,7 @@ def strain_force(h: Memory, ib: int) -> float:
     """What strains simply-deformable block `ib`, as a force on its farthest corner."""
     if iget(h, ib, KBFIX) == FIXED:
         return real(h, 0.0)
-    ie = iget(h, ib, KBEX)
-    area, half = getr(h, ie, KSAREA), real(h, 0.5)
-    f11 = getr(h, ie, KSA11) - area * getr(h, ie, KS111)
-    f22 = getr(h, ie, KSA22) - area * getr(h, ie, KS122)
-    f12 = (getr(h, ie, KSA12) + getr(h, ie, KSA21)) * half - area * getr(h, ie, KS112)
+    f11, f12, f22 = straining_force(h, iget(h, ib, KBEX))
     return max(abs(f11), max(abs(f12), abs(f22))) / getr(h, ib, KBRO)
 
 

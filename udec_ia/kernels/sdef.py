@@ -89,14 +89,20 @@ def reset_applied(h: Memory, ie: int) -> None:
 
 
 @kernel
-def strain(h: Memory, ie: int) -> tuple[float, float, float]:
-    """New strain rates 11, 12, 22 from applied and internal stress (STRAIN)."""
-    half = real(h, 0.5)
-    area = getr(h, ie, KSAREA)
-    j11, j12, j22 = getr(h, ie, KSJ11), getr(h, ie, KSJ12), getr(h, ie, KSJ22)
+def straining_force(h: Memory, ie: int) -> tuple[float, float, float]:
+    """What strains extension `ie`: sym(SA) - A S, components 11, 12, 22."""
+    area, half = getr(h, ie, KSAREA), real(h, 0.5)
     f11 = getr(h, ie, KSA11) - area * getr(h, ie, KS111)
     f22 = getr(h, ie, KSA22) - area * getr(h, ie, KS122)
     f12 = (getr(h, ie, KSA12) + getr(h, ie, KSA21)) * half - area * getr(h, ie, KS112)
+    return f11, f12, f22
+
+
+@kernel
+def strain(h: Memory, ie: int) -> tuple[float, float, float]:
+    """New strain rates 11, 12, 22 from applied and internal stress (STRAIN)."""
+    j11, j12, j22 = getr(h, ie, KSJ11), getr(h, ie, KSJ12), getr(h, ie, KSJ22)
+    f11, f12, f22 = straining_force(h, ie)
     lean = j12 / j11 + j12 / j22
     a12 = (f12 + f12 - f11 * (j12 / j11) - f22 * (j12 / j22)) / (j11 + j22 - j12 * lean)
     a11, a22 = (f11 - a12 * j12) / j11, (f22 - a12 * j12) / j22

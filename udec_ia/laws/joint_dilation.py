@@ -17,6 +17,7 @@ altogether begins anew when it closes, since an open contact forgets its slip.
 
 
 def clj2(fn, fs, dun, dus, un, us, m):
+    """Increments of normal and shear force, N/m."""
     pressed, trial = fn + m.kn * dun, fs + m.ks * dus
     if pressed <= 0:
         return -fn, -fs

@@ -1,11 +1,10 @@
 """BOUNDARY and FUNCTION: boundary conditions (kernels.bounds).
 
-Velocities and forces act on the grid-points on the outlines of fully-deformable blocks that lie in the range,
-and on rigid and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges
-that have both ends in the range. Tension is positive. A stress S(x, y) = S0 + x SX + y SY on an edge from a
-to b with the outward normal n and the length L gives the tractions t = S n at its ends, and there, on the
-corners or their grid-points, the forces L (2 ta + tb)/6 and L (ta + 2 tb)/6: their resultant and their moment
-are those of t.
+Velocities and forces act on the grid-points of fully-deformable blocks that lie in the range, and on rigid
+and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges that have both
+ends in the range. Tension is positive. A stress S(x, y) = S0 + x SX + y SY on an edge from a to b with the
+outward normal n and the length L gives the tractions t = S n at its ends, and there, on the corners or their
+grid-points, the forces L (2 ta + tb)/6 and L (ta + 2 tb)/6: their resultant and their moment are those of t.
 """
 
 from __future__ import annotations

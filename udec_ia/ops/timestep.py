@@ -81,7 +81,7 @@ from offsets.generated import (
     TDEL,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass
 from udec_ia.kernels.timestep import addresses, soft_step
@@ -106,8 +106,8 @@ class _Rows:
     def __init__(self, h: Memory) -> None:
         self.h = h
         blocks = addresses(h, int(h.ci[IBPNT]), KB)
-        meshed = blocks[_ints(h, blocks, HEAD) == MFDEF]
-        firsts = _ints(h, _ints(h, meshed, KBEX), KFG)
+        meshed = blocks[integers(h, blocks, HEAD) == MFDEF]
+        firsts = integers(h, integers(h, meshed, KBEX), KFG)
         points = [addresses(h, int(first), KG) for first in firsts]
         self.address = np.unique(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
         words = len(self.address)
@@ -116,7 +116,7 @@ class _Rows:
         self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
         self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
         self.length = np.ones(words)  # radius of gyration of a block
-        self._enter_blocks(blocks[_ints(h, blocks, HEAD) != MFDEF])
+        self._enter_blocks(blocks[integers(h, blocks, HEAD) != MFDEF])
         for ib, own in zip(meshed, points, strict=True):
             self._enter_zones(int(ib), own)
 
@@ -131,14 +131,14 @@ class _Rows:
         rows = self.row(blocks)
         self.length[rows] = np.sqrt(_reals(h, blocks, KBI) / mass)
         self.mass[rows] = mass[:, None]
-        fix = _ints(h, blocks, KBFIX)
+        fix = integers(h, blocks, KBFIX)
         self.free[rows, 0] = fix & 3 == 0
         self.free[rows, 1] = fix & 5 == 0
         self.free[rows, 2] = (fix != 1) & (fix != 6)
-        soft = blocks[(_ints(h, blocks, HEAD) == MSDEF) & (fix != 1)]
+        soft = blocks[(integers(h, blocks, HEAD) == MSDEF) & (fix != 1)]
         if not len(soft):
             return
-        rows, ext, mat = self.row(soft), _ints(h, soft, KBEX), _ints(h, soft, KMAT) - 1
+        rows, ext, mat = self.row(soft), integers(h, soft, KBEX), integers(h, soft, KMAT) - 1
         j11, j12, j22, area = (_reals(h, ext, k) for k in (KSJ11, KSJ12, KSJ22, KSAREA))
         zero = np.zeros_like(j11)
         tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
@@ -154,11 +154,11 @@ class _Rows:
         h, ie = self.h, iget(self.h, ib, KBEX)
         rows, zones = self.row(points), addresses(h, int(iget(h, ie, KFZ)), KZ)
         self.mass[rows] = _reals(h, points, KGPM)[:, None]
-        fix = _ints(h, points, KGFIX)
+        fix = integers(h, points, KGFIX)
         held = iget(h, ib, KBFIX) == 1
         self.free[rows, 0] = (fix & 1 == 0) & (not held)
         self.free[rows, 1] = (fix & 2 == 0) & (not held)
-        corner = np.stack([_ints(h, zones, KZG, i) for i in (2, 1, 0)], axis=1)
+        corner = np.stack([integers(h, zones, KZG, i) for i in (2, 1, 0)], axis=1)
         x, y = (_reals(h, corner, k) for k in (KXG, KYG))
         b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
         corner = self.row(corner)
@@ -180,10 +180,10 @@ class _Rows:
         """The stiffness of all contacts that are not virtual."""
         h = self.h
         contacts = addresses(h, int(h.ci[ICPNT]), KC)
-        contacts = contacts[_ints(h, contacts, KCCOD) != VIRTUAL]
+        contacts = contacts[integers(h, contacts, KCCOD) != VIRTUAL]
         if not len(contacts):
             return
-        mat = _ints(h, contacts, KCM) - 1
+        mat = integers(h, contacts, KCM) - 1
         stiffness = np.maximum(h.cr[AKN + mat], h.cr[AKS + mat]).astype(float)
         shares = [
             *self._shares(contacts, KB1, KCP1, CORNER_EDGE),
@@ -199,20 +199,20 @@ class _Rows:
         """What moves with one side of the contacts: addresses, and how far a unit of each degree of freedom
         moves the contact point in x and in y, shape (2, contacts, DOFS)."""
         h = self.h
-        blocks, corners = _ints(h, contacts, kb), _ints(h, contacts, kp)
+        blocks, corners = integers(h, contacts, kb), integers(h, contacts, kp)
         x, y = _reals(h, contacts, KXC), _reals(h, contacts, KYC)
-        meshed = _ints(h, blocks, HEAD) == MFDEF
+        meshed = integers(h, blocks, HEAD) == MFDEF
         body = self._body(blocks, x, y)
-        before = _ints(h, corners, KR)
+        before = integers(h, corners, KR)
         xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
         dx, dy = _reals(h, corners, KXP) - xa, _reals(h, corners, KYP) - ya
         square = dx * dx + dy * dy
         along = (x - xa) * dx + (y - ya) * dy
         part = np.clip(np.divide(along, square, out=np.ones_like(along), where=square > 0), 0, 1)
-        part = np.where(np.isin(_ints(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
+        part = np.where(np.isin(integers(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
         point = _point(len(body[0]))
-        here = self.row(np.where(meshed, _ints(h, corners, KGP), blocks))
-        there = self.row(np.where(meshed, _ints(h, before, KGP), 0))
+        here = self.row(np.where(meshed, integers(h, corners, KGP), blocks))
+        there = self.row(np.where(meshed, integers(h, before, KGP), 0))
         first = np.where(meshed[:, None], point * part[:, None], body)
         second = np.where(meshed[:, None], point * (1 - part)[:, None], 0.0)
         return [(here, first), (there, second)]
@@ -229,7 +229,7 @@ class _Rows:
         h = self.h
         bounds = addresses(h, int(h.ci[IBNPNT]), KU)
         cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
-        blocks, points, corners = (_ints(h, bounds, k) for k in (KUB, KUG, KUP))
+        blocks, points, corners = (integers(h, bounds, k) for k in (KUB, KUG, KUP))
         x, y = (
             np.where(corners > 0, _reals(h, corners, kp), _reals(h, blocks, k))
             for kp, k in ((KXP, KX), (KYP, KY))
@@ -300,7 +300,7 @@ def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
     bounds = addresses(h, int(h.ci[IBNPNT]), KU)
     if not len(bounds):
         return Limit(math.inf, 0)
-    blocks, points = _ints(h, bounds, KUB), _ints(h, bounds, KUG)
+    blocks, points = integers(h, bounds, KUB), integers(h, bounds, KUG)
     at = np.where(points > 0, points, blocks)
     drag = np.zeros_like(stiffness, dtype=float)
     cxx, cxy, cyy = (np.abs(_reals(h, bounds, k)) for k in (KUCXX, KUCXY, KUCYY))
@@ -394,11 +394,6 @@ def kind_of(h: Memory, address: int) -> str:
                 if address in chain(h, iget(h, iget(h, ib, KBEX), first), following):
                     return f"{what}@{address} of block@{ib}"
     return f"@{address}"
-
-
-def _ints(h: Memory, at: Array, k: Offset, i: int = 0) -> Array:
-    which = h.ra.itemsize // h.ia.itemsize >> 1
-    return h.ia[at + k[which] + i - 1].astype(np.int64)
 
 
 def _reals(h: Memory, at: Array, k: Offset) -> Array:
