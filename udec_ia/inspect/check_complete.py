@@ -5,9 +5,10 @@ pairs of an arc with an edge or another arc. Every point where the outlines meet
 needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
-these have gathered over the cycles does not count. A gap as narrow as that needs no contact if the tip of a
-third block stands in it, for a contact cannot be there. Nor can it where a third block's tip lies between the
-two and is thinner than the overlaps on its two sides: it hands on the force of the one to the other.
+these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
+A gap as narrow as that needs no contact if the tip of a third block stands in it, for a contact cannot be
+there. Nor can it where a third block's tip lies between the two and is thinner than the overlaps on its two
+sides: it hands on the force of the one to the other.
 """
 
 from __future__ import annotations
@@ -164,9 +165,9 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
         o.c[i] + o.r[i][:, None] * inward,
     )
     depth = dot(deepest - o.p[j], inward)
-    slack = 2 * np.maximum(o.fine[i], o.fine[j])
+    slack = o.rounding(i, j)
     awry = np.where(o.pointed[i], AWRY_POINT, AWRY)
-    keep = (depth >= -slack) & (depth <= o.d) & (-early <= awry) & (late <= awry)
+    keep = (depth >= -o.apart(i, j)) & (depth <= o.d) & (-early <= awry) & (late <= awry)
     keep &= dot(inward, o.out[i]) > 0
     i, j, deepest, depth, slack = i[keep], j[keep], deepest[keep], depth[keep], slack[keep]
     keep = (depth <= slack) | _inside(o, deepest, o.owner[j])
@@ -180,7 +181,7 @@ def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     between = o.c[j] - o.c[i]
     distance = np.hypot(*between.T)
     depth = o.r[i] + o.r[j] - distance
-    keep = (depth >= -2 * np.maximum(o.fine[i], o.fine[j])) & (distance > 0)
+    keep = (depth >= -o.apart(i, j)) & (distance > 0)
     for k, towards in ((i, between), (j, -between)):
         keep &= (dot(towards, o.t[k]) >= 0) & (dot(towards, o.t[o.after[k]]) <= 0)
         keep &= dot(towards, o.out[k]) > 0
@@ -220,7 +221,7 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
     pair, place = ragged(o.count[a] * o.count[b])
     i = o.first[a[pair]] + place // o.count[b[pair]]
     j = o.first[b[pair]] + place % o.count[b[pair]]
-    slack = 2 * np.maximum(o.fine[i], o.fine[j])
+    slack = o.rounding(i, j)
     cut = np.ones(len(pair), bool)
     for k, m in ((i, j), (j, i)):
         u, v = (dot(point[k] - o.p[m], o.e[m]) for point in (start, end))

@@ -34,8 +34,9 @@ class Outlines:
 
     block: addresses of the blocks; first, count: where their corners stand; owner: index into `block`.
     corner: address; before, after: index of the neighbours. p, c: corner and circle centre (n x 2);
-    r: radius; pointed: True for a point of an edge, by its grid-point. d: the rounding length; digit:
-    relative rounding error of one real of the heap; cycles: in each the coordinates were rounded anew.
+    r: radius; pointed: True for a point of an edge, by its grid-point. d: the rounding length; g: the slack
+    between two contact codes; digit: relative rounding error of one real of the heap; cycles: in each the
+    coordinates were rounded anew.
     """
 
     block: Numbers
@@ -50,6 +51,7 @@ class Outlines:
     r: Numbers
     pointed: Numbers
     d: float
+    g: float
     digit: float
     cycles: float
 
@@ -98,6 +100,14 @@ class Outlines:
         for a block that spins steadily rounds the same way in each.
         """
         return np.asarray(self.fine * (np.sqrt(self.cycles) + self.cycles / ROUNDINGS))
+
+    def rounding(self, i: Numbers, j: Numbers) -> Numbers:
+        """What the heap's reals may be off in a length between corners i and j."""
+        return np.asarray(2 * np.maximum(self.fine[i], self.fine[j]))
+
+    def apart(self, i: Numbers, j: Numbers) -> Numbers:
+        """The least gap between corners i and j that counts: their rounding, but never more than GTOL."""
+        return np.minimum(self.rounding(i, j), self.g)
 
     @cached_property
     def start(self) -> Numbers:
@@ -165,6 +175,7 @@ def outlines(state: State) -> Outlines | None:
         r=r[kept],
         pointed=on_edge[grid_point[kept]],
         d=state.tolerance("DTOL"),
+        g=state.tolerance("GTOL"),
         digit=float(np.finfo(state.h.cr.dtype).eps),
         cycles=1.0 + max(state.common("MCTOT"), 0),
     )
