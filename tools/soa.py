@@ -341,14 +341,27 @@ def faces(p: Corners, i: int, c: Constants, nx: float, ny: float) -> bool:
 
 
 @compiled
+def foot(p: Corners, ip: int, x: float, y: float) -> tuple[float, float]:
+    """Where the arc of corner `ip` is nearest to the point (x, y) outside it; a point inside stays."""
+    dx, dy = x - p.xc[ip], y - p.yc[ip]
+    z = np.sqrt(dx * dx + dy * dy)
+    if z <= p.rad[ip]:
+        return x, y
+    return p.xc[ip] + dx / z * p.rad[ip], p.yc[ip] + dy / z * p.rad[ip]
+
+
+@compiled
 def ahead_by(p: Corners, k: Contacts, j: int, ip: int, arc: bool, i: int) -> float:
     """How far contact `i` lies ahead of contact `j` on a segment of corner `ip`."""
+    ax, ay, bx, by = k.x[j], k.y[j], k.x[i], k.y[i]
     if arc:
+        ax, ay = foot(p, ip, ax, ay)
+        bx, by = foot(p, ip, bx, by)
         tx, ty = p.y[ip] - p.yc[ip], p.xc[ip] - p.x[ip]
     else:
         a = p.before[ip]
         tx, ty = p.x[ip] - p.x[a], p.y[ip] - p.y[a]
-    return ((k.x[i] - k.x[j]) * tx + (k.y[i] - k.y[j]) * ty) / np.sqrt(tx * tx + ty * ty)
+    return ((bx - ax) * tx + (by - ay) * ty) / np.sqrt(tx * tx + ty * ty)
 
 
 @compiled
