@@ -30,6 +30,7 @@ WRONG: list[tuple[str, int, Callable[[Model], object]]] = [
     ("constitutive", 9, lambda m: m.block(*SQUARE, constitutive=6)),
     ("half a cycle", 10, lambda m: m.cycle(0.5)),  # type: ignore[arg-type]
     ("half a material", 10, lambda m: m.property(1.5)),  # type: ignore[arg-type]
+    ("half an address", 10, lambda m: m.dump(1.0, 10)),  # type: ignore[arg-type]
     ("damping of what", 10, lambda m: m.damping(0.1, 1, "all")),
     ("type", 10, lambda m: m.change(0, 1, 0, 1, type="soft")),
     ("force in words", 10, lambda m: m.boundary(0, 1, 0, 1, xforce="much")),  # type: ignore[arg-type]
@@ -188,6 +189,13 @@ def test_paths_start_from_the_working_directory_and_in_a_deck_from_out(
     written = sorted(path.as_posix() for path in Path().rglob("*.h5"))
     assert written == ["here.h5", "o/restart.h5", "o/x.h5", "o/y.h5"]
     assert len(Model.restore("o/x.h5").table("block")) == 1
+
+
+def test_the_folder_for_files_may_be_set_later_and_as_text(tmp_path: Path) -> None:
+    m = Model()
+    m.out = str(tmp_path)
+    m.block(*SQUARE)
+    assert m.save() == tmp_path / "restart.h5"
 
 
 def test_a_process_says_once_that_it_compiles() -> None:

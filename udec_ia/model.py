@@ -83,7 +83,7 @@ class Model:
     ) -> None:
         self.mtop = None if mtop is None else _words(mtop)
         self.array = MainArray(scheme(build), self.mtop)
-        self.out = Path(out)
+        self.out = out
         self.laws = LawBook(constitutive)
         self.name = "udec"
         self.deck_log: list[str] = []
@@ -103,6 +103,15 @@ class Model:
         self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+
+    @property
+    def out(self) -> Path:
+        """The folder for files; a str that it is set to becomes a path."""
+        return self._out
+
+    @out.setter
+    def out(self, folder: str | Path) -> None:
+        self._out = Path(folder)
 
     @property
     def h(self) -> Memory:
@@ -613,7 +622,7 @@ class Model:
         """DUMP: the words from address n to address m."""
         from udec_ia.output.dump import dump
 
-        return dump(self.h, n, m)
+        return dump(self.h, whole(n=n), whole(m=m))
 
     def plot(
         self,
