@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+from udec_ia import Model
 from udec_ia.deck.language import COMMANDS
 from udec_ia.errors import UdecError
 
 MONITORS_OWN = {"help", "end"}
-METHODS = {command.name for command in COMMANDS} - MONITORS_OWN
+METHODS = {command.name for command in COMMANDS} - MONITORS_OWN | {"summary"}
 
 
 class Recorder:
@@ -25,6 +26,8 @@ class Recorder:
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
         self.answers: dict[str, object] = {"save": Path("results/rescue.h5")}
         self.failures: dict[str, BaseException] = {}
+
+    help = staticmethod(Model.help)
 
     def __getattr__(self, name: str) -> Any:
         if name not in METHODS:

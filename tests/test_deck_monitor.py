@@ -84,7 +84,22 @@ def test_a_failing_save_does_not_hide_the_error() -> None:
     with pytest.raises(UdecError) as caught:
         run_deck(model, "START\nCYCLE 10.5\n", out)
     assert (caught.value.number, caught.value.saved) == (10, None)
-    assert "could not be saved and closed: [Errno 28] No space left" in out.getvalue()
+    assert "could not be saved: [Errno 28] No space left" in out.getvalue()
+    assert model.names[-1] == "stop"
+
+
+@pytest.mark.parametrize("last", ["BLOK", "STOP"])
+def test_a_run_that_can_write_no_file_ends_with_its_summary(last: str, tmp_path: Path) -> None:
+    """The folder for files is an ordinary file."""
+    folder, out = tmp_path / "file", io.StringIO()
+    folder.touch()
+    model = Model(out=folder)
+    with pytest.raises(UdecError) as caught:
+        run_deck(model, f"START\nBLOCK 0 0 0 1 1 1 1 0\nPLOT 0\n{last}\n", out)
+    assert (caught.value.number, caught.value.saved) == (2 if last == "BLOK" else 31, None)
+    assert out.getvalue().count("could not be saved") == 1
+    assert out.getvalue().count("not all pictures were written") == 1
+    assert out.getvalue().count("1 blocks, 0 contacts, largest normal force 0 N/m; no file written") == 1
 
 
 def test_a_damaged_main_array_is_not_saved() -> None:
@@ -221,6 +236,16 @@ def test_a_session_goes_on_after_an_error_and_saves_nothing() -> None:
     assert model.names == ["start", "cycle", "stop"]
     assert "terminal:1:1: error 3" in printed
     assert "terminal:3:7: error 10" in printed
+
+
+def test_a_session_whose_stop_fails_ends_with_the_summary_and_the_error() -> None:
+    model, out = Recorder(), io.StringIO()
+    model.failures["stop"] = PermissionError(13, "Permission denied", "run-plot-1.png")
+    model.answers["summary"] = "0 cycles"
+    with pytest.raises(UdecError) as caught:
+        converse(model, out, Typist("START", "STOP"))
+    assert caught.value.number == 31
+    assert out.getvalue().endswith("\n0 cycles\n")
 
 
 def test_a_list_is_asked_for_until_an_empty_line() -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from udec_ia import Model, UdecError
+from udec_ia.deck.language import COMMANDS
 from udec_ia.errors import MESSAGES
 from udec_ia.heap.words import ALL_SCHEMES
 
@@ -118,6 +119,21 @@ def test_every_error_says_what_to_do(number: int, wrong: Callable[[Model], objec
     assert caught.value.number == number
     assert len(caught.value.advice) > 5
     assert str(caught.value).endswith(caught.value.advice)
+
+
+def test_every_command_has_its_method() -> None:
+    methods = {name for name, value in vars(Model).items() if callable(value)}
+    assert {command.name for command in COMMANDS} <= methods
+
+
+def test_help_and_end_are_those_of_a_deck(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    shown = m.run("HELP\nHELP prop\nSTART\n")
+    assert shown == f"> HELP\n{m.help()}\n> HELP prop\n{m.help('prop')}\n> START\n"
+    m.block(*SQUARE)
+    m.plot()
+    assert "1 blocks" in m.end()
+    assert (tmp_path / "udec-plot-1.png").exists()
 
 
 def test_no_error_is_without_advice() -> None:

@@ -169,16 +169,19 @@ class Model:
 
     def stop(self) -> str:
         """STOP: write what is still open and return the line that sums up the run."""
+        if self._plots is not None:
+            self._note(self._plots.close())
+        if self._animation is not None:
+            self._note([self._animation.save(self.out / f"{self.name}.gif", self.h)])
+            self._animation = None
+        return self.summary()
+
+    def summary(self) -> str:
+        """The line that sums up the run until now: what STOP returns, of files that are written by now."""
         from udec_ia.inspect.table import table
         from udec_ia.inspect.walk import Unsound
         from udec_ia.output.progress import summary
 
-        files = list(self._files)
-        if self._plots is not None:
-            files += self._plots.close()
-        if self._animation is not None:
-            files.append(self._animation.save(self.out / f"{self.name}.gif", self.h))
-            self._animation = None
         try:
             forces = table(self.array, "contact")["KCFN"]
         except Unsound:  # RSET has damaged the contact list, and the run ends all the same
@@ -190,10 +193,21 @@ class Model:
             int(h.ci[NBLK]),
             int(h.ci[NCON]),
             float(forces.max(initial=0)),
-            files,
+            self._files,
             perf_counter() - self._clock,
             [one for one in self._recorder.solutions if not one],
         )
+
+    def end(self) -> str:
+        """END: the same as STOP, for a run that has not been stopped."""
+        return self.stop()
+
+    @staticmethod
+    def help(command: str | None = None) -> str:
+        """HELP: the forms of all commands, or what one of them does. Error 2 if there is no such command."""
+        from udec_ia.deck.reference import explain, summary
+
+        return summary() if command is None else explain(command)
 
     def _ready(self, sound: bool = True, shapes: bool = False) -> None:
         """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
@@ -659,6 +673,7 @@ class Model:
         if self._plots is None:
             self._plots = Plots(self.out, self.name)
         self._plots.draw(self.h, n or 0, what)
+        self._note(self._plots.files)
         return None
 
 

@@ -38,6 +38,8 @@ def converse(model: Model, out: TextIO, ask: Callable[[str], str] = input) -> No
             if statement is not None:
                 monitor.obey(statement)
         except UdecError as error:
+            if monitor.ended:  # it was STOP that failed: the run has gone wrong
+                raise
             print(error, file=out)
         except KeyboardInterrupt:
             reader.flush()

@@ -11,6 +11,7 @@ import io
 import os
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -19,7 +20,6 @@ from udec_ia.deck.advice import at
 from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
-from udec_ia.deck.reference import explain, summary
 from udec_ia.errors import UdecError
 
 if TYPE_CHECKING:
@@ -98,16 +98,24 @@ class Monitor:
         ]
 
     def stop(self) -> None:
-        """End the run, as STOP does, if a run was started and has not been ended."""
-        if self.model.started and not self._stopped:
-            self._stopped = True
-            self._show(self.model.stop())
+        """End the run, as STOP does, if a run was started and has not been ended.
+
+        What cannot be written is told, and the summary written all the same, before the error is raised.
+        """
+        if not self.model.started or self._stopped:
+            return
+        self._stopped = True
+        try:
+            last = self.model.stop()
+        except BaseException as failure:
+            self._write(f"not all pictures were written: {str(failure) or 'interrupted'}")
+            self._show(self.model.summary())
+            raise
+        self._show(last)
 
     def _carry_out(self, call: Call) -> object:
         """Obey `call`; what is returned is to be shown."""
         name = call.command.name
-        if name == "help":
-            return explain(call.named["command"]) if call.named else summary()
         if name in ("stop", "end"):
             self.ended = True
             if name == "stop":
@@ -147,12 +155,13 @@ class Monitor:
         if not self.model.started:
             return None
         saved = None
-        try:
-            if sound:
+        if sound:
+            try:
                 saved = str(self.model.save((self.model.out / RESCUE).absolute()))
+            except Exception as failure:
+                self._write(f"the state could not be saved: {failure}")
+        with suppress(Exception):  # stop has told it
             self.stop()
-        except Exception as failure:
-            self._write(f"the run could not be saved and closed: {failure}")
         return saved
 
 

@@ -121,8 +121,8 @@ class Plots:
     def close(self) -> list[Path]:
         """Write the frame that is open, if any; returns the files written by now."""
         if self.frame is not None:
+            self.files += self.frame.save(self.folder / f"{self.name}-plot-{self.count + 1}")
             self.count += 1
-            self.files += self.frame.save(self.folder / f"{self.name}-plot-{self.count}")
             self.frame = None
         return self.files
 
