@@ -127,6 +127,23 @@ def test_the_message_points_at_the_word() -> None:
     assert caught.value.token == "DENSITEE"
 
 
+@pytest.mark.parametrize(
+    ("text", "column", "detail"),
+    [
+        ("FIX 0 1 0 1 5", 13, '"5" is one number too many'),
+        ("BLOCK 0 0 0 1O 10", 13, '"1O" is not a number'),
+        ("BLOCK 0 0 0 10 1O 10", 16, '"1O" is not a number'),
+        ("BLOCK 0 0 0 10 10 0 MAT=2", 21, '"MAT" must stand before the list x y ...'),
+    ],
+)
+def test_what_stands_behind_the_end_of_a_command(text: str, column: int, detail: str) -> None:
+    with pytest.raises(UdecError) as caught:
+        call(text)
+    error = caught.value
+    assert (error.number, error.column, error.detail) == (10, column, detail)
+    assert error.advice
+
+
 @pytest.mark.parametrize("text", ["FIX " + "x" * 100_000, "BLOCK " + "1 2 " * 30_000 + "x", "x" * 100_000])
 def test_the_message_about_a_very_long_line_is_short(text: str) -> None:
     with pytest.raises(UdecError) as caught:

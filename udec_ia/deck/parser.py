@@ -95,7 +95,7 @@ class _Parser:
         if command.list:
             self._list(command.list)
         if (token := self._next()) is not None:
-            raise at(UdecError(10, f"{quoted(token.text)} is one number too many", self._advice()), token)
+            raise at(UdecError(10, self._surplus(token), self._advice()), token)
         return self.call
 
     def _next(self) -> Token | None:
@@ -112,6 +112,14 @@ class _Parser:
 
     def _advice(self) -> str:
         return f"the form is: {self.command.form}"
+
+    def _surplus(self, token: Token) -> str:
+        """What is wrong with `token`, at which the command should have ended."""
+        if NUMBER.fullmatch(token.text):
+            return f"{quoted(token.text)} is one number too many"
+        if match(self.command.words, token.text):
+            return f"{quoted(token.text)} must stand before the list {self.command.list} ..."
+        return f"{quoted(token.text)} is not a number"
 
     def _text(self) -> None:
         """Take the rest of the line as it stands: names of files may hold separators."""
