@@ -6,9 +6,12 @@ import io
 from pathlib import Path
 
 import pytest
+from handmade import two_blocks
 
+from offsets.generated import MCTOT
 from udec_ia.output import progress
 from udec_ia.output.progress import LINES, Progress, summary
+from udec_ia.output.report import Report
 
 
 class Terminal(io.StringIO):
@@ -67,6 +70,19 @@ def test_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "\x1b[3" in coloured
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b[3" not in run(Terminal())
+
+
+def test_the_last_line_of_a_cut_run_tells_all_its_cycles() -> None:
+    """Cycles that were done before this command do not count, and those after the last report do."""
+    h, out = two_blocks().h, io.StringIO()
+    h.ci[MCTOT] = 100
+    report = Report(lambda: h, 1000, out, None)
+    h.ci[MCTOT] = 110
+    report(10)
+    h.ci[MCTOT] = 350
+    report.close()
+    (line,) = out.getvalue().splitlines()
+    assert line.startswith("cycle 250 of 1000: ")
 
 
 def test_summary_is_one_line() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
-from offsets.generated import FRAC, NBROKE, NMADE, TDEL, TIME
+from offsets.generated import FRAC, MCTOT, NBROKE, NMADE, TDEL, TIME
 from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.rest import unbalanced
 from udec_ia.ops.soft import soft_in
@@ -31,23 +31,31 @@ class Report:
         self.stream = stream
         self.animation = animation
         self.progress: Progress | None = None
+        self.shown = 0  # cycles done when progress was shown last
+        self.before = int(memory().ci[MCTOT])
         self.started = monotonic()
 
     def __call__(self, done: int) -> None:
-        h = self.memory()
         if self.animation is not None:
-            self.animation.add(h)
-        if self.stream is None:
-            return
+            self.animation.add(self.memory())
+        if self.stream is not None:
+            self._show(done, self.stream)
+
+    def _show(self, done: int, stream: TextIO) -> None:
+        h = self.memory()
         if self.progress is None:
             from udec_ia.output.progress import Progress
 
             tdel, frac = float(h.cr[TDEL]), float(h.cr[FRAC])
-            self.progress = Progress(self.stream, self.total, tdel, frac, self.started)
+            self.progress = Progress(stream, self.total, tdel, frac, self.started)
+        self.shown = done
         made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
         self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
 
     def close(self) -> None:
-        """Take the progress off the screen."""
+        """Take the progress off the screen; the last line tells how far a command came that was cut short."""
+        done = int(self.memory().ci[MCTOT]) - self.before
+        if self.stream is not None and done != self.shown:
+            self._show(done, self.stream)
         if self.progress is not None:
             self.progress.close()
