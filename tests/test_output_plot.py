@@ -7,13 +7,16 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from handmade import ROUNDING, two_blocks
+from matplotlib.path import Path as Curve
 from PIL import Image
 
 import offsets.generated as g
+from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
@@ -26,6 +29,7 @@ from udec_ia.output.outline import (
     CURVE,
     LINE,
     MOVE,
+    beside_corners,
     contact_forces,
     curves,
     domain_polygons,
@@ -227,6 +231,28 @@ def test_addresses_are_written_in_the_picture(tmp_path: Path) -> None:
     wanted = [*groups(h, "block"), *groups(h, "contact"), iget(h, next(groups(h, "block")), g.KP)]
     assert {str(iad) for iad in wanted} <= set(texts)
     assert str(next(groups(h, "domain"))) in texts
+
+
+@pytest.mark.parametrize(
+    ("corners", "cut"),
+    [
+        ((0, 0, 0, 10, 3, 10, 3, 5, 7, 5, 7, 10, 10, 12, 14, 10, 20, 1, 20, 0), (-1, 7.5, 21, 7.5)),
+        ((0, 0, 0, 1, 100, 1, 100, 0), (50, -1, 50, 2)),
+        ((0, 0, 0, 9, 1, 9, 1, 1, 20, 1, 20, 0), (10, -1, 10, 2)),
+    ],
+    ids=["notched", "slabs", "angle"],
+)
+def test_addresses_of_corners_stand_inside_their_blocks(corners: tuple[int, ...], cut: Any) -> None:
+    m = Model()
+    m.block(*corners)
+    m.split(*cut)
+    o = outlines(m.h)
+    for i in range(len(o.address)):
+        polygon = o.corner[o.first[i] : o.first[i + 1]]
+        places = beside_corners(o, i)
+        assert Curve(polygon).contains_points(places).all()
+        nearest = np.hypot(*(places[:, None] - polygon[None]).transpose(2, 0, 1)).argmin(axis=1)
+        assert nearest.tolist() == list(range(len(polygon)))
 
 
 def test_the_note_gives_the_resultant_force() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.outline import Contacts, Domain, Outlines, State, apex, curves
+from udec_ia.output.outline import Contacts, Domain, Outlines, State, beside_corners, curves
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -252,8 +252,6 @@ def _middle(polygon: Any) -> tuple[float, float]:
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
     """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read."""
     middles = np.repeat(o.centroid, np.diff(o.first), axis=0)
-    apexes = apex(o.corner, o.centre, o.radius)
-    places = apexes + 0.1 * (middles - apexes)
     room = np.maximum.reduceat(np.abs(o.corner - middles).max(axis=1), o.first[:-1]) * 2.0 * inches / POINT
     style: dict[str, Any] = {"ha": "center", "color": INK, "zorder": 6}
     for i in np.flatnonzero(room > LEGIBLE):
@@ -264,8 +262,6 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
         }
         axes.annotate(str(o.address[i]), o.centroid[i], (0, 4), **above, **style)
         if room[i] > ROOMY:
-            for j in range(o.first[i], o.first[i + 1]):
-                x, y = places[j]
-                axes.text(
-                    x, y, str(o.corner_address[j]), clip_on=True, va="center", fontsize=6, alpha=0.7, **style
-                )
+            corners = o.corner_address[o.first[i] : o.first[i + 1]]
+            for (x, y), address in zip(beside_corners(o, int(i)), corners, strict=True):
+                axes.text(x, y, str(address), clip_on=True, va="center", fontsize=6, alpha=0.7, **style)
