@@ -248,11 +248,55 @@ def test_a_session_whose_stop_fails_ends_with_the_summary_and_the_error() -> Non
     assert out.getvalue().endswith("\n0 cycles\n")
 
 
-def test_a_list_is_asked_for_until_an_empty_line() -> None:
-    model, _, prompts = talk("START", "BLOCK 0 0", "0 1", "+ 1 1", "1 0", "", "CYCLE 1")
-    assert prompts == ["> ", "> ", "+ ", "+ ", "+ ", "+ ", "> ", "> "]
-    assert model.calls[1] == ("block", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0), {})
+SQUARE = ("block", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0), {})
+
+
+def test_a_list_is_asked_for_until_an_empty_line_or_a_command() -> None:
+    model, _, prompts = talk("START", "BLOCK 0 0", "0 1", "* which is the top", "+ 1 1", "1 0", "", "CYCLE 1")
+    assert prompts == ["> ", "> ", *5 * ["+ "], "> ", "> "]
+    assert model.calls[1] == SQUARE
     assert model.names == ["start", "block", "cycle", "stop"]
+    model, printed, _ = talk("START", "BLOCK 0 0 0 1 1 1 1 0", "SPLIT -1 .5 2 .5", "P B")
+    assert model.calls[1] == SQUARE
+    assert model.names == ["start", "block", "split", "print", "stop"]
+    assert "error" not in printed
+
+
+def test_words_of_the_command_continue_a_list_and_other_words_do_not() -> None:
+    lines = ("GEN 0 1 0 1 M", "GRID 0 0 1 0", "0 1", "Z (1 2 3)", "2 3 4", "NONSENSE")
+    model, printed, _ = talk("START", *lines, "GEN 0 1 0 1 AUTO EDGE 1", "G 0 -10")
+    named = {
+        "mode": "manual",
+        "gridpoints": [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)],
+        "zones": [(1, 2, 3), (2, 3, 4)],
+    }
+    assert model.calls[1] == ("generate", (0.0, 1.0, 0.0, 1.0), named)
+    assert model.names == ["start", "generate", "generate", "gravity", "stop"]
+    assert printed.count("error") == printed.count("terminal:7:1: error 2: ") == 1
+
+
+def test_a_plus_at_the_end_of_a_line_continues_any_command() -> None:
+    model, printed, prompts = talk("START", "PROP MAT=1 KN=1E8 +", "KS=1E8+", "F=0.3", "CYCLE 1")
+    assert prompts == ["> ", "> ", "+ ", "+ ", "> ", "> "]
+    assert model.calls[1:3] == [
+        ("property", (), {"material": 1, "kn": 1e8, "ks": 1e8, "friction": 0.3}),
+        ("cycle", (1,), {}),
+    ]
+    assert model.deck_log == ["START", "PROP MAT=1 KN=1E8", "+ KS=1E8", "+ F=0.3", "CYCLE 1"]
+    assert "error" not in printed
+
+
+def test_a_plus_after_a_command_that_was_obeyed_says_how_to_continue_it() -> None:
+    model, printed, _ = talk("START", "PROP MAT=1 KN=1E8", "+ DENS=2000", "CYCLE 1", "SAVE a+")
+    assert model.names == ["start", "property", "cycle", "save", "stop"]
+    assert "terminal:3:1: error 2" in printed
+    assert "end the line of the command with +" in printed
+
+
+def test_the_end_of_input_obeys_what_is_pending() -> None:
+    model, _, _ = talk("START", "BLOCK 0 0 0 1 1 1 1 0")
+    assert model.calls[1] == SQUARE
+    assert model.names == ["start", "block", "stop"]
 
 
 def test_ctrl_c_drops_the_line_and_not_the_session() -> None:

@@ -61,7 +61,7 @@ def test_what_a_command_means(text: str, positional: list[Any], named: dict[str,
     ("text", "number", "line", "column", "advice"),
     [
         ("PROPS MAT=1", 2, 1, 1, "did you mean PROPERTY?"),
-        ("++", 2, 1, 1, "HELP lists"),
+        ("++", 2, 1, 1, "no command to continue"),
         ("FIX 0 1 0", 7, 1, 10, "the form is: Fix x1 x2 y1 y2"),
         ("CHANGE 0 1 0 SDEF", 7, 1, 13, "the form is: Change"),
         ("CYCLE", 7, 1, 6, "the form is: CYcle n"),

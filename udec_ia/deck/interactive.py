@@ -1,7 +1,8 @@
 """Commands typed at a terminal: a prompt, a history, and errors that do not end the session.
 
-Each command is obeyed when its line ends. Only those that take a list, BLOCK and GENERATE, ask for
-more lines behind a `+`, until an empty one.
+Each command is obeyed when its line ends. A line that ends with `+` asks for more behind a prompt `+`. So do
+the commands that take a list, BLOCK and GENERATE among them, by themselves: they are obeyed at an empty line
+or at the next command, as in a deck, and a deck can be pasted in unless it continues other commands.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from udec_ia.deck.language import COMMANDS, match
+from udec_ia.deck.language import COMMANDS, Command, match
 from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import CONTINUATION, Reader, Statement
+from udec_ia.deck.reader import COMMENT, CONTINUATION, WORD, Reader, Statement
 from udec_ia.errors import UdecError
 
 if TYPE_CHECKING:
@@ -23,45 +24,92 @@ if TYPE_CHECKING:
 
 PROMPT = "> "
 MORE = f"{CONTINUATION} "
-GREETING = "Type START to begin, HELP for the commands, STOP to leave."
+GREETING = "Type START to begin, HELP for the commands, STOP to leave. A line that ends with + is continued."
+NUMERIC = "+-.0123456789"  # what a number begins with
 HISTORY_LENGTH = 1000
 
 
 def converse(model: Model, out: TextIO, ask: Callable[[str], str] = input) -> None:
-    """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line."""
-    monitor = Monitor(model, out, echo=False)
-    reader = Reader("terminal")
+    """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
+
+    Raises UdecError if STOP itself fails.
+    """
+    monitor, typed = Monitor(model, out, echo=False), Typed()
+    complete: list[Statement] = []
+    over = False
     print(GREETING, file=out)
-    while not monitor.ended:
+    while not monitor.ended and (complete or not over):
         try:
-            statement = _statement(reader, ask(PROMPT if reader.pending is None else MORE))
-            if statement is not None:
-                monitor.obey(statement)
+            if complete:
+                monitor.obey(complete.pop(0))
+            else:
+                complete = typed.read(ask(typed.prompt))
         except UdecError as error:
-            if monitor.ended:  # it was STOP that failed: the run has gone wrong
+            if monitor.ended:
                 raise
             print(error, file=out)
         except KeyboardInterrupt:
-            reader.flush()
+            typed.flush()
+            complete = []
             print("\ninterrupted", file=out)
         except EOFError:
+            over = True
+            complete = typed.flush()
             print(file=out)
-            break
     monitor.stop()
 
 
-def _statement(reader: Reader, typed: str) -> Statement | None:
-    """The command that is complete with the line `typed`, or None if lines are wanted."""
-    blank = not typed.strip()
-    if reader.pending is not None and not blank:
-        reader.feed(MORE + typed.lstrip(MORE))
-        return None
-    reader.feed(typed)
-    if not blank and reader.pending is not None:
-        command = match(COMMANDS, reader.pending.tokens[0].text)
-        if command is not None and command.extends:
-            return None
-    return reader.flush()
+class Typed:
+    """Puts typed lines together to statements.
+
+    command: the one that is pending. asked: its last line ended with `+`, and any line continues it.
+    """
+
+    def __init__(self) -> None:
+        self.reader = Reader("terminal")
+        self.command: Command | None = None
+        self.asked = False
+
+    @property
+    def prompt(self) -> str:
+        """What to ask the next line with."""
+        return PROMPT if self.reader.pending is None else MORE
+
+    def read(self, line: str) -> list[Statement]:
+        """The commands that are complete with `line`, in order."""
+        word = WORD.search(line)
+        if word is None or line.lstrip().startswith(COMMENT):
+            self.reader.feed(line)
+            return self.flush() if word is None else []
+        marked = line.lstrip().startswith(CONTINUATION)
+        if self.reader.pending is None or not (marked or self.asked or self._continued_by(word.group())):
+            self.command = match(COMMANDS, word.group())
+        elif not marked:
+            line = MORE + line.lstrip()
+        self.asked = self._asks(line)
+        before = self.reader.feed(line.rstrip().removesuffix(CONTINUATION).rstrip() if self.asked else line)
+        complete = [] if before is None else [before]
+        if self.asked or (self.command is not None and self.command.extends):
+            return complete
+        return complete + self.flush()
+
+    def flush(self) -> list[Statement]:
+        """The command that is pending, if there is one: no line will continue it."""
+        self.asked = False
+        last = self.reader.flush()
+        return [] if last is None else [last]
+
+    def _continued_by(self, word: str) -> bool:
+        """True if a line that begins with `word` is no command of its own, but more of the pending one."""
+        if self.command is None or match(COMMANDS, word) is not None:
+            return False
+        return word[0] in NUMERIC or match(self.command.words, word) is not None
+
+    def _asks(self, line: str) -> bool:
+        """True if `line` ends with a `+` that is not part of a text, such as the name of a file."""
+        if self.command is not None and self.command.text:
+            return False
+        return line.rstrip().endswith(CONTINUATION) and line.strip() != CONTINUATION
 
 
 def history_file() -> Path:

@@ -14,13 +14,14 @@ from typing import Any
 
 from udec_ia.deck.advice import at, hint, quoted
 from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word, match
-from udec_ia.deck.reader import Line, Statement, Token
+from udec_ia.deck.reader import CONTINUATION, Line, Statement, Token
 from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
+ALONE = "no command to continue stands before this line; at a terminal, end the line of the command with +"
 CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
 
 
@@ -43,6 +44,8 @@ def parse(statement: Statement) -> Call:
     """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
     head = statement.tokens[0]
     command = match(COMMANDS, head.text)
+    if command is None and head.text.startswith(CONTINUATION):
+        raise at(UdecError(2, quoted(head.text), ALONE), head)
     if command is None:
         advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
         raise at(UdecError(2, quoted(head.text), advice), head)

@@ -28,6 +28,9 @@ A deck is a text file with one command to a line. The language is that of the re
 - Parameters are separated by blanks or any of `= ( ) , /`.
 - A line that begins with `*` is a comment. A line that begins with `+` continues the one before it, but the
   numbers of a pair or triple must stand on one line.
+- At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
+  with `...` in their form ask for more by themselves, until an empty line or the next command. A line that
+  continues them with a word that is a command, too, needs a `+` before it: `G` is GRAVITY, `GRID` is not.
 - The first command is START or RESTART. Lines after STOP are ignored.
 """
 
