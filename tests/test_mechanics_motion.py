@@ -9,7 +9,7 @@ import pytest
 from mechanics import G, at, block, box, model, on_base, push, sound, step
 from naive.dynamics import angle_between, bounce, peaks
 
-from offsets.generated import ALPHA, BETA
+from offsets.generated import ALPHA, BETA, DTOL
 from udec_ia import Model
 from udec_ia.errors import UdecError
 
@@ -209,3 +209,22 @@ def test_blocks_that_go_into_each_other_in_one_step_end_the_run(way: float, ends
     m.cycle(200)
     assert at(m, "block", left)["KXD"] < 0 < at(m, "block", right)["KXD"]
     sound(m)
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+@pytest.mark.parametrize(("kn", "fraction"), [(1e3, 0.1), (4e3, 0.1), (1e6, 3.0), (1e6, 100.0)])
+def test_a_block_on_another_does_not_fall_through_it_in_one_step(
+    kn: float, fraction: float, build: str
+) -> None:
+    """Springs in a wrong unit, or a wrong FRACTION: in one step its weight takes it deep into the other."""
+    m = Model(build)
+    m.property(1, density=2000, kn=kn, ks=kn)
+    m.block(0, 0, 0, 2, 10, 2, 10, 0)
+    m.split(-1, 1, 11, 1)
+    m.fix(0, 10, 0, 1)
+    m.gravity(0, -10)
+    m.fraction(fraction)
+    with pytest.raises(UdecError) as caught:
+        m.cycle(10)
+    assert caught.value.number == 15
+    assert 10 * step(m) ** 2 > 2 * float(m.h.cr[DTOL])

@@ -2,7 +2,8 @@
 
 While no two points of a domain's boundary approach by more than 2 ETOL in a step, a contact is known before
 the blocks touch. Blocks may move faster where nothing is in their way; what must not happen is that an arc
-that was outside an edge lies deeper than CTOL behind it one step later: no contact would ever be formed.
+that was outside an edge, or no deeper in it than a contact may be, lies deeper than CTOL behind it one step
+later: no contact would ever be formed, and one between two corners would be taken for an open one.
 All arcs of the domain are held against the edges whose surroundings they passed through.
 """
 
@@ -24,7 +25,8 @@ LEFT, BELOW, RIGHT, ABOVE = 0, 1, 2, 3  # columns of the boxes
 
 @kernel
 def entered(h: Memory, ip: int, iq: int) -> bool:
-    """True if in this step the circle of `ip` came from outside the edge that ends at `iq` to beyond CTOL.
+    """True if in this step the circle of `ip` came from where a contact may be to deeper than CTOL behind the
+    edge that ends at `iq`.
 
     It came in through the edge if its centre met the edge's line there, or is over the edge now.
     """
@@ -35,7 +37,7 @@ def entered(h: Memory, ip: int, iq: int) -> bool:
     dx = getr(h, ip, KXDP) - getr(h, ia, KXDP) - part * (getr(h, iq, KXDP) - getr(h, ia, KXDP))
     dy = getr(h, ip, KYDP) - getr(h, ia, KYDP) - part * (getr(h, iq, KYDP) - getr(h, ia, KYDP))
     came = -(dx * ex + dy * ey) * h.cr[TDEL]
-    if came <= overlap:
+    if came <= overlap - h.cr[CTOL]:
         return False
     inside = max(overlap - getr(h, ip, KRAD), real(h, 0.0))
     met = along - inside / came * (dx * ey - dy * ex) * h.cr[TDEL]
