@@ -158,3 +158,28 @@ def test_lines_that_end_in_a_sliver() -> None:
             assert model.split(*line) == parts
             assert model.check() == []
     assert too_fine(model, "split", *lines[2]).number == 27
+
+
+@pytest.mark.parametrize(("x", "y"), [(1e8, 1e8), (153178294.3, 354265489.4), (-3e8, 2e8)])
+def test_clockwise_is_told_far_from_the_origin(x: float, y: float) -> None:
+    """Where the area of a unit square is below the last digit of the products of its coordinates."""
+    square = ((x, y), (x, y + 1), (x + 1, y + 1), (x + 1, y))
+    model = Model()
+    model.block(*(number for corner in square for number in corner))
+    assert model.check() == []
+    with pytest.raises(UdecError, match=r"error 6: .* its corners run anticlockwise"):
+        Model().block(*(number for corner in reversed(square) for number in corner))
+
+
+@pytest.mark.parametrize(
+    ("outline", "what"),
+    [
+        ((0, 0, 0, 10, 10, 0, 10, 10), "its outline crosses itself"),
+        ((0, 0, 1, 1, 2, 2), "it turns back on itself"),
+    ],
+)
+def test_an_outline_that_has_no_direction_is_not_called_anticlockwise(
+    outline: tuple[float, ...], what: str
+) -> None:
+    with pytest.raises(UdecError, match=f"error 6: .*{what}"):
+        Model().block(*outline)

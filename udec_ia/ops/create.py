@@ -90,9 +90,6 @@ def _check_outline(corners: Sequence[Point]) -> None:
     """Error 6 unless the corners, taken clockwise, enclose an area and no two edges meet elsewhere."""
     n = len(corners)
     edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
-    twice = sum(b[0] * a[1] - a[0] * b[1] for a, b in edges)
-    if not twice > 0:
-        raise UdecError(6, "its corners run anticlockwise", CLOCKWISE)
     for i, (a, b) in enumerate(edges):
         if a == b:
             raise _crooked(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
@@ -106,6 +103,9 @@ def _check_outline(corners: Sequence[Point]) -> None:
                     raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
             elif _meet(a, b, *edges[j]):
                 raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
+    x, y = corners[0]  # far from the origin the products of coordinates would lose the area
+    if not sum((b[0] - x) * (a[1] - y) - (a[0] - x) * (b[1] - y) for a, b in edges) > 0:
+        raise UdecError(6, "its corners run anticlockwise", CLOCKWISE)
 
 
 def _crooked(detail: str, k: int) -> UdecError:
