@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import offsets.generated as g
-from udec_ia import Model
+from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import getr, putr
 from udec_ia.kernels.sdef import put_strain_rate, put_stress, stress
 from udec_ia.kernels.tensor import cayley
@@ -144,3 +144,15 @@ def test_momentum_of_two_blocks_that_collide() -> None:
     np.testing.assert_allclose(after, before, atol=1e-11 * scale)
     assert abs(model.table("sdef")["KS111"]).max() > 1.0
     assert model.check() == []
+
+
+def test_a_block_that_is_turned_inside_out_ends_the_run() -> None:
+    """A stress of 100 times the stiffness pulls a free block apart in a step or two: error 32 names it."""
+    model, ib, ie = free_block(2.0, 1.0, 1e6, 1e6)
+    model.cycle(0)
+    put_stress(model.h, ie, 2e8, 0.0, 2e8)
+    with pytest.raises(UdecError) as caught:
+        model.cycle(50)
+    assert caught.value.number == 32
+    assert caught.value.group == ib
+    assert f"block@{ib} at (" in caught.value.detail

@@ -16,6 +16,7 @@ from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, blocks, outline, play, replay
 
 from offsets.generated import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
+from udec_ia.errors import UdecError
 from udec_ia.model import Model
 
 SCENES = 300
@@ -455,11 +456,20 @@ def test_a_chain_of_virtual_contacts() -> None:
 
 
 def test_gaps_no_wider_than_the_reals_resolve_need_no_contact() -> None:
-    """Blocks that fall together are 84 km down after 30 cycles, where 32-bit reals resolve 8 mm."""
+    """Blocks that fall together are 84 km down after 30 cycles, where 32-bit reals resolve 8 mm.
+
+    They fall until the reals do not tell two contacts apart: half of what they resolve is more than D/20.
+    """
     model = Model("i32r32")
     model.run("START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5\nBLOCK 0 0 0 4 6 4 6 0\nSPLIT -1 1 7 1\n")
     model.run("SPLIT -1 2 7 3\nSPLIT 2 0 3 4\nROUND 0.24\nGRAVITY 0 -10\nCYCLE 20\nGRAVITY 0 -1E8\n")
-    for _ in range(60):
-        model.cycle(1)
-        assert model.check() == []
-    assert model.table("block")["KY"].max() < -3e5
+
+    def fall() -> None:
+        for _ in range(200):
+            model.cycle(1)
+            assert model.check() == []
+
+    with pytest.raises(UdecError) as caught:
+        fall()
+    assert caught.value.number == 36
+    assert np.spacing(np.abs(model.table("block")["KY"]).max()) > 2 * 0.24 / 20

@@ -38,10 +38,11 @@ MESSAGES = {
     29: "restart file cannot be used",
     30: "address outside the main array",
     31: "file cannot be written",
-    32: "zone has turned inside out",
+    32: "zone or block has turned inside out",
     33: "zones do not fill the block",
     34: "constitutive law cannot be used",
     35: "constitutive law returned no finite number",
+    36: "block has gone too far for the reals",
 }
 
 ADVICE = {
@@ -76,10 +77,11 @@ ADVICE = {
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
     31: "check that the folder exists and can be written to",
-    32: "take stiffer zones, a smaller FRACTION or smaller loads",
+    32: "take a stiffer material, a smaller FRACTION or smaller loads",
     33: "the zones must cover the block side to side, each side between two grid-points once",
     34: "correct the file that --constitutive names",
     35: "look for what the law divides by or takes a root of, and at the properties of the material",
+    36: "FIX or DELETE what flies away, look for what has driven it so far, or take 64-bit reals",
 }
 
 

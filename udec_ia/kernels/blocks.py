@@ -9,18 +9,32 @@ from __future__ import annotations
 
 from typing import Any
 
-from offsets.generated import IBPNT, KB, MFDEF, MSDEF, NVBL
-from udec_ia.heap.accessors import HEAD, Memory, iget, real
+from offsets.generated import FTOL, IBPNT, IERAD, KB, KX, KY, MFDEF, MSDEF, NERR, NVBL
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
 from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.fdef import move_fdef
 from udec_ia.kernels.motion import motion
 from udec_ia.kernels.sdef import move_sdef
 
+TOO_FAR = 36
+
+
+@inlined
+def check_place(h: Memory, ib: int) -> None:
+    """Error 36 if block `ib` is where reals no longer tell x from x + FTOL, or if its place is no number."""
+    x, y, least = abs(getr(h, ib, KX)), abs(getr(h, ib, KY)), h.cr[FTOL]
+    if not (x + least > x and y + least > y) and h.ci[NERR] == 0:
+        h.ci[NERR] = TOO_FAR
+        h.ci[IERAD] = ib
+
 
 @kernel
 def move_all(h: Memory, soft: Any, laws: Any) -> float:
-    """Move every block; returns a bound on the velocity, in x or in y, of any point."""
+    """Move every block; returns a bound on the velocity, in x or in y, of any point.
+
+    Error 36 if a block has flown to where nothing can be calculated any more.
+    """
     fastest = real(h, 0.0)
     ib = h.ci[IBPNT]
     while ib != 0:
@@ -35,5 +49,6 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
                 fastest = max(fastest, motion(h, ib))
         else:
             fastest = max(fastest, motion(h, ib))
+        check_place(h, ib)
         ib = iget(h, ib, KB)
     return fastest

@@ -78,9 +78,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
 from udec_ia.kernels.motion import FIXED
 from udec_ia.kernels.shape import crad
-from udec_ia.kernels.tensor import cayley, turned
-
-ZONE_INSIDE_OUT = 32
+from udec_ia.kernels.tensor import INSIDE_OUT, cayley, turned
 
 
 @inlined
@@ -228,7 +226,7 @@ def zone_forces(h: Memory, iz: int, r11: float, r12: float, r22: float) -> None:
     """Forces of zone `iz` on its grid-points: of its stress and the damping stress r11, r12, r22."""
     g1, g2, g3, b1, c1, b2, c2, twice = gradient(h, iz, real(h, 0.0))
     if not twice > 0 and h.ci[NERR] == 0:
-        h.ci[NERR] = ZONE_INSIDE_OUT
+        h.ci[NERR] = INSIDE_OUT
         h.ci[IERAD] = iz
     half = real(h, 0.5)
     s11, s12, s22 = getr(h, iz, KZS11) + r11, getr(h, iz, KZS12) + r12, getr(h, iz, KZS22) + r22

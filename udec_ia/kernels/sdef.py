@@ -24,6 +24,7 @@ import numpy as np
 from offsets.generated import (
     C1B,
     C2B,
+    IERAD,
     KBEX,
     KBFIX,
     KBI,
@@ -57,6 +58,7 @@ from offsets.generated import (
     KYD,
     KYDP,
     KYP,
+    NERR,
     TDEL,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
@@ -64,7 +66,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
 from udec_ia.kernels.motion import FIXED, accelerate
 from udec_ia.kernels.shape import crad
-from udec_ia.kernels.tensor import cayley, turned
+from udec_ia.kernels.tensor import INSIDE_OUT, cayley, turned
 
 
 @inlined
@@ -146,7 +148,8 @@ def stress(h: Memory, ib: int, ie: int, c: float, s: float, laws: Any) -> None:
 def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) -> None:
     """Corners, Euler tensor and area of block `ib`, whose centroid was at (x, y), through one step.
 
-    new: the strain rates of the step. The corners then have the velocities of the step.
+    new: the strain rates of the step. The corners then have the velocities of the step. Error 32 if they turn
+    the block inside out.
     """
     e11, e12, e22 = new
     dt, half, one = h.cr[TDEL], real(h, 0.5), real(h, 1.0)
@@ -154,6 +157,10 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
     det = (one - a) * (one - d) - b * c
     m11, m12 = ((one - d) * (one + a) + b * c) / det, (b + b) / det
     m21, m22 = (c + c) / det, ((one - a) * (one + d) + b * c) / det
+    stretch = m11 * m22 - m12 * m21
+    if not stretch > 0 and h.ci[NERR] == 0:
+        h.ci[NERR] = INSIDE_OUT
+        h.ci[IERAD] = ib
     xd, yd, xn, yn = getr(h, ib, KXD), getr(h, ib, KYD), getr(h, ib, KX), getr(h, ib, KY)
     far = real(h, 0.0)
     ip0 = iget(h, ib, KP)
@@ -180,7 +187,7 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
     second = j11 + j22
     putr(h, ib, KTD, td * (getr(h, ib, KBI) / second))
     putr(h, ib, KBI, second)
-    putr(h, ie, KSAREA, getr(h, ie, KSAREA) * (m11 * m22 - m12 * m21))
+    putr(h, ie, KSAREA, getr(h, ie, KSAREA) * stretch)
 
 
 @kernel

@@ -45,6 +45,7 @@ from offsets.generated import (
     MDOM,
     MFDEF,
     MRIG,
+    MSDEF,
     NBLK,
     NCYC,
     NERR,
@@ -54,12 +55,14 @@ from offsets.generated import (
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.blocks import TOO_FAR
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
-from udec_ia.kernels.fdef import ZONE_INSIDE_OUT
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
+from udec_ia.kernels.tensor import INSIDE_OUT
 from udec_ia.ops import energy
 from udec_ia.ops.laws import Bound, LawBook, failure
+from udec_ia.ops.limits import last_digit
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_all_edges, settle_default
@@ -126,7 +129,8 @@ def cycle(
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
     prepared: called before the first cycle, when the time-step is known.
     watch: records on the way and may end the run before.
-    Error 15 when a contact's overlap has become too great: the cycle in which it did is completed.
+    Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
+    too coarse for contacts: the cycle in which it did is completed.
     """
     prepare(array)
     if prepared is not None:
@@ -165,11 +169,25 @@ def _run(
     return done
 
 
-def _zone(h: Memory, iz: int) -> str:
-    """Zone `iz`, its block and its centroid, as a message names them."""
+def _strained(h: Memory, iz: int) -> str:
+    """Zone `iz` and its block, or simply-deformable block `iz`, and its centroid, as a message names it."""
+    if iget(h, iz, HEAD) == MSDEF:
+        return f"block@{iz} at ({getr(h, iz, KX):g}, {getr(h, iz, KY):g})"
     corners = [iget(h, iz, KZG, i) for i in range(3)]
     x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (KXG, KYG))
     return f"{kind_of(h, iz)} at ({x:g}, {y:g})"
+
+
+def _too_far(array: MainArray, ib: int) -> UdecError:
+    """Error 36: block `ib` is where the reals are too coarse for contacts."""
+    h, bits = array.h, array.scheme.real_bits
+    x, y = float(getr(h, ib, KX)), float(getr(h, ib, KY))
+    return UdecError(
+        TOO_FAR,
+        f"block@{ib} has come to ({x:g}, {y:g}) in cycle {int(h.ci[MCTOT])}, where {bits}-bit reals resolve "
+        f"{last_digit(array, max(abs(x), abs(y))):g}, and the rounding length is {h.cr[DTOL]:g}",
+        group=ib,
+    )
 
 
 def _raise_error(array: MainArray) -> None:
@@ -187,16 +205,19 @@ def _raise_error(array: MainArray) -> None:
         return
     group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
-    if number == ZONE_INSIDE_OUT:
-        raise UdecError(number, f"{_zone(h, group)} in cycle {int(h.ci[MCTOT])}", group=group)
+    if number == INSIDE_OUT:
+        raise UdecError(number, f"{_strained(h, group)} in cycle {int(h.ci[MCTOT])}", group=group)
     if number == LAW_FAILED:
         raise failure(array, group)
+    if number == TOO_FAR:
+        raise _too_far(array, group)
     if iget(h, group, HEAD) == MDOM:
         detail = (
             f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} and have gone into each "
             f"other in cycle {int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact in time"
         )
-        raise UdecError(number, detail, "take a smaller FRACTION or a greater ROUND", group=group)
+        advice = "take a greater KN, a smaller FRACTION or a greater ROUND"
+        raise UdecError(number, detail, advice, group=group)
     if iget(h, group, HEAD) != MCON:  # it vanished in a later pass of the same cycle
         raise UdecError(number, f"in cycle {int(h.ci[MCTOT])}", "take a smaller FRACTION or a greater ROUND")
     m = iget(h, group, KCM)
