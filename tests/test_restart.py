@@ -245,7 +245,7 @@ def test_what_rset_has_bent_is_not_cut_after_a_restart(tmp_path: Path) -> None:
     corner = m.table("corner")[0]
     offset = g.KXP[m.array.scheme.ratio >> 1]
     m.rset(float(corner["KXP"]) + 9, int(corner["address"]), offset)
-    other = Model.restore(m.save(tmp_path / "bent.h5"))
+    other = Model.restore(save(m.array, tmp_path / "bent.h5", []))
     for one in (m, other):
         with pytest.raises(UdecError) as refused:
             one.split(2, -1, 2, 3)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from offsets import generated as g
 from offsets.table import TABLE
-from udec_ia import __version__
+from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.array import MainArray
@@ -406,3 +406,19 @@ def test_a_refusal_names_what_was_meant(tmp_path: Path) -> None:
 
 def test_nothing_is_refused_without_reason(tmp_path: Path) -> None:
     assert load(save(MainArray(scheme("i16r32")), tmp_path / "empty.h5"))[1] == []
+
+
+def test_a_heap_that_rset_has_damaged_does_not_take_the_place_of_a_good_file(tmp_path: Path) -> None:
+    model = Model(out=tmp_path)
+    model.block(0, 0, 0, 10, 10, 10, 10, 0)
+    model.split(-1, 5, 11, 5)
+    good = model.save().read_bytes()
+    model.rset(1.5, 1, 2)
+    with pytest.raises(UdecError) as caught:
+        model.save()
+    assert caught.value.number == 20
+    assert (tmp_path / "restart.h5").read_bytes() == good
+    assert [path.name for path in tmp_path.iterdir()] == ["restart.h5"]
+    model.restart()
+    model.rset(2.5, 1, 8)  # KXD of the first block, a number
+    assert model.save().read_bytes() != good

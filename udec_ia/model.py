@@ -41,6 +41,7 @@ from udec_ia.ops.insitu import insitu
 from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, real, reals, rows, whole
+from udec_ia.ops.memory import refit
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.soft import soft
 from udec_ia.ops.split import Boxes, split
@@ -82,7 +83,8 @@ class Model:
         constitutive: Given | Iterable[Given] | None = None,
     ) -> None:
         self.mtop = None if mtop is None else _words(mtop)
-        self.array = MainArray(scheme(build), self.mtop)
+        self.scheme = scheme(build)
+        self.array = MainArray(self.scheme, self.mtop)
         self.out = out
         self.laws = LawBook(constitutive)
         self.name = "udec"
@@ -98,8 +100,8 @@ class Model:
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
-        self._touched = False  # RSET has changed a word since the links were last known to be sound
-        self._bent = False  # RSET or a restart file may have bent outlines since they were last proved
+        self._touched = False  # RSET has changed a word since links and outlines were last proved sound
+        self._unproved = False  # outlines are those of a restart file, of which the links alone are proved
         self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
         self._clock = perf_counter()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
@@ -122,12 +124,12 @@ class Model:
 
     def start(self) -> None:
         """START: a cold start; whatever was there is gone."""
-        self.array = MainArray(self.array.scheme, self.mtop)
+        self.array = MainArray(self.scheme, self.mtop)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
         self.laws.note({})
         self._recorder.series = []
         self._boxes.forget()
-        self._touched = self._bent = False
+        self._touched = self._unproved = False
         self._judged = (0.0, 0.0)
         self.started = True
 
@@ -138,6 +140,8 @@ class Model:
         """
         from udec_ia.restart import save
 
+        if self._touched:
+            self._prove()
         target = self.out / RESTART_FILE if path is None else path
         written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
         self._note([written])
@@ -146,25 +150,31 @@ class Model:
     def restart(self, path: str | Path | None = None) -> None:
         """RESTART: go on from the restart file `path`, by default restart.h5 in the folder `out`.
 
-        Error 29 if it cannot be used; the model is then as it was.
+        The words are those of the file's scheme; how many there may be is for `mtop` to say, whatever it was
+        when they were saved. Error 29 if the file cannot be used, 1 if it holds more; the model is then as it
+        was.
         """
         from udec_ia.restart import load, recall
 
         source = self.out / RESTART_FILE if path is None else path
         array, deck_log, laws = load(source)
+        refit(array, self.mtop)
         self._recorder.series = recall(source, array) if array.h.ci[IHPNT] else []
         self.array, self.deck_log = array, deck_log
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched, self._bent = False, True  # load has proved the links
+        self._touched, self._unproved = False, True
         self.started = True
+        if array.scheme != self.scheme:
+            self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
 
     @classmethod
     def restore(cls, path: str | Path, constitutive: Given | Iterable[Given] | None = None) -> Self:
         """A new model from a restart file, in the word scheme of the file, with laws of the user's."""
         model = cls(constitutive=constitutive)
         model.restart(path)
+        model.scheme = model.array.scheme
         return model
 
     def stop(self) -> str:
@@ -212,9 +222,9 @@ class Model:
     def _ready(self, sound: bool = True, shapes: bool = False) -> None:
         """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
 
-        A routine that follows pointers must never meet one that RSET has damaged, nor one that cuts outlines
-        (`shapes`) an outline that crosses itself: error 20. Such routines are compiled ones, too: the first
-        of a process says so if nobody has compiled them before.
+        A routine that follows pointers must never meet one that RSET has damaged, nor one that cuts or loads
+        outlines (`shapes`) one of a restart file that crosses itself: error 20. Such routines are compiled,
+        too: the first of a process says so if nobody has compiled them before.
         """
         if not self.started:
             self.start()
@@ -222,19 +232,18 @@ class Model:
         if sound and not (name in announced or is_cached(name) or numba.config.DISABLE_JIT):
             announced.add(name)
             log.warning("compiling once for this machine, up to a minute ...")
-        if (sound and self._touched) or (shapes and self._bent):
-            self._prove(shapes)
+        if (sound and self._touched) or (shapes and self._unproved):
+            self._prove()
 
-    def _prove(self, shapes: bool) -> None:
-        """Error 20 with the first violation of the links of the main array, with `shapes` of outlines too."""
-        from udec_ia.inspect.check import check_links, check_shapes
+    def _prove(self) -> None:
+        """Error 20 with the first violation of links, numbers or outlines in the main array."""
+        from udec_ia.inspect.check import check_shapes
 
-        broken = check_shapes(self.array) if shapes else check_links(self.array)
+        broken = check_shapes(self.array)
         if broken:
             advice = "the main array is damaged: put back what RSET has changed, or RESTART from a sound file"
             raise UdecError(20, str(broken[0]), advice)
-        self._touched = False
-        self._bent = self._bent and not shapes
+        self._touched = self._unproved = False
 
     # ---- the block system
 
@@ -310,7 +319,7 @@ class Model:
         mode: "manual", with `gridpoints` and `zones`, or "automatic", with `edge` (m). mixed: zones 1 and 2,
         3 and 4 ... are pairs for mixed discretisation.
         """
-        self._ready()
+        self._ready(shapes=True)
         self._boxes.forget()
         points = rows(2, gridpoints=gridpoints)
         triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
@@ -360,7 +369,7 @@ class Model:
         free: bool = False,
     ) -> int:
         """BOUNDARY: conditions on what lies in the range (see ops.bounds). Returns their number."""
-        self._ready()
+        self._ready(shapes=True)
         return boundary(
             self.array,
             (x1, x2, y1, y2),
@@ -411,7 +420,7 @@ class Model:
         self._ready(sound=False)
         settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
-        self._touched = self._bent = True
+        self._touched = True
 
     # ---- numbers
 

@@ -79,6 +79,17 @@ class MainArray:
         ci[NERR] = ci[NWANT] = 0
         return True
 
+    def refit(self, mtop: int | None) -> bool:
+        """Let the array have `mtop` words and no more, or grow if that is None; False if it holds more."""
+        if mtop is not None:
+            size = self._whole_reals(mtop)
+            if self.h.ci[MFREE] - 1 > size or mtop > self.scheme.top_address:
+                return False
+            self.h = self._views(self._copied(size), self.h.ci, self.h.cr)
+            self.h.ci[MTOP] = size
+        self.fixed = mtop is not None
+        return True
+
     def copy(self) -> MainArray:
         """An independent copy of the whole state."""
         other = object.__new__(MainArray)

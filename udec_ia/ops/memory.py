@@ -15,9 +15,21 @@ SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a qu
 
 
 def find_room(array: MainArray) -> None:
-    """Make the room that an interrupted kernel asked for; error 1 if the scheme or --mtop forbids it."""
+    """Make the room that an interrupted kernel asked for; error 1 if the scheme or --mtop forbids it.
+
+    What was asked for may include words to spare, so the array takes all words there are before it refuses.
+    """
     if array.grow():
         return
+    ci = array.h.ci
+    if ci[MTOP] == array.limit:
+        raise _overflow(array)
+    ci[NWANT] = array.limit - int(ci[MFREE]) + 1
+    array.grow()
+
+
+def _overflow(array: MainArray) -> UdecError:
+    """Error 1 for the words that are asked for in vain."""
     ci = array.h.ci
     need = int(ci[MFREE] + ci[NWANT]) - 1
     ci[NERR] = ci[NWANT] = 0
@@ -29,8 +41,8 @@ def find_room(array: MainArray) -> None:
     if array.fixed and need <= array.scheme.top_address:
         advice = f"this line needs --mtop {need} at least: leave --mtop out to let the array grow"
     else:
-        advice = f"run with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
-    raise UdecError(1, f"{need} words are needed, the main array has {int(ci[MTOP])}", advice)
+        advice = f"run from START with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
+    return UdecError(1, f"{need} words are needed, the main array has {int(ci[MTOP])}", advice)
 
 
 def keep_spare(array: MainArray) -> None:
@@ -41,16 +53,12 @@ def keep_spare(array: MainArray) -> None:
     An array of fixed size, or one that has reached its limit, uses its last word instead.
     """
     ci = array.h.ci
-    if array.fixed:
-        ci[NSPARE] = 0
-        return
     pair = size_of(array.h, NVCN) + size_of(array.h, NVDO)
-    words = pair * (SPARE_CONTACTS + int(ci[NCON]) // 4)
-    ci[NSPARE] = words
+    words = min(pair * (SPARE_CONTACTS + int(ci[NCON]) // 4), array.limit - int(ci[MFREE]) + 1)
     if ci[MFREE] + words - 1 > ci[MTOP]:
         ci[NWANT] = words
-        if not array.grow():
-            ci[NSPARE] = ci[NWANT] = ci[NERR] = 0
+        array.grow()
+    ci[NSPARE] = words if ci[MTOP] < array.limit else 0
 
 
 def require(array: MainArray, words: int) -> None:
@@ -58,7 +66,17 @@ def require(array: MainArray, words: int) -> None:
     ci = array.h.ci
     if ci[MFREE] + words - 1 > ci[MTOP]:
         ci[NWANT] = words
-        find_room(array)
+        if not array.grow():
+            raise _overflow(array)
+
+
+def refit(array: MainArray, mtop: int | None) -> None:
+    """Give the array the size that the run fixes, or let it grow; error 1 if it holds more than that."""
+    if not array.refit(mtop):
+        used = int(array.h.ci[MFREE]) - 1
+        detail = f"{used} words are in use, and --mtop is {mtop}"
+        advice = f"--mtop may be {used} to {array.scheme.top_address}: leave it out to let the array grow"
+        raise UdecError(1, detail, advice)
 
 
 @contextmanager

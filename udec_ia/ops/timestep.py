@@ -27,6 +27,7 @@ from offsets.generated import (
     ALAM1,
     ALAM2,
     BETA,
+    DENS,
     FRAC,
     IBNPNT,
     IBPNT,
@@ -80,7 +81,7 @@ from offsets.generated import (
     NSOFT,
     TDEL,
 )
-from udec_ia.errors import UdecError
+from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass
@@ -283,7 +284,10 @@ def estimate(array: MainArray) -> Limit:
     if massless:
         m = iget(h, massless, KMAT)
         detail = f"block@{massless} has material {m}, whose density is not set"
-        raise UdecError(12, detail, f"PROPERTY MATERIAL={m} DENSITY=...", group=int(massless))
+        advice = f"PROPERTY MATERIAL={m} DENSITY=..."
+        if h.cr[DENS + m - 1] > 0:
+            detail, advice = f"block@{massless} has the mass {getr(h, massless, KBM):g}", ADVICE[20]
+        raise UdecError(12, detail, advice, group=int(massless))
     stiffness = np.zeros(int(h.ci[MFREE]) + 1, h.cr.dtype)
     joints = _stiffness(h)
     ratio = float(mass) / joints

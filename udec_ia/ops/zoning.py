@@ -58,6 +58,7 @@ from offsets.generated import (
     NVDO,
     NVFD,
     NVGP,
+    NVSD,
     NVZO,
 )
 from udec_ia.errors import UdecError
@@ -171,7 +172,8 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
     """
     h = array.h
     new = sum(place.on_edge for place in places)
-    words = new * (size_of(h, NVCR) + 2 * size_of(h, NVCN) + 2 * size_of(h, NVDO)) + size_of(h, NVFD)
+    words = new * (size_of(h, NVCR) + 2 * size_of(h, NVCN) + 2 * size_of(h, NVDO))
+    words += size_of(h, NVSD) + size_of(h, NVFD)  # a rigid block becomes a simply-deformable one on the way
     require(array, words + len(places) * size_of(h, NVGP) + len(zones) * size_of(h, NVZO))
     with all_or_nothing(array):
         change_types(array, [ib], MFDEF)
