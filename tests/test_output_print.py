@@ -104,6 +104,19 @@ def test_damaged_lists_are_printed_as_far_as_they_go() -> None:
     assert (str(second), "KXC") not in cells(text.split("Corners")[0])
 
 
+@pytest.mark.parametrize("wrong", [-511936084, 0, 2, 10**6])
+@pytest.mark.parametrize("kind", ["sdef", "fdef"])
+def test_extensions_that_are_nowhere_are_named(kind: str, wrong: int) -> None:
+    m = model(*box(0, 2, 0, 1), d=0.1)
+    m.change(0, 2, 0, 1, type=kind)
+    if kind == "fdef":
+        fan(m, 1, 0.5)
+    (block,) = groups(m.h, "block")
+    puti(m.h, block, g.KBEX, wrong)
+    text = printout(m.h, "blocks", "gridpoints", "zones")
+    assert f"the heap is damaged here: KBEX of block@{block} points to {wrong}" in text
+
+
 def test_an_empty_heap_has_nothing_to_print() -> None:
     h = two_blocks().h
     h.ci[[g.IBPNT, g.ICPNT, g.IDPNT, g.NBLK, g.NCON, g.NDOM]] = 0

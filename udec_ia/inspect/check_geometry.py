@@ -213,7 +213,11 @@ def check_codes(state: State) -> None:
 
 
 def check_outlines(state: State, o: Outlines) -> None:
-    """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings."""
+    """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings.
+
+    The edges of deformable blocks may shorten until the roundings overlap by FTOL: a flat part shorter than
+    that is none to the program, and the next CYCLE refuses them (error 14).
+    """
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")
         return
@@ -221,15 +225,16 @@ def check_outlines(state: State, o: Outlines) -> None:
     area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
     for i in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
+    rows = state.rows("block", o.block)
     room = o.d * (2.0 - o.pointed - o.pointed[o.before])
-    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= room - 2 * o.slack)):
+    give = np.where(state.column("block", "KBEX")[rows] > 0, state.tolerance("FTOL"), 0.0)[o.owner]
+    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= room - give - 2 * o.slack)):
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
             f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, less than the {room[i]} of its roundings",
         )
     _check_circles(state, o)
-    rows = state.rows("block", o.block)
     centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
     far = np.maximum.reduceat(np.hypot(*(o.p - centroid[o.owner]).T), o.first)
     noted = state.column("block", "KBRO")[rows]

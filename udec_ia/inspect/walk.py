@@ -52,8 +52,10 @@ from offsets.generated import (
     NVCN,
     NVCR,
     NVDO,
+    NVFD,
     NVGP,
     NVHI,
+    NVSD,
     NVSG,
     NVZO,
 )
@@ -113,6 +115,20 @@ def expect(h: Memory, iad: int, kinds: tuple[str, ...], source: str) -> int:
     return iad
 
 
+def inside(h: Memory, iad: int, size: Offset, source: str) -> int:
+    """`iad` if a group of this size, which has no head code, can stand there, else Unsound for `source`."""
+    within = 1 <= iad <= int(h.ci[MFREE]) - size_of(h, size)
+    if not within or (iad - 1) % (h.ra.itemsize // h.ia.itemsize):
+        raise Unsound(f"{source} points to {iad}, where no such group can be")
+    return iad
+
+
+def extension(h: Memory, block: int) -> int:
+    """The extension of deformable block `block`."""
+    size = NVSD if iget(h, block, HEAD) == MSDEF else NVFD
+    return inside(h, iget(h, block, KBEX), size, f"KBEX of block@{block}")
+
+
 def _bounded(h: Memory, what: str, first: int, step: Callable[[int], int], stop: int) -> Iterator[int]:
     """first, step(first), ... until `stop`; Unsound if more items than the heap has words."""
     iad = first
@@ -144,15 +160,14 @@ def members(h: Memory, block: int, kind: str) -> Iterator[int]:
     if iget(h, block, HEAD) != MFDEF:
         return
     head, link, size = {"gridpoint": (KFG, KG, NVGP), "zone": (KFZ, KZ, NVZO)}[kind]
-    first = iget(h, iget(h, block, KBEX), head)
+    first = iget(h, extension(h, block), head)
     if first == 0:
         return
+    inside(h, first, size, f"the head of the {kind} list of block@{block}")
 
     def step(iad: int) -> int:
         following = iget(h, iad, link)
-        if following and not 1 <= following <= int(h.ci[MFREE]) - size_of(h, size):
-            raise Unsound(f"the list link of {kind}@{iad} points to {following}, outside the main array")
-        return following
+        return following and inside(h, following, size, f"the list link of {kind}@{iad}")
 
     yield from _bounded(h, f"the {kind} list of block@{block}", first, step, 0)
 

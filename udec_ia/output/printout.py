@@ -20,7 +20,18 @@ import offsets.generated as g
 from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.inspect.walk import HEADS, Unsound, boundary, corners, groups, kind_of, loop, members, point
+from udec_ia.inspect.walk import (
+    HEADS,
+    Unsound,
+    boundary,
+    corners,
+    extension,
+    groups,
+    kind_of,
+    loop,
+    members,
+    point,
+)
 from udec_ia.kernels.fdef import strain_rates
 from udec_ia.ops.energy import Balance, balance
 from udec_ia.ops.watch import Series
@@ -170,7 +181,7 @@ def _all(h: Memory, kind: str) -> Iterator[int]:
     elif kind == "sdef":
         for block in groups(h, "block"):
             if iget(h, block, HEAD) == g.MSDEF:
-                yield iget(h, block, g.KBEX)
+                yield extension(h, block)
     else:
         yield from groups(h, kind)
 
