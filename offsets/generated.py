@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "9ae91880a5dc155b9669560deca0ebcf3eddeb76566b6a600a7a243b9d287dee"
+DIGEST = "883c6723bdcdd135470bf60610e323ce184c81731c7289dc131828014ca2c64f"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -210,7 +210,7 @@ NVIRT = 16  # number of virtual contacts among them
 NSOFT = 17  # number of deformable blocks
 NMADE = 18  # contacts made so far
 NBROKE = 19  # contacts broken so far
-NSHORT = 20  # edges that hold little more than their two roundings
+LSHORT = 20  # 1 if an edge holds, or has held, little more than its two roundings, else 0
 LSAFE = 21  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
 LENER = 22  # 1 if an account of the energy is kept (ENERGY ON), else 0
 LROUND = 23  # 1 if the rounding length was given by ROUND, 0 if it is our default

@@ -42,7 +42,11 @@ from udec_ia.heap.accessors import getr, iget, putr
 from udec_ia.model import Model
 
 MOST_BLOCKS = 30
-ENDS = (15, 32)  # overlap too great, zone inside out: the cycle is completed, the map may be unsound
+ENDS = (
+    14,
+    15,
+    32,
+)  # the cycle is completed, the map may be unsound
 Numbers = tuple[float, ...]
 
 

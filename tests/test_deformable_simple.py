@@ -156,18 +156,3 @@ def test_a_block_that_is_turned_inside_out_ends_the_run() -> None:
     assert caught.value.number == 32
     assert caught.value.group == ib
     assert f"block@{ib} at (" in caught.value.detail
-
-
-def test_an_edge_that_shrinks_below_its_roundings_is_refused_by_the_next_cycle() -> None:
-    """Two roundings long at first, pulled together by a stress of 0.3 % of the stiffness, less than FTOL."""
-    model, _, ie = free_block(1.0, 0.04, 1e8, 1e8)
-    model.round(0.02)
-    model.cycle(0)
-    put_stress(model.h, ie, 0.0, 0.0, 3e5)
-    model.cycle(5)
-    corners = model.table("corner")
-    height = np.ptp(corners["KYP"])
-    assert 0.97 * 0.04 < height < 0.04 * (1 - 1e-6)
-    assert model.check() == []
-    with pytest.raises(UdecError, match="error 14: "):
-        model.cycle(1)

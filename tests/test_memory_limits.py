@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from offsets.generated import MFREE, MTOP
+from offsets.generated import MFREE, MTOP, NSPARE
 from udec_ia import Model, UdecError
 from udec_ia.heap.array import MainArray
 
@@ -39,9 +40,10 @@ COMMANDS: dict[str, Callable[[Model], object]] = {
 }
 
 
-def words_in_use(array: MainArray) -> bytes:
-    """The words below MFREE."""
-    return bytes(array.h.ia[: int(array.h.ci[MFREE]) - 1].tobytes())
+def state_of(array: MainArray) -> list[bytes]:
+    """The words below MFREE and the common blocks, but for what says how large the array is."""
+    common = np.delete(array.h.ci, [MTOP, NSPARE])
+    return [part.tobytes() for part in (array.h.ia[: int(array.h.ci[MFREE]) - 1], common, array.h.cr)]
 
 
 @pytest.mark.parametrize("build", ["i32r32", "i32r64"])
@@ -51,7 +53,7 @@ def test_with_any_number_of_words_a_command_is_obeyed_or_changes_nothing(command
     model.run(SCENE)
     before = model.array.copy()
     COMMANDS[command](model)
-    obeyed, refusals = words_in_use(model.array), set()
+    obeyed, refusals = state_of(model.array), set()
     for words in range(int(before.h.ci[MFREE]) - 1, len(before.h.ia), before.scheme.ratio):
         model = Model(build)
         model.start()
@@ -61,12 +63,12 @@ def test_with_any_number_of_words_a_command_is_obeyed_or_changes_nothing(command
             COMMANDS[command](model)
         except UdecError as error:
             refusals.add(error.number)
-            assert words_in_use(model.array) == words_in_use(before)
+            assert state_of(model.array) == state_of(before)
             assert model.check() == []
         else:
             break
     assert refusals <= {1}
-    assert words_in_use(model.array) == obeyed
+    assert state_of(model.array) == obeyed
     assert model.check() == []
 
 

@@ -35,6 +35,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.model import RESTART_FILE, Model
+from udec_ia.ops.rounding import STRAINED
 from udec_ia.ops.watch import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
@@ -44,7 +45,6 @@ BATCH = 250  # cases to a process
 FIRST_CASE, NEXT_CASE = 600.0, 180.0  # seconds of silence after which a process hangs; any may compile
 MOST_CYCLES = 20
 MOST_COMMANDS = 40
-UNTIDY = (15, 32, 36)  # the errors that leave blocks deeper in each other, or farther, than contacts can be
 Rng = np.random.Generator
 
 NUMBERS = [
@@ -258,28 +258,37 @@ def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
     model = Tame(build, int(rng.integers(1, 4000)) if rng.random() < 0.1 else None, folder)
     monitor = Monitor(model, io.StringIO())
     stubborn = rng.random() < 0.7
-    end = 0
+    last: UdecError | None = None
     try:
         if not stubborn:
             monitor.run(text, "fuzz")
         for statement in statements(text, "fuzz"):
-            end = obey(monitor, statement) or end
-            if end in UNTIDY or monitor.ended:
+            last = obey(monitor, statement) or last
+            if untidy(last) or monitor.ended:
                 break
     except UdecError as error:
-        end = numbered(error)
+        last = error
+    end = numbered(last) if last else 0
     if model.damaged or model.h.ci[MFREE] == 1:
         return end, ""
-    return end, unsound(model, check_links if end in UNTIDY else check)
+    return end, unsound(model, check_links if untidy(last) else check)
 
 
-def obey(monitor: Monitor, statement: Statement) -> int:
-    """Obey a statement as at the terminal, where an error does not end the run. Returns its number, or 0."""
+def obey(monitor: Monitor, statement: Statement) -> UdecError | None:
+    """Obey a statement as at the terminal, where an error does not end the run. Returns the error, if any."""
     try:
         monitor.obey(statement)
     except UdecError as error:
-        return numbered(error)
-    return 0
+        numbered(error)
+        return error
+    return None
+
+
+def untidy(error: UdecError | None) -> bool:
+    """True for an error that leaves blocks deeper in each other, farther or thinner than contacts can be."""
+    if error is None:
+        return False
+    return error.number in (15, 32, 36) or (error.number == 14 and STRAINED in error.detail)
 
 
 def numbered(error: UdecError) -> int:

@@ -22,6 +22,7 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check_complete import check_complete
 from udec_ia.inspect.check_geometry import (
+    Outlines,
     check_codes,
     check_contacts,
     check_numbers,
@@ -52,10 +53,7 @@ def check_shapes(array: MainArray) -> list[Violation]:
     with np.errstate(all="ignore"):
         state = State(array)
         _check_links(state)
-        check_numbers(state)
-        shapes = outlines(state)
-        if shapes is not None:
-            check_outlines(state, shapes)
+        _check_shapes(state)
     return state.violations()
 
 
@@ -64,16 +62,23 @@ def check(array: MainArray) -> list[Violation]:
     with np.errstate(all="ignore"):
         state = State(array)
         _check_links(state)
-        check_numbers(state)
-        shapes = outlines(state)
+        shapes = _check_shapes(state)
         if shapes is not None:
-            check_outlines(state, shapes)
             check_pieces(state, shapes)
             touching = touches(state, shapes)
             check_contacts(state, shapes, touching)
             check_places(state, shapes, touching)
             check_complete(state, shapes, touching)
     return state.violations()
+
+
+def _check_shapes(state: State) -> Outlines | None:
+    """Numbers and outlines; the outlines, or None if there are none."""
+    check_numbers(state)
+    shapes = outlines(state)
+    if shapes is not None:
+        check_outlines(state, shapes)
+    return shapes
 
 
 def _check_links(state: State) -> None:

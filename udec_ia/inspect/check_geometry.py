@@ -24,7 +24,6 @@ from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTU
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 NOT_NEGATIVE = ("KBM", "KBI")
-ROUNDING_SLACK = 1e-6  # the part of an edge that error 14 lets its two roundings overlap
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
 
@@ -215,8 +214,8 @@ def check_codes(state: State) -> None:
 def check_outlines(state: State, o: Outlines) -> None:
     """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings.
 
-    The edges of deformable blocks may shorten until the roundings overlap by FTOL: a flat part shorter than
-    that is none to the program, and the next CYCLE refuses them (error 14).
+    Blocks that deform may shorten their edges until the roundings overlap by FTOL: a flat part shorter than
+    that is none to the program. Beyond it error 14 ends the run.
     """
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")
@@ -226,9 +225,9 @@ def check_outlines(state: State, o: Outlines) -> None:
     for i in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
     rows = state.rows("block", o.block)
-    room = o.d * (2.0 - o.pointed - o.pointed[o.before])
-    give = np.where(state.column("block", "KBEX")[rows] > 0, state.tolerance("FTOL"), 0.0)[o.owner]
-    for i in np.flatnonzero(~(o.z * (1 + ROUNDING_SLACK) >= room - give - 2 * o.slack)):
+    roundings = 2.0 - o.pointed - o.pointed[o.before]
+    room, least = roundings * o.d, roundings * (o.d - state.tolerance("FTOL") / 2)
+    for i in np.flatnonzero(~(o.z >= least - 2 * o.slack)):
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "

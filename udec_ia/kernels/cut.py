@@ -38,7 +38,6 @@ from offsets.generated import (
     MSDEF,
     NBLK,
     NBROKE,
-    NSHORT,
     NSPARE,
     NVBL,
     NVBN,
@@ -188,7 +187,8 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
         least = min(_shortest(h, ib), _shortest(h, jb))
         if least < h.cr[DTOL] * real(h, 4.0):
             set_rounding(h, least * real(h, 0.125))
-    h.ci[NSHORT] += crad(h, ib) + crad(h, jb)
+    crad(h, ib)
+    crad(h, jb)
     end = iget(h, iget(h, jb, KP), KR)  # the crack runs from this corner to KP
     _settle_crack(h, iget(h, end, KL))
     _settle_crack(h, iget(h, end, KLB))

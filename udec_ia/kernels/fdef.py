@@ -77,7 +77,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
 from udec_ia.kernels.motion import FIXED
-from udec_ia.kernels.shape import crad
+from udec_ia.kernels.shape import round_anew
 from udec_ia.kernels.tensor import INSIDE_OUT, cayley, turned
 
 
@@ -137,7 +137,7 @@ def pvelfd(h: Memory, ib: int) -> None:
         if ip == ip0:
             break
     putr(h, ib, KBRO, np.sqrt(far))
-    crad(h, ib)
+    round_anew(h, ib)
 
 
 @kernel

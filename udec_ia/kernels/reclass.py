@@ -33,7 +33,7 @@ from offsets.generated import (
     KRAD,
     KXCP,
     KYCP,
-    NSHORT,
+    LSHORT,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
@@ -201,6 +201,14 @@ def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z
 
 
 @kernel
+def _all_rounding(h: Memory, ip: int) -> bool:
+    """True if the edge that ends at corner `ip` lies between two arcs, and its flat is shorter than FTOL."""
+    z, _, _ = zcs(h, ip)
+    short = z - h.cr[DTOL] - h.cr[DTOL] < h.cr[FTOL]
+    return short and getr(h, ip, KRAD) > 0 and getr(h, iget(h, ip, KR), KRAD) > 0
+
+
+@kernel
 def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
     """Hand a contact on an edge from corner `ip` of block `ib` to the next corner, over a short flat.
 
@@ -209,16 +217,9 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
     code = iget(h, ic, KCCOD)
     ahead, behind = lean(h, ip, nx, ny)
     slack = h.cr[GTOL] / h.cr[DTOL]
-    twice = h.cr[DTOL] + h.cr[DTOL]
     if ahead > slack:
-        iq = next_corner(h, ib, ip)
-        z, _, _ = zcs(h, iq)
-        return z - twice < h.cr[FTOL] and getr(h, iq, KRAD) > 0 and mvfor(h, ic, ib, code)
-    if behind > slack:
-        z, _, _ = zcs(h, ip)
-        short = z - twice < h.cr[FTOL] and getr(h, iget(h, ip, KR), KRAD) > 0
-        return short and mvbak(h, ic, ib, code)
-    return False
+        return _all_rounding(h, next_corner(h, ib, ip)) and mvfor(h, ic, ib, code)
+    return behind > slack and _all_rounding(h, ip) and mvbak(h, ic, ib, code)
 
 
 @kernel
@@ -254,7 +255,7 @@ def reclass(h: Memory, ic: int) -> bool:
     ex, ey, _, along, z = ce(h, ip, iq)
     border = h.cr[DTOL] - h.cr[GTOL]
     changed = (along < border or z - along < border) and _off_the_edge(h, ic, jb, ip, iq, along, z)
-    return changed or (h.ci[NSHORT] != 0 and _roll(h, ic, ib, ip, -ex, -ey))
+    return changed or (h.ci[LSHORT] != 0 and _roll(h, ic, ib, ip, -ex, -ey))
 
 
 @inlined
@@ -262,7 +263,7 @@ def settle(h: Memory, ic: int) -> tuple[float, float, float]:
     """Code, place and coordinates of contact `ic` as its geometry asks; normal (x, y) and overlap."""
     nx, ny, overlap, margin = coord(h, ic)
     for _ in range(RECLASSIFICATIONS):
-        if (margin >= 0 and h.ci[NSHORT] == 0) or not reclass(h, ic):
+        if (margin >= 0 and h.ci[LSHORT] == 0) or not reclass(h, ic):
             break
         nx, ny, overlap, margin = coord(h, ic)
     return nx, ny, overlap

@@ -65,7 +65,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.laws import stress_increment
 from udec_ia.kernels.motion import FIXED, accelerate
-from udec_ia.kernels.shape import crad
+from udec_ia.kernels.shape import round_anew
 from udec_ia.kernels.tensor import INSIDE_OUT, cayley, turned
 
 
@@ -207,7 +207,7 @@ def move_sdef(h: Memory, ib: int, laws: Any) -> float:
     putr(h, ib, KX, x + xd * dt)
     putr(h, ib, KY, y + yd * dt)
     carry(h, ib, ie, x, y, td, new)
-    crad(h, ib)
+    round_anew(h, ib)
     put_strain_rate(h, ie, new[0], new[1], new[2])
     c, s = cayley(h, td * dt)
     stress(h, ib, ie, c, s, laws)

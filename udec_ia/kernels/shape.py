@@ -20,6 +20,7 @@ from offsets.generated import (
     DENS,
     DTOL,
     FTOL,
+    IERAD,
     KBI,
     KBM,
     KBRO,
@@ -35,11 +36,14 @@ from offsets.generated import (
     KY,
     KYCP,
     KYP,
+    LSHORT,
+    NERR,
 )
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import next_corner
 
+TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
 FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a straight edge
 
 
@@ -117,13 +121,27 @@ def is_edge_point(h: Memory, ip: int) -> bool:
 
 
 @kernel
+def span(h: Memory, ip: int, z: float) -> float:
+    """What two roundings have to share of the edge of length `z` that ends at corner `ip`.
+
+    An edge between two roundings counts with its length, an edge from a rounding to an edge point with
+    twice its length, and one between two edge points is infinite.
+    """
+    one, two = is_edge_point(h, ip), is_edge_point(h, iget(h, ip, KR))
+    if one and two:
+        return real(h, np.inf)
+    return z + z if one or two else z
+
+
+@kernel
 def crad(h: Memory, ib: int) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
 
-    Returns the number of edges between two roundings whose straight part is shorter than FTOL.
+    Notes in LSHORT an edge between two roundings whose straight part is shorter than FTOL. Returns the corner
+    where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
     """
     d = h.cr[DTOL]
-    short = 0
+    tight = int64(0)
     ip0 = iget(h, ib, KP)
     ip = ip0
     while True:
@@ -131,8 +149,11 @@ def crad(h: Memory, ib: int) -> int:
         z, c1, s1 = zcs(h, ip)
         _, c2, s2 = zcs(h, iq)
         on_edge = is_edge_point(h, ip)
-        if z - d - d < h.cr[FTOL] and not (on_edge or is_edge_point(h, iget(h, ip, KR))):
-            short += 1
+        if z - d - d < h.cr[FTOL]:
+            if not (on_edge or is_edge_point(h, iget(h, ip, KR))):
+                h.ci[LSHORT] = 1
+            if span(h, ip, z) - d - d < -h.cr[FTOL]:
+                tight = ip
         turn = c2 * s1 - c1 * s2  # sine of the clockwise turn
         rad = real(h, 0.0)
         x, y = getr(h, ip, KXP), getr(h, ip, KYP)
@@ -148,4 +169,13 @@ def crad(h: Memory, ib: int) -> int:
         putr(h, ip, KYCP, y)
         ip = iq
         if ip == ip0:
-            return short
+            return tight
+
+
+@kernel
+def round_anew(h: Memory, ib: int) -> None:
+    """CRAD for block `ib`, strained in this step. Error 14 if an edge can no longer hold its roundings."""
+    ip = crad(h, ib)
+    if ip != 0 and h.ci[NERR] == 0:
+        h.ci[NERR] = TOO_SHORT
+        h.ci[IERAD] = ip

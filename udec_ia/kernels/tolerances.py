@@ -29,11 +29,11 @@ from offsets.generated import (
     KR,
     KXP,
     KYP,
-    NSHORT,
+    LSHORT,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.shape import crad, is_edge_point, zcs
+from udec_ia.kernels.shape import crad, span, zcs
 
 
 @kernel
@@ -53,11 +53,7 @@ def tolset(h: Memory, d: float) -> None:
 
 @kernel
 def edges(h: Memory) -> tuple[float, float, int]:
-    """Mean length of all edges, length of the shortest one and the corner where it ends.
-
-    An edge between two roundings counts with its length, an edge from a rounding to an edge point with
-    twice its length, and one between two edge points not at all.
-    """
+    """Mean span of all edges, span of the shortest one and the corner where it ends."""
     total, least = real(h, 0.0), real(h, np.inf)
     n, shortest = 0, int64(0)
     ib = h.ci[IBPNT]
@@ -66,10 +62,8 @@ def edges(h: Memory) -> tuple[float, float, int]:
         ip = ip0
         while True:
             z, _, _ = zcs(h, ip)
-            one, two = is_edge_point(h, ip), is_edge_point(h, iget(h, ip, KR))
-            if one != two:
-                z += z
-            if not (one and two):
+            z = span(h, ip, z)
+            if z < real(h, np.inf):
                 total += z
                 n += 1
                 if z < least:
@@ -102,10 +96,10 @@ def extent(h: Memory) -> float:
 def set_rounding(h: Memory, d: float) -> None:
     """Round every corner of every block with the length `d`; the contacts are left to the caller."""
     tolset(h, d)
-    h.ci[NSHORT] = 0
+    h.ci[LSHORT] = 0
     ib = h.ci[IBPNT]
     while ib != 0:
-        h.ci[NSHORT] += crad(h, ib)
+        crad(h, ib)
         ib = iget(h, ib, KB)
 
 

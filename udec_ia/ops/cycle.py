@@ -59,13 +59,14 @@ from udec_ia.kernels.blocks import TOO_FAR
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
+from udec_ia.kernels.shape import TOO_SHORT
 from udec_ia.kernels.tensor import INSIDE_OUT
 from udec_ia.ops import energy
 from udec_ia.ops.laws import Bound, LawBook, failure
 from udec_ia.ops.limits import last_digit
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
-from udec_ia.ops.rounding import check_all_edges, settle_default
+from udec_ia.ops.rounding import check_strained_edges, crowded, settle_default
 from udec_ia.ops.soft import soft
 from udec_ia.ops.timestep import kind_of, time_step
 from udec_ia.ops.watch import Watch
@@ -87,7 +88,7 @@ def prepare(array: MainArray) -> None:
     if h.ci[MCTOT] == 0:
         make_masses(h, soft(array))
     settle_default(array)
-    check_all_edges(array, float(h.cr[DTOL]))
+    check_strained_edges(array)
     _check_deformable(array)
     h.cr[TDEL] = time_step(array)
     for alpha, con1, con2, number in ((ALPHA, CON1, CON2, 13), (ALPB, C1B, C2B, 16)):
@@ -207,6 +208,8 @@ def _raise_error(array: MainArray) -> None:
     h.ci[NERR] = h.ci[IERAD] = 0
     if number == INSIDE_OUT:
         raise UdecError(number, f"{_strained(h, group)} in cycle {int(h.ci[MCTOT])}", group=group)
+    if number == TOO_SHORT:
+        raise crowded(array, group, int(h.ci[MCTOT]))
     if number == LAW_FAILED:
         raise failure(array, group)
     if number == TOO_FAR:

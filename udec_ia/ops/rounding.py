@@ -5,6 +5,7 @@ from __future__ import annotations
 from offsets.generated import (
     DTOL,
     DTOL2,
+    FTOL,
     IBPNT,
     ICPNT,
     KB1,
@@ -24,22 +25,31 @@ from udec_ia.heap.accessors import getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import flag_all
 from udec_ia.kernels.ford import settle_all
+from udec_ia.kernels.shape import span, zcs
 from udec_ia.kernels.tolerances import default_rounding, edges, extent, set_rounding
 from udec_ia.kernels.touch import VIRTUAL
 from udec_ia.kernels.update import update_all
 from udec_ia.ops.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.memory import all_or_nothing, find_room, keep_spare
 
+STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
+
+
+def too_short(d: float, least: float, x: float, y: float, when: str = "") -> UdecError:
+    """Error 14: roundings of length `d` have to share `least` on the edge that ends at (x, y)."""
+    return UdecError(
+        14,
+        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {least / 2:g} at most{when}",
+        "the rounding length must not exceed half the shortest edge, nor the shortest part of an edge that "
+        "GENERATE has put between a corner and a point",
+        parameter="d",
+    )
+
 
 def check_rounding(d: float, least: float, x: float, y: float) -> None:
     """Error 14 if the shortest edge, which ends at (x, y), cannot hold the roundings of its two corners."""
     if 2 * d > least * (1 + 1e-6):
-        raise UdecError(
-            14,
-            f"{d:g}, but the edge that ends at ({x:g}, {y:g}) is only {least:g} long",
-            f"the rounding length must not exceed half the shortest edge, {least / 2:g}",
-            parameter="d",
-        )
+        raise too_short(d, least, x, y)
 
 
 def check_all_edges(array: MainArray, d: float) -> None:
@@ -48,6 +58,22 @@ def check_all_edges(array: MainArray, d: float) -> None:
     if h.ci[IBPNT] != 0:
         _, least, ip = edges(h)
         check_rounding(d, float(least), float(getr(h, ip, KXP)), float(getr(h, ip, KYP)))
+
+
+def check_strained_edges(array: MainArray) -> None:
+    """Error 14 if on an edge the roundings overlap by more than FTOL; by less they may, for blocks deform."""
+    h = array.h
+    _, least, ip = edges(h)
+    if 2 * h.cr[DTOL] - least > h.cr[FTOL]:
+        raise crowded(array, int(ip))
+
+
+def crowded(array: MainArray, ip: int, cycle: int = 0) -> UdecError:
+    """Error 14: the roundings of the edge that ends at corner `ip` overlap by too much, since that cycle."""
+    h = array.h
+    least = span(h, ip, zcs(h, ip)[0])
+    when = f", {STRAINED} {cycle}" if cycle else ""
+    return too_short(float(h.cr[DTOL]), float(least), float(getr(h, ip, KXP)), float(getr(h, ip, KYP)), when)
 
 
 def check_overlaps(array: MainArray) -> None:

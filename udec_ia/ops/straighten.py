@@ -23,7 +23,6 @@ from offsets.generated import (
     KY,
     KYP,
     NBROKE,
-    NSHORT,
     NVCR,
 )
 from udec_ia.errors import UdecError
@@ -78,10 +77,9 @@ def straighten(h: Memory, ib: int) -> None:
     points = edge_points(h, ib)
     if not points:
         return
-    short = crad(h, ib)
     for ip in points:
         _take_point_out(h, ib, ip)
-    h.ci[NSHORT] += crad(h, ib) - short
+    crad(h, ib)
     renew_reach(h, ib)
     flag_around(h, ib)
 

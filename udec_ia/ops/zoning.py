@@ -52,7 +52,6 @@ from offsets.generated import (
     KZS22,
     MCTOT,
     MFDEF,
-    NSHORT,
     NVCN,
     NVCR,
     NVDO,
@@ -178,13 +177,12 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
     with all_or_nothing(array):
         change_types(array, [ib], MFDEF)
         h = array.h
-        short = crad(h, ib)
         _make_corners(h, ib, places)
         addresses = _make_gridpoints(h, ib, places)
         _make_zones(h, ib, addresses, zones, paired)
         share_mass(h, ib)
         _set_in_motion(h, ib)
-        h.ci[NSHORT] += crad(h, ib) - short
+        crad(h, ib)
         flag_around(h, ib)
         update_flagged(array)
         if h.ci[MCTOT] > 0:
