@@ -86,6 +86,20 @@ def test_a_main_array_of_no_size(capsys: pytest.CaptureFixture[str]) -> None:
     assert "--mtop 0: mtop must lie between" in capsys.readouterr().err
 
 
+def test_a_folder_that_takes_no_files_is_refused_before_the_run(
+    in_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The folder, or the one in which it would have to be made, is an ordinary file."""
+    Path("deck.dat").write_text(SMALL)
+    for out in ("deck.dat", "deck.dat/results/deep"):
+        assert main(["run", "deck.dat", "--out", out]) == 2
+        said = capsys.readouterr()
+        assert said.err == f"udec: --out {out}: no file can be written there\n"
+        assert said.out == ""
+    assert main(["run", "deck.dat", "--out", "results/deep"]) == 0
+    assert list(Path("results/deep").iterdir())
+
+
 def test_an_unknown_build_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         main(["run", "--build", "i8r8"])

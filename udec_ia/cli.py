@@ -16,6 +16,7 @@ import udec_ia
 from udec_ia.deck.interactive import converse, history, history_file
 from udec_ia.deck.monitor import Monitor, run_deck
 from udec_ia.errors import UdecError
+from udec_ia.files import takes_files
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.model import Model
 
@@ -38,7 +39,7 @@ def arguments() -> argparse.ArgumentParser:
         default=DEFAULT_SCHEME,
         help="widths of integers and reals in bits (default: %(default)s)",
     )
-    run.add_argument("--out", type=Path, default=Path("."), help="folder for plots and restart files")
+    run.add_argument("--out", type=Path, help="folder for plots and restart files (default: the current one)")
     run.add_argument("--mtop", type=int, help="size of the main array in words; left off, it grows as needed")
     run.add_argument(
         "--constitutive",
@@ -58,8 +59,12 @@ def arguments() -> argparse.ArgumentParser:
 
 
 def _run(args: argparse.Namespace) -> int:
+    if args.out is not None and not takes_files(args.out):
+        print(f"udec: --out {args.out}: no file can be written there", file=sys.stderr)
+        return MISUSE
+    out = args.out or Path()
     try:
-        model = Model(build=args.build, mtop=args.mtop, out=args.out, constitutive=args.constitutive)
+        model = Model(build=args.build, mtop=args.mtop, out=out, constitutive=args.constitutive)
     except (ValueError, MemoryError) as error:
         print(f"udec: --mtop {args.mtop}: {error}", file=sys.stderr)
         return MISUSE

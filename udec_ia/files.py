@@ -36,6 +36,12 @@ def put_in_place(path: Path, content: bytes | memoryview, *, force: bool = True)
             _sync_folder(target.parent)
 
 
+def takes_files(folder: Path) -> bool:
+    """False if no file can be put into `folder`, as far as that can be told before it is made."""
+    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+
+
 def _sync_folder(folder: Path) -> None:
     """Force the new name to the disk too."""
     handle = os.open(folder, os.O_RDONLY)
