@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from itertools import pairwise
 
 from offsets.generated import (
@@ -73,7 +73,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.motion import FIXED
-from udec_ia.ops.limits import finite, not_negative, positive, whole
+from udec_ia.ops.limits import finite, held, not_negative, positive, whole
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import require
 from udec_ia.ops.ranges import Range, check_range
@@ -149,6 +149,7 @@ def boundary(
         place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
         advice = "a range holds what lies inside it and not on its limits"
         raise UdecError(24, f"nothing lies in the range {place}", advice, parameter="x1")
+    held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     words = len(loads) * size_of(array.h, NVBN) + size_of(array.h, NVSG)
     signal = _find_function(array.h, function) if function is not None else 0
     require(array, words)

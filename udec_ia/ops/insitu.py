@@ -7,14 +7,31 @@ other, by the small strain that closes the joints.
 
 from __future__ import annotations
 
-from offsets.generated import KBEX, KFZ, KX, KXG, KY, KYG, KZ, KZG, KZS11, KZS12, KZS22, MFDEF, MSDEF
+from collections.abc import Iterator
+
+from offsets.generated import (
+    KBEX,
+    KBRO,
+    KFZ,
+    KX,
+    KXG,
+    KY,
+    KYG,
+    KZ,
+    KZG,
+    KZS11,
+    KZS12,
+    KZS22,
+    MFDEF,
+    MSDEF,
+)
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, getr, iget, putr
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.sdef import put_stress
 from udec_ia.ops.bounds import ZERO, Triple
 from udec_ia.ops.forces import renew_forces
-from udec_ia.ops.limits import finite
+from udec_ia.ops.limits import finite, held
 from udec_ia.ops.lists import chain
 from udec_ia.ops.ranges import Range, blocks_in
 
@@ -22,7 +39,8 @@ from udec_ia.ops.ranges import Range, blocks_in
 def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:
     """INSITU: stresses (Pa; 11, 12, 22) of the deformable blocks in the range. Returns the number of blocks.
 
-    Error 24 if no deformable block with zones lies in the range.
+    Error 24 if no deformable block with zones lies in the range; 28, and nothing is changed, if the reals
+    cannot hold the stresses or the forces that they make.
     """
     for name, triple in (("s11", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
         for component in triple:
@@ -33,23 +51,37 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
         one, two, three = (s + x * sx + y * sy for s, sx, sy in zip(stress, xgrad, ygrad, strict=True))
         return one, two, three
 
-    done = 0
+    stresses: dict[int, dict[int, Triple]] = {}
     for ib in blocks_in(array, where):
-        ie = iget(h, ib, KBEX)
-        if iget(h, ib, HEAD) == MSDEF:
-            values = at(float(getr(h, ib, KX)), float(getr(h, ib, KY)))
-            put_stress(h, ie, *(h.cr.dtype.type(s) for s in values))
-            done += 1
-        elif iget(h, ib, HEAD) == MFDEF and iget(h, ie, KFZ):
-            for iz in chain(h, iget(h, ie, KFZ), KZ):
-                corners = [iget(h, iz, KZG, i) for i in range(3)]
-                x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (KXG, KYG))
-                for k, value in zip((KZS11, KZS12, KZS22), at(x, y), strict=True):
-                    putr(h, iz, k, value)
-            done += 1
-    if not done:
+        inside = {iad: at(x, y) for iad, x, y in _pieces(h, ib)}
+        most = (
+            4 * float(getr(h, ib, KBRO)) * len(inside)
+        )  # no force on a grid-point is so long times a stress
+        for what, factor in (("stress", 1.0), ("force", most)):
+            held(array, f"a {what} in block@{ib}", (factor * s for triple in inside.values() for s in triple))
+        if inside:
+            stresses[ib] = inside
+    if not stresses:
         place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
         advice = "CHANGE and GENERATE make them"
         raise UdecError(24, f"no deformable block with zones in {place}", advice, parameter="x1")
+    for ib, inside in stresses.items():
+        for iad, triple in inside.items():
+            if iget(h, ib, HEAD) == MSDEF:
+                put_stress(h, iad, *(h.cr.dtype.type(s) for s in triple))
+            else:
+                for k, s in zip((KZS11, KZS12, KZS22), triple, strict=True):
+                    putr(h, iad, k, s)
     renew_forces(array)
-    return done
+    return len(stresses)
+
+
+def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:
+    """What bears stress in block `ib`: its zones or its extension, with the centroid."""
+    if iget(h, ib, HEAD) == MSDEF:
+        yield iget(h, ib, KBEX), float(getr(h, ib, KX)), float(getr(h, ib, KY))
+    elif iget(h, ib, HEAD) == MFDEF:
+        for iz in chain(h, iget(h, iget(h, ib, KBEX), KFZ), KZ):
+            corners = [iget(h, iz, KZG, i) for i in range(3)]
+            x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (KXG, KYG))
+            yield iz, x, y

@@ -7,6 +7,7 @@ names the number, and its caret in a deck stands at it.
 from __future__ import annotations
 
 import operator
+from collections.abc import Iterable
 from numbers import Real
 from typing import Any, SupportsIndex
 
@@ -93,6 +94,16 @@ def finite(array: MainArray, **numbers: float) -> None:
         if not abs(real(**{name: value})) <= largest:
             advice = f"{array.scheme.real_bits}-bit reals end at {largest:.2g}"
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
+
+
+def held(array: MainArray, what: str, values: Iterable[float]) -> None:
+    """Error 28 unless the reals of the word scheme can hold all values, which follow from numbers given."""
+    largest = float(np.finfo(array.scheme.real_type).max)
+    if not all(abs(value) <= largest for value in values):
+        bits = array.scheme.real_bits
+        raise UdecError(
+            28, f"{what} would be greater than {bits}-bit reals can hold", f"they end at {largest:.2g}"
+        )
 
 
 def not_negative(array: MainArray, **numbers: float) -> None:

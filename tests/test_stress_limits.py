@@ -1,0 +1,54 @@
+"""Stresses and loads that the reals cannot hold are error 28 and change nothing; what they hold is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from offsets.generated import NSPARE
+from udec_ia import Model, UdecError
+
+EVERYWHERE = (-1.0, 99.0, -1.0, 99.0)
+
+
+def blocks(build: str, kind: str) -> Model:
+    """A block 40 by 20, simply-deformable or in two zones."""
+    model = Model(build)
+    model.block(0, 0, 0, 20, 40, 20, 40, 0)
+    model.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    model.change(*EVERYWHERE, "sdef")
+    if kind == "fdef":
+        corners = [(0.0, 0.0), (0.0, 20.0), (40.0, 20.0), (40.0, 0.0)]
+        model.generate(*EVERYWHERE, "manual", gridpoints=corners, zones=[(1, 2, 3), (1, 3, 4)])
+    return model
+
+
+def memory(model: Model) -> list[bytes]:
+    """All words of a model but NSPARE, by which the array is kept ready for the next command."""
+    return [part.tobytes() for part in (model.h.ia, np.delete(model.h.ci, NSPARE), model.h.cr)]
+
+
+COMMANDS: dict[str, Callable[[Model, float], object]] = {
+    "a stress": lambda m, s: m.insitu(*EVERYWHERE, 0.0, s, 0.0),
+    "a stress that grows": lambda m, s: m.insitu(*EVERYWHERE, 0.0, 0.0, 0.0, xgrad=(0.0, s, 0.0)),
+    "a load": lambda m, s: m.boundary(*EVERYWHERE, stress=(s, 0.0, 0.0)),
+    "a load that grows": lambda m, s: m.boundary(*EVERYWHERE, stress=(0.0, 0.0, 0.0), ygrad=(0.0, 0.0, s)),
+}
+
+
+@pytest.mark.parametrize("build", ["i32r32", "i32r64"])
+@pytest.mark.parametrize("kind", ["sdef", "fdef"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_what_the_reals_cannot_hold_changes_nothing(command: str, kind: str, build: str) -> None:
+    """The largest real times half a length of 20 or more is refused; a millionth of it is taken."""
+    model = blocks(build, kind)
+    largest = float(np.finfo(model.h.cr.dtype).max)
+    before = memory(model)
+    with pytest.raises(UdecError, match=r"than \d\d-bit reals can hold") as caught:
+        COMMANDS[command](model, 0.9 * largest)
+    assert caught.value.number == 28
+    assert memory(model) == before
+    COMMANDS[command](model, -1e-6 * largest)
+    assert model.check() == []
