@@ -352,3 +352,32 @@ def test_a_loaded_block_becomes_deformable_at_rest() -> None:
     become(m, address, "rigid")
     assert len(m.table("bound")) == 2
     sound(m)
+
+
+def test_an_edge_that_would_be_straight_in_its_neighbour_stays_bent() -> None:
+    """A narrow block presses an edge in: bend and overlap are each less than DTOL2, their sum is not."""
+    m = Model()
+    m.round(0.1)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.property(1, density=1000, kn=4e4, ks=4e4, bulk=3.2e4, g=3.2e4, friction=0.5)
+    for line in ((-1, 1, 3, 1), (0.8, 0.5, 0.8, 3), (1.2, 0.5, 1.2, 3)):
+        m.split(*line)
+    m.delete(0, 0.8, 1, 2)
+    m.delete(1.2, 2, 1, 2)
+    points = [(2, 0), (2, 1), (1, 1), (0, 1), (0, 0), (1, 0.5)]
+    zones = [(2, 3, 1), (3, 4, 1), (4, 5, 1), (5, 6, 1), (6, 2, 1)]
+    m.generate(0, 2, 0, 1, "manual", gridpoints=points, zones=zones)
+    m.boundary(-0.1, 2.1, -0.1, 0.1, xvel=0, yvel=0)
+    m.gravity(0, -10)
+    m.damping(0.5, 10, "mass")
+    m.cycle(3000)
+    assert m.check() == []
+    assert 0 < m.table("contact")["KCN"].max() < 0.05
+    before = m.array.copy()
+    with pytest.raises(
+        UdecError, match=r"allows overlaps up to 0\.05, but block@\d+ and block@\d+ overlap"
+    ) as caught:
+        m.change(0, 2, 0, 1, type="sdef")
+    assert caught.value.number == 14
+    assert m.array.h.ia.tobytes() == before.h.ia.tobytes()
+    assert m.check() == []

@@ -42,8 +42,9 @@ def stack(build: str, angle: float, far: float) -> tuple[Model, int, int]:
 def can_touch(model: Model, one: int, two: int) -> bool:
     """True if any arc of one block can have a contact with an arc or edge of the other."""
     h = model.h
+    most = h.cr[g.CTOL]
     return any(
-        arc_on_arc(h, ip, iq)[0] or arc_on_edge(h, ip, iq)[0] or arc_on_edge(h, iq, ip)[0]
+        arc_on_arc(h, ip, iq, most)[0] or arc_on_edge(h, ip, iq, most)[0] or arc_on_edge(h, iq, ip, most)[0]
         for ip in corners(h, one)
         for iq in corners(h, two)
     )

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from pathlib import Path
 
 import pytest
 from mechanics import on_base, sound
 
-from offsets.generated import MFREE
+from offsets.generated import KXD, KYD, MFREE, TDEL
 from udec_ia import Model, UdecError
+from udec_ia.heap.accessors import putr
 
 LONG = 0.1  # rounding length; the blocks are 1 by 1
 
@@ -41,6 +43,50 @@ def test_a_rounding_length_of_less_than_twice_an_overlap_is_refused() -> None:
     assert words(m) == before
     sound(m)
     m.round(2.1 * overlap)
+    sound(m)
+
+
+def tip_in_the_void(depth: float) -> Model:
+    """Two blocks, corner to corner; one has moved by `depth` in x and y into the void at the other's."""
+    m = Model()
+    m.round(2 * LONG)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.property(1, density=1000, kn=1e6, ks=1e6)
+    m.split(1, -1, 1, 3)
+    m.split(-1, 1, 3, 1)
+    m.delete(0, 1, 0, 1)
+    m.delete(1, 2, 1, 2)
+    m.fix(1, 2, 0, 1)
+    m.cycle(0)
+    upper = next(row for row in m.table("block") if row["KY"] > 1)
+    speed = depth / 50 / float(m.h.cr[TDEL])
+    putr(m.h, int(upper["address"]), KXD, speed)
+    putr(m.h, int(upper["address"]), KYD, -speed)
+    m.cycle(50)
+    return m
+
+
+def test_a_corner_that_comes_out_deep_in_another_block_is_refused() -> None:
+    """The circles about points D inwards of both corners, in x and y, are sqrt(2) (2 D - depth) apart.
+
+    With a great D there is no contact; with a small one the blocks lie deep in each other.
+    """
+    depth = 0.03
+    m = tip_in_the_void(depth)
+    assert m.table("contact")["KCFN"].tolist() == [0.0]
+    before = words(m)
+    one, two = m.table("block")["address"]
+    for d in (0.02, 0.01, 0.005):
+        with pytest.raises(
+            UdecError, match=f"block@({one}|{two}) and block@({one}|{two}) overlap by "
+        ) as caught:
+            m.round(d)
+        assert caught.value.number == 14
+        assert words(m) == before
+    sound(m)
+    m.round(LONG)
+    gap = sqrt(2) * (2 * LONG - depth) - 2 * LONG
+    assert m.table("contact")["KCN"].tolist() == pytest.approx([-gap], rel=1e-9)
     sound(m)
 
 

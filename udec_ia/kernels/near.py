@@ -85,10 +85,13 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
 
 
 @kernel
-def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
-    """Can the arc of corner `ip` and the edge that ends at `iq` have a contact? And their overlap."""
+def arc_on_edge(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
+    """Can the arc of corner `ip` and the edge that ends at `iq` have a contact of at most that overlap?
+
+    Also returned: their overlap.
+    """
     ex, ey, overlap, along, z = ce(h, ip, iq)
-    if overlap < -h.cr[ATOL] or overlap > h.cr[CTOL]:
+    if overlap < -h.cr[ATOL] or overlap > most:
         return False, overlap
     if _past(h, ip, iget(h, iq, KR), along, True) < 0 or _past(h, ip, iq, z - along, False) < 0:
         return False, overlap
@@ -96,10 +99,11 @@ def arc_on_edge(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
 
 
 @kernel
-def arc_on_arc(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
-    """Can the arcs of corners `ip` and `iq` have a contact? And their overlap.
+def arc_on_arc(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
+    """Can the arcs of corners `ip` and `iq` have a contact of at most that overlap?
 
-    Two points of edges, both without a radius, cannot: each of them touches the edges at the other.
+    Also returned: their overlap. Two points of edges, both without a radius, cannot: each of them touches the
+    edges at the other.
     """
     dx, dy = getr(h, iq, KXCP) - getr(h, ip, KXCP), getr(h, iq, KYCP) - getr(h, ip, KYCP)
     radii = getr(h, ip, KRAD) + getr(h, iq, KRAD)
@@ -107,7 +111,7 @@ def arc_on_arc(h: Memory, ip: int, iq: int) -> tuple[bool, float]:
     if radii == 0 or dx * dx + dy * dy > reach * reach:
         return False, -reach
     _, _, overlap = cc(h, ip, iq)
-    if overlap > h.cr[CTOL]:
+    if overlap > most:
         return False, overlap
     ahead1, behind1 = lean(h, ip, dx, dy)
     ahead2, behind2 = lean(h, iq, -dx, -dy)
@@ -169,13 +173,13 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
         return 0, zero
     if iarc + jarc == 2:
         code = CORNER_CORNER
-        can, overlap = arc_on_arc(h, ip, jp)
+        can, overlap = arc_on_arc(h, ip, jp, h.cr[CTOL])
     elif iarc == 1:
         code = CORNER_EDGE
-        can, overlap = arc_on_edge(h, ip, jp)
+        can, overlap = arc_on_edge(h, ip, jp, h.cr[CTOL])
     else:
         code = EDGE_CORNER
-        can, overlap = arc_on_edge(h, jp, ip)
+        can, overlap = arc_on_edge(h, jp, ip, h.cr[CTOL])
     if not can:
         return 0, zero
     if iarc == 1:

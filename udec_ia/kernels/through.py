@@ -17,10 +17,8 @@ from offsets.generated import CTOL, KR, KRAD, KXCP, KXDP, KXP, KYCP, KYDP, KYP, 
 from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
-from udec_ia.kernels.sort import stable_order
+from udec_ia.kernels.sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.touch import ce
-
-LEFT, BELOW, RIGHT, ABOVE = 0, 1, 2, 3  # columns of the boxes
 
 
 @kernel
@@ -77,19 +75,12 @@ def gone_through(h: Memory, idm: int) -> bool:
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[NVIRT], items), 3), np.int64))
-    boxes = _boxes(h, seg, n)
-    order = stable_order(boxes[:n, LEFT].copy())
-    for u in range(n):
-        i = order[u]
-        v = u + 1
-        while v < n and boxes[order[v], LEFT] <= boxes[i, RIGHT]:
-            j = order[v]
-            v += 1
-            if seg[i, ARC] == seg[j, ARC] or seg[i, BLOCK] == seg[j, BLOCK]:
-                continue
-            if boxes[j, BELOW] > boxes[i, ABOVE] or boxes[j, ABOVE] < boxes[i, BELOW]:
-                continue
-            arc, edge = (i, j) if seg[i, ARC] == 1 else (j, i)
-            if entered(h, seg[arc, CORNER], seg[edge, CORNER]):
-                return True
+    pairs = meeting(_boxes(h, seg, n), n)
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        if seg[i, ARC] == seg[j, ARC] or seg[i, BLOCK] == seg[j, BLOCK]:
+            continue
+        arc, edge = (i, j) if seg[i, ARC] == 1 else (j, i)
+        if entered(h, seg[arc, CORNER], seg[edge, CORNER]):
+            return True
     return False

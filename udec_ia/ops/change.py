@@ -11,6 +11,7 @@ has put on its edges. Masses never change after the first cycle.
 from __future__ import annotations
 
 from offsets.generated import (
+    DTOL,
     KB1,
     KBEX,
     KBI,
@@ -69,7 +70,7 @@ from udec_ia.ops.limits import constitutive_number, material_number
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
-from udec_ia.ops.rounding import update_flagged
+from udec_ia.ops.rounding import check_overlaps, update_flagged
 from udec_ia.ops.straighten import check_straight, edge_points, renew_reach, straighten
 
 TYPES = {"rigid": MRIG, "sdef": MSDEF, "fdef": MFDEF}
@@ -119,6 +120,7 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
             straighten(array.h, ib)
         _change_all(array, changing, kind)
         update_flagged(array)
+        check_overlaps(array, float(array.h.cr[DTOL]), "leave the block fully-deformable")
         if array.h.ci[MCTOT] > 0:
             renew_forces(array)
 

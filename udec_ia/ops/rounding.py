@@ -13,6 +13,7 @@ from offsets.generated import (
     KC,
     KCCOD,
     KCN,
+    KNB,
     KXC,
     KXP,
     KYC,
@@ -21,9 +22,10 @@ from offsets.generated import (
     MCTOT,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget
+from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import flag_all
+from udec_ia.kernels.deep import deep_overlap
 from udec_ia.kernels.ford import settle_all
 from udec_ia.kernels.shape import span, zcs
 from udec_ia.kernels.tolerances import default_rounding, edges, extent, set_rounding
@@ -32,6 +34,7 @@ from udec_ia.kernels.update import update_all
 from udec_ia.ops.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.memory import all_or_nothing, find_room, keep_spare
 
+Point = tuple[float, float]
 STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
 
 
@@ -76,20 +79,34 @@ def crowded(array: MainArray, ip: int, cycle: int = 0) -> UdecError:
     return too_short(float(h.cr[DTOL]), float(least), float(getr(h, ip, KXP)), float(getr(h, ip, KYP)), when)
 
 
-def check_overlaps(array: MainArray) -> None:
-    """Error 14 if two blocks overlap by more than the rounding length, just set, allows."""
+def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
+    """Error 14 if two blocks, whose outlines have just changed, overlap by more than contacts may.
+
+    At a contact, or by `reach` at most where a corner has come out in a neighbour that it did not touch.
+    """
     h = array.h
     ic = int(h.ci[ICPNT])
     while ic != 0:
         overlap = getr(h, ic, KCN)
         if overlap > h.cr[DTOL2] and iget(h, ic, KCCOD) != VIRTUAL:
-            place = f"at ({getr(h, ic, KXC):g}, {getr(h, ic, KYC):g})"
-            detail = (
-                f"{h.cr[DTOL]:g} allows overlaps up to {h.cr[DTOL2]:g}, but block@{iget(h, ic, KB1)} and "
-                f"block@{iget(h, ic, KB2)} overlap by {overlap:g} {place}"
-            )
-            raise UdecError(14, detail, "give a greater rounding length, or stiffer joints", parameter="d")
+            place = float(getr(h, ic, KXC)), float(getr(h, ic, KYC))
+            raise _too_deep(h, iget(h, ic, KB1), iget(h, ic, KB2), overlap, place, advice)
         ic = iget(h, ic, KC)
+    if h.ci[MCTOT] == 0:  # blocks that have not moved fit
+        return
+    ip, iq, overlap = deep_overlap(h, h.cr.dtype.type(reach))
+    if ip != 0:
+        place = float(getr(h, ip, KXP)), float(getr(h, ip, KYP))
+        raise _too_deep(h, iget(h, ip, KNB), iget(h, iq, KNB), overlap, place, advice)
+
+
+def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice: str) -> UdecError:
+    """Error 14: blocks `ib` and `jb` overlap at a place by more than contacts may."""
+    detail = (
+        f"{h.cr[DTOL]:g} allows overlaps up to {h.cr[DTOL2]:g}, but block@{ib} and block@{jb} overlap by "
+        f"{overlap:g} at ({place[0]:g}, {place[1]:g})"
+    )
+    return UdecError(14, detail, advice, parameter="d")
 
 
 def refresh(array: MainArray) -> None:
@@ -116,9 +133,10 @@ def round_corners(array: MainArray, d: float) -> None:
     with all_or_nothing(array):
         h = array.h
         h.ci[LROUND] = 1
+        hidden = 2.5 * float(h.cr[DTOL])  # a tip stands out of its rounding by less than DTOL; two, and DTOL2
         set_rounding(h, h.cr.dtype.type(d))
         refresh(array)
-        check_overlaps(array)
+        check_overlaps(array, hidden, "give a greater rounding length, or stiffer joints")
 
 
 def settle_default(array: MainArray) -> None:

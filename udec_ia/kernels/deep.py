@@ -1,0 +1,71 @@
+"""Do blocks overlap by more than a contact can be made with?
+
+A contact is formed while its overlap is at most CTOL, and no block that moves gets deeper than that unseen.
+Where outlines change otherwise, by ROUND or by CHANGE, a corner that stood free in the void beside its
+neighbours may lie deeper in one of them, and would never get a contact. Two blocks that overlap border on
+one domain; of every domain all segments that face each other are held against each other.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from offsets.generated import CTOL, IDPNT, KD, KR, KRAD, KXCP, KXP, KYCP, KYP, NVIRT
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.near import arc_on_arc, arc_on_edge
+from udec_ia.kernels.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
+from udec_ia.kernels.sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
+
+
+@kernel
+def _boxes(h: Memory, seg: Any, n: int, reach: float) -> Any:
+    """Surroundings of the segments: arcs as they are, edges grown by `reach`."""
+    boxes = np.empty((n, 4), np.float64)
+    for i in range(n):
+        ip = seg[i, CORNER]
+        if seg[i, ARC] == 1:
+            ax, ay, grow = getr(h, ip, KXCP), getr(h, ip, KYCP), getr(h, ip, KRAD)
+            bx, by = ax, ay
+        else:
+            ia = iget(h, ip, KR)
+            ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
+            grow = reach
+        boxes[i, LEFT], boxes[i, BELOW] = min(ax, bx) - grow, min(ay, by) - grow
+        boxes[i, RIGHT], boxes[i, ABOVE] = max(ax, bx) + grow, max(ay, by) + grow
+    return boxes
+
+
+@kernel
+def _overlap(h: Memory, seg: Any, i: int, j: int, reach: float) -> float:
+    """By how much segments `i` and `j` overlap, at most `reach`; 0 if they do not face each other."""
+    ip, jp = seg[i, CORNER], seg[j, CORNER]
+    if seg[i, ARC] + seg[j, ARC] == 2:
+        can, overlap = arc_on_arc(h, ip, jp, reach)
+    elif seg[i, ARC] == 1:
+        can, overlap = arc_on_edge(h, ip, jp, reach)
+    else:
+        can, overlap = arc_on_edge(h, jp, ip, reach)
+    return overlap if can else real(h, 0.0)
+
+
+@kernel
+def deep_overlap(h: Memory, reach: float) -> tuple[int, int, float]:
+    """Corners of two segments that overlap by more than CTOL, up to `reach`, and the overlap; or zeros."""
+    idm = h.ci[IDPNT]
+    while idm != 0:
+        items = count_items(h, idm)
+        seg = np.empty((2 * items + 2, COLUMNS), np.int64)
+        n, _ = collect(h, idm, seg, np.empty((min(h.ci[NVIRT], items), 3), np.int64))
+        pairs = meeting(_boxes(h, seg, n, reach), n)
+        for k in range(len(pairs)):
+            i, j = pairs[k, 0], pairs[k, 1]
+            if seg[i, BLOCK] == seg[j, BLOCK] or seg[i, ARC] + seg[j, ARC] == 0:
+                continue
+            overlap = _overlap(h, seg, i, j, reach)
+            if overlap > h.cr[CTOL]:
+                return seg[i, CORNER], seg[j, CORNER], overlap
+        idm = iget(h, idm, KD)
+    return int64(0), int64(0), real(h, 0.0)
