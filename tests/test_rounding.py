@@ -90,6 +90,17 @@ def test_a_corner_that_comes_out_deep_in_another_block_is_refused() -> None:
     sound(m)
 
 
+def test_a_lone_block_is_rounded_anew_after_it_has_moved() -> None:
+    m = Model()
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.property(1, density=1000, kn=1e6, ks=1e6)
+    m.gravity(0, -10)
+    for d in (0.2, 0.05):
+        m.cycle(10)
+        m.round(d)
+        sound(m)
+
+
 def test_the_caret_is_at_the_rounding_length(tmp_path: Path) -> None:
     m, overlap = pressed()
     m.out = tmp_path

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import CTOL, IDPNT, KD, KR, KRAD, KXCP, KXP, KYCP, KYP, NVIRT
+from offsets.generated import CTOL, IDPNT, KD, KDLOOP, KR, KRAD, KXCP, KXP, KYCP, KYP, NVIRT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.near import arc_on_arc, arc_on_edge
@@ -52,20 +52,30 @@ def _overlap(h: Memory, seg: Any, i: int, j: int, reach: float) -> float:
 
 
 @kernel
+def _deep_in_domain(h: Memory, idm: int, reach: float) -> tuple[int, int, float]:
+    """deep_overlap for one domain, which has a loop."""
+    items = count_items(h, idm)
+    seg = np.empty((2 * items + 2, COLUMNS), np.int64)
+    n, _ = collect(h, idm, seg, np.empty((min(h.ci[NVIRT], items), 3), np.int64))
+    pairs = meeting(_boxes(h, seg, n, reach), n)
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        if seg[i, BLOCK] == seg[j, BLOCK] or seg[i, ARC] + seg[j, ARC] == 0:
+            continue
+        overlap = _overlap(h, seg, i, j, reach)
+        if overlap > h.cr[CTOL]:
+            return seg[i, CORNER], seg[j, CORNER], overlap
+    return int64(0), int64(0), real(h, 0.0)
+
+
+@kernel
 def deep_overlap(h: Memory, reach: float) -> tuple[int, int, float]:
     """Corners of two segments that overlap by more than CTOL, up to `reach`, and the overlap; or zeros."""
     idm = h.ci[IDPNT]
     while idm != 0:
-        items = count_items(h, idm)
-        seg = np.empty((2 * items + 2, COLUMNS), np.int64)
-        n, _ = collect(h, idm, seg, np.empty((min(h.ci[NVIRT], items), 3), np.int64))
-        pairs = meeting(_boxes(h, seg, n, reach), n)
-        for k in range(len(pairs)):
-            i, j = pairs[k, 0], pairs[k, 1]
-            if seg[i, BLOCK] == seg[j, BLOCK] or seg[i, ARC] + seg[j, ARC] == 0:
-                continue
-            overlap = _overlap(h, seg, i, j, reach)
-            if overlap > h.cr[CTOL]:
-                return seg[i, CORNER], seg[j, CORNER], overlap
+        if iget(h, idm, KDLOOP) != 0:  # 0: a lone block
+            ip, iq, overlap = _deep_in_domain(h, idm, reach)
+            if ip != 0:
+                return ip, iq, overlap
         idm = iget(h, idm, KD)
     return int64(0), int64(0), real(h, 0.0)
