@@ -52,3 +52,35 @@ def test_what_the_reals_cannot_hold_changes_nothing(command: str, kind: str, bui
     assert memory(model) == before
     COMMANDS[command](model, -1e-6 * largest)
     assert model.check() == []
+
+
+def test_an_energy_that_the_reals_cannot_hold_is_refused() -> None:
+    """The square of 1e200 is beyond 64 bits; 1e100 is not."""
+    model = blocks("i32r64", "sdef")
+    model.insitu(*EVERYWHERE, 1e200, 0.0, 0.0)
+    before = memory(model)
+    with pytest.raises(UdecError, match="energy would be greater than 64-bit reals can hold"):
+        model.energy()
+    assert memory(model) == before
+    model.insitu(*EVERYWHERE, 1e100, 0.0, 0.0)
+    model.energy()
+    model.insitu(*EVERYWHERE, 1e200, 0.0, 0.0)
+    with pytest.raises(UdecError, match="energy would be greater than 64-bit reals can hold"):
+        model.cycle(1)
+    assert model.check() == []
+
+
+def test_contacts_of_a_material_without_stiffness_store_nothing() -> None:
+    """CHANGE has given the contacts another material before PROPERTY gives it a stiffness."""
+    model = Model()
+    model.block(0, 0, 0, 2, 1, 2, 1, 0)
+    model.property(1, density=2000, kn=1e8, ks=1e8)
+    model.split(-1, 1, 2, 1)
+    model.fix(0, 1, 0, 1)
+    model.gravity(0, -10)
+    model.cycle(50)
+    assert model.table("contact")["KCFN"].min() > 0
+    model.change(0, 1, 0, 2, material=2)
+    model.energy()
+    assert model.check() == []
+    assert np.isfinite(list(model.balance())).all()

@@ -138,14 +138,17 @@ def kinetic(h: Memory, soft: Any) -> float:
 
 @kernel
 def strain_of_contacts(h: Memory) -> float:
-    """Energy stored in the springs of the contacts, in J/m."""
+    """Energy stored in the springs of the contacts, in J/m; a stiffness of 0 stores nothing."""
     twice = 0.0
     ic = int64(h.ci[ICPNT])
     while ic != 0:
         fn, fs = np.float64(getr(h, ic, KCFN)), np.float64(getr(h, ic, KCFS))
         if fn != 0:
             m = iget(h, ic, KCM) - 1
-            twice += fn * fn / h.cr[AKN + m] + fs * fs / h.cr[AKS + m]
+            if h.cr[AKN + m] > 0:
+                twice += fn * fn / h.cr[AKN + m]
+            if h.cr[AKS + m] > 0:
+                twice += fs * fs / h.cr[AKS + m]
         ic = iget(h, ic, KC)
     return twice / 2
 

@@ -29,6 +29,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.ops.limits import held
 from udec_ia.ops.soft import soft_in
 
 
@@ -69,12 +70,13 @@ def keeps_account(array: MainArray) -> Any:
 
 
 def switch(array: MainArray, on: bool) -> None:
-    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends."""
+    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends. Error 28 as `begin`."""
     h = array.h
+    stored = _stored(array) if on else 0.0
     h.ci[LENER] = int(on)
     for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
         h.cr[name] = 0
-    h.cr[EPUT] = h.cr[ESTOR] = _stored(h) if on else 0.0
+    h.cr[EPUT] = h.cr[ESTOR] = stored
     h.cr[EREF] = float(height(h)) if on else 0.0
 
 
@@ -90,11 +92,15 @@ def balance(h: Memory) -> Balance:
 
 
 def begin(array: MainArray) -> None:
-    """A CYCLE begins: note what commands have done since the last one."""
+    """A CYCLE begins: note what commands have done since the last one.
+
+    Error 28, and nothing is noted, if the reals cannot hold the energy of the stresses there are.
+    """
     h = array.h
     if h.ci[LENER]:
+        stored = _stored(array)
         h.cr[EPUT] = balance(h).commands
-        h.cr[ESTOR] = _stored(h)
+        h.cr[ESTOR] = stored
         h.cr[EREF] = float(height(h)) - float(h.cr[EPOT])
 
 
@@ -102,11 +108,18 @@ def end(array: MainArray) -> None:
     """A CYCLE has ended."""
     h = array.h
     if h.ci[LENER]:
-        h.cr[ESTOR] = _stored(h)
+        h.cr[ESTOR] = _energy(h)
         h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
 
 
-def _stored(h: Memory) -> float:
+def _stored(array: MainArray) -> float:
+    """Kinetic and strain energy. Error 28 if the reals cannot hold it."""
+    energy = _energy(array.h)
+    held(array, "the kinetic and strain energy", [energy])
+    return energy
+
+
+def _energy(h: Memory) -> float:
     """Kinetic and strain energy."""
     soft = soft_in(h)
     return float(kinetic(h, soft)) + float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
