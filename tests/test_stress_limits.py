@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from offsets.generated import NSPARE
+from offsets.generated import NSPARE, WFRIC
 from udec_ia import Model, UdecError
 
 EVERYWHERE = (-1.0, 99.0, -1.0, 99.0)
@@ -84,3 +84,53 @@ def test_contacts_of_a_material_without_stiffness_store_nothing() -> None:
     model.energy()
     assert model.check() == []
     assert np.isfinite(list(model.balance())).all()
+
+
+def loaded(kind: str, traction: float) -> Model:
+    """The block, rigid or in two zones, with normal tractions on all its sides; 32-bit reals."""
+    model = Model("i32r32")
+    model.block(0, 0, 0, 20, 40, 20, 40, 0)
+    model.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    if kind == "fdef":
+        model.change(*EVERYWHERE, "sdef")
+        corners = [(0.0, 0.0), (0.0, 20.0), (40.0, 20.0), (40.0, 0.0)]
+        model.generate(*EVERYWHERE, "manual", gridpoints=corners, zones=[(1, 2, 3), (1, 3, 4)])
+    model.boundary(*EVERYWHERE, stress=(traction, 0.0, traction))
+    return model
+
+
+@pytest.mark.parametrize("kind", ["rigid", "fdef"])
+def test_a_cycle_that_ends_with_a_number_beyond_the_reals_is_an_error(kind: str) -> None:
+    """Forces of 8e37 times arms of 20 are no 32-bit real; the next cycle would find the block nowhere."""
+    model = loaded(kind, 2e36)
+    with pytest.raises(UdecError, match="in cycle 1") as caught:
+        model.cycle(1)
+    assert caught.value.number == 36
+    assert model.check() != []
+    model = loaded(kind, 2e6)
+    model.cycle(1)
+    assert model.check() == []
+
+
+def test_a_work_beyond_the_reals_is_an_error() -> None:
+    """The work of friction only grows: at the end of the reals it takes one more slip."""
+    model = loaded("rigid", 1e3)
+    model.h.cr[WFRIC] = np.inf
+    with pytest.raises(UdecError, match="summed up in the run") as caught:
+        model.cycle(1)
+    assert caught.value.number == 36
+
+
+def test_a_mean_stress_that_the_reals_cannot_hold_changes_nothing() -> None:
+    """A fixed block does not move by its loads; their sum of force times arm is what CHANGE would put in."""
+    model = Model("i32r32")
+    model.block(0, 0, 0, 2, 2, 2, 2, 0)
+    model.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    model.fix(*EVERYWHERE)
+    model.boundary(*EVERYWHERE, stress=(1e38, 0.0, 1e38))
+    model.cycle(1)
+    before = memory(model)
+    with pytest.raises(UdecError, match="the stress in block@1") as caught:
+        model.change(*EVERYWHERE, "sdef")
+    assert caught.value.number == 28
+    assert memory(model) == before

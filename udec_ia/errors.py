@@ -42,7 +42,7 @@ MESSAGES = {
     33: "zones do not fill the block",
     34: "constitutive law cannot be used",
     35: "constitutive law returned no finite number",
-    36: "block has gone too far for the reals",
+    36: "place or force beyond the reals",
 }
 
 ADVICE = {
@@ -81,7 +81,7 @@ ADVICE = {
     33: "the zones must cover the block side to side, each side between two grid-points once",
     34: "correct the file that --constitutive names",
     35: "look for what the law divides by or takes a root of, and at the properties of the material",
-    36: "FIX or DELETE what flies away, look for what has driven it so far, or take 64-bit reals",
+    36: "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
 }
 
 

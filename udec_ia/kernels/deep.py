@@ -12,29 +12,21 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import CTOL, IDPNT, KD, KDLOOP, KR, KRAD, KXCP, KXP, KYCP, KYP, NVIRT
-from udec_ia.heap.accessors import Memory, getr, iget, int64, real
+from offsets.generated import CTOL, IDPNT, KD, KDLOOP, NVIRT
+from udec_ia.heap.accessors import Memory, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.near import arc_on_arc, arc_on_edge
+from udec_ia.kernels.near import arc_on_arc, arc_on_edge, box
 from udec_ia.kernels.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.kernels.sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
 
 
 @kernel
 def _boxes(h: Memory, seg: Any, n: int, reach: float) -> Any:
-    """Surroundings of the segments: arcs as they are, edges grown by `reach`."""
+    """Surroundings of the segments, grown so that those of two that overlap by up to `reach` meet."""
     boxes = np.empty((n, 4), np.float64)
+    half = reach * real(h, 0.5)
     for i in range(n):
-        ip = seg[i, CORNER]
-        if seg[i, ARC] == 1:
-            ax, ay, grow = getr(h, ip, KXCP), getr(h, ip, KYCP), getr(h, ip, KRAD)
-            bx, by = ax, ay
-        else:
-            ia = iget(h, ip, KR)
-            ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
-            grow = reach
-        boxes[i, LEFT], boxes[i, BELOW] = min(ax, bx) - grow, min(ay, by) - grow
-        boxes[i, RIGHT], boxes[i, ABOVE] = max(ax, bx) + grow, max(ay, by) + grow
+        boxes[i, LEFT], boxes[i, BELOW], boxes[i, RIGHT], boxes[i, ABOVE] = box(h, seg, i, half)
     return boxes
 
 

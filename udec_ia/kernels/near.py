@@ -205,17 +205,22 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
 
 
 @kernel
-def _box(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float]:
-    """Surroundings of segment `i`: x and y from, x and y to; grown by half of ATOL on all sides."""
+def _ends(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float, float]:
+    """Ends of segment `i`, x and y twice, and its radius: an arc ends where it begins, in its centre."""
     ip = seg[i, CORNER]
-    half = h.cr[ATOL] * real(h, 0.5)
     if seg[i, ARC] == 1:
         x, y = getr(h, ip, KXCP), getr(h, ip, KYCP)
-        half += getr(h, ip, KRAD)
-        return x - half, y - half, x + half, y + half
+        return x, y, x, y, getr(h, ip, KRAD)
     ia = iget(h, ip, KR)
-    ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
-    return min(ax, bx) - half, min(ay, by) - half, max(ax, bx) + half, max(ay, by) + half
+    return getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP), real(h, 0.0)
+
+
+@kernel
+def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float, float]:
+    """Surroundings of segment `i`: x and y from, x and y to; grown by `margin` on all sides."""
+    ax, ay, bx, by, radius = _ends(h, seg, i)
+    grow = radius + margin
+    return min(ax, bx) - grow, min(ay, by) - grow, max(ax, bx) + grow, max(ay, by) + grow
 
 
 @kernel
@@ -223,12 +228,13 @@ def _search_all(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
     best, bi, bj = 0, 0, 0
     most = real(h, 0.0)
+    half = h.cr[ATOL] * real(h, 0.5)
     for i in range(n):
-        ax, ay, bx, by = _box(h, seg, i)
+        ax, ay, bx, by = box(h, seg, i, half)
         for j in range(i + 1, n):
             if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                 continue
-            cx, cy, dx, dy = _box(h, seg, j)
+            cx, cy, dx, dy = box(h, seg, j, half)
             if cx > bx or dx < ax or cy > by or dy < ay:
                 continue
             code, urgent = judge(h, seg, tips, i, j)
@@ -244,19 +250,10 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
     Returns the number of entries; with empty arrays it only counts them.
     """
     m = 0
-    half = h.cr[ATOL] * real(h, 0.5)
     for i in range(n):
-        ip = seg[i, CORNER]
-        if seg[i, ARC] == 1:
-            ax, ay = getr(h, ip, KXCP), getr(h, ip, KYCP)
-            bx, by = ax, ay
-            grow = half + getr(h, ip, KRAD)
-            pieces = 1
-        else:
-            ia = iget(h, ip, KR)
-            ax, ay, bx, by = getr(h, ia, KXP), getr(h, ia, KYP), getr(h, ip, KXP), getr(h, ip, KYP)
-            grow = half
-            pieces = 1 + int(max(abs(bx - ax), abs(by - ay)) / cell)
+        ax, ay, bx, by, radius = _ends(h, seg, i)
+        grow = radius + h.cr[ATOL] * real(h, 0.5)
+        pieces = 1 + int(max(abs(bx - ax), abs(by - ay)) / cell)
         for k in range(pieces):
             px, py = ax + (bx - ax) * k / pieces, ay + (by - ay) * k / pieces
             qx, qy = ax + (bx - ax) * (k + 1) / pieces, ay + (by - ay) * (k + 1) / pieces
@@ -277,8 +274,9 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
     """As _search_all, but only pairs that share a cell of a grid as wide as the mean edge is long."""
     total = real(h, 0.0)
+    half = h.cr[ATOL] * real(h, 0.5)
     for i in range(n):
-        ax, ay, bx, by = _box(h, seg, i)
+        ax, ay, bx, by = box(h, seg, i, half)
         total += max(bx - ax, by - ay)
     cell = total / real(h, n)
     nothing = np.empty(0, np.int64)

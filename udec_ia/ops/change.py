@@ -66,7 +66,7 @@ from udec_ia.kernels.sdef import put_stress
 from udec_ia.kernels.shape import geo
 from udec_ia.ops.bounds import forget_block
 from udec_ia.ops.forces import renew_forces
-from udec_ia.ops.limits import constitutive_number, material_number
+from udec_ia.ops.limits import constitutive_number, held, material_number
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import all_or_nothing, require
 from udec_ia.ops.ranges import Range, blocks_in
@@ -83,7 +83,7 @@ def change(
     """CHANGE: attributes of the blocks in the range. Returns their number.
 
     A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
-    follow a new material only before the first cycle. Errors 4, 9 and 10; nothing is changed then.
+    follow a new material only before the first cycle. Errors 1, 4, 9, 10, 14 and 28; nothing is changed then.
     """
     if kind is not None and kind not in TYPES:
         raise UdecError(10, f"{kind}", ", ".join(TYPES))
@@ -106,19 +106,18 @@ def change(
 
 
 def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
-    """Make all `blocks` the type `kind`. Error 1 or 14, and nothing is changed, if one of them cannot."""
+    """Make all `blocks` the type `kind`. Error 1, 14 or 28, and nothing is changed, if one of them cannot."""
     changing = [ib for ib in blocks if iget(array.h, ib, HEAD) != kind]
     require(array, len(changing) * (size_of(array.h, NVSD) + size_of(array.h, NVFD)))
     meshed = [ib for ib in changing if edge_points(array.h, ib)]
     for ib in meshed:
         check_straight(array.h, ib)
-    if not meshed:
-        _change_all(array, changing, kind)
-        return
     with all_or_nothing(array):
         for ib in meshed:
             straighten(array.h, ib)
         _change_all(array, changing, kind)
+        if not meshed:
+            return
         update_flagged(array)
         check_overlaps(array, float(array.h.cr[DTOL]), "leave the block fully-deformable")
         if array.h.ci[MCTOT] > 0:
@@ -134,7 +133,9 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
         renew_forces(array)
         push_loads(h)
         for ib in rigid:
-            _put_stress(h, ib, applied_stress(h, ib))
+            stress = applied_stress(h, ib)
+            held(array, f"the stress in block@{ib}", stress)
+            _put_stress(h, ib, stress)
     for ib in changing:
         if iget(h, ib, HEAD) != kind:
             become(h, ib, kind, mean_stress(h, ib))

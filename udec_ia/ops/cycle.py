@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import perf_counter
 
+import numpy as np
+
 from offsets.generated import (
     AKN,
     ALAM1,
@@ -57,6 +59,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.blocks import TOO_FAR
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
+from udec_ia.kernels.finite import not_finite
 from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
 from udec_ia.kernels.shape import TOO_SHORT
@@ -131,7 +134,7 @@ def cycle(
     prepared: called before the first cycle, when the time-step is known.
     watch: records on the way and may end the run before.
     Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
-    too coarse for contacts: the cycle in which it did is completed.
+    too coarse for contacts, or a force grown beyond them: the cycle in which it did is completed.
     """
     prepare(array)
     if prepared is not None:
@@ -167,7 +170,24 @@ def _run(
             continue
         seconds = max(perf_counter() - start, 1e-6)
         piece = max(1, min(int(piece * REPORT_SECONDS / seconds), 4 * piece))
+    _check_finite(array)
     return done
+
+
+def _check_finite(array: MainArray) -> None:
+    """Error 36 if the run has ended with a force, a velocity, a stress or a work beyond the reals."""
+    h, group = array.h, int(not_finite(array.h))
+    if group != 0:
+        kind, *here = ("contact", KXC, KYC) if iget(h, group, HEAD) == MCON else ("block", KX, KY)
+        x, y = (float(getr(h, group, k)) for k in here)
+        what = f"a force, a velocity or a stress of {kind}@{group} at ({x:g}, {y:g}) is"
+    elif not np.isfinite(h.cr).all():
+        what = "a work or a displacement summed up in the run is"
+    else:
+        return
+    largest = float(np.finfo(array.scheme.real_type).max)
+    detail = f"{what} greater than {array.scheme.real_bits}-bit reals can hold, {largest:.2g}, in cycle "
+    raise UdecError(TOO_FAR, f"{detail}{int(h.ci[MCTOT])}", group=group)
 
 
 def _strained(h: Memory, iz: int) -> str:

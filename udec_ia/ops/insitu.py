@@ -54,9 +54,8 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
     stresses: dict[int, dict[int, Triple]] = {}
     for ib in blocks_in(array, where):
         inside = {iad: at(x, y) for iad, x, y in _pieces(h, ib)}
-        most = (
-            4 * float(getr(h, ib, KBRO)) * len(inside)
-        )  # no force on a grid-point is so long times a stress
+        # no force on a grid-point is more than a stress times this length
+        most = 4 * float(getr(h, ib, KBRO)) * len(inside)
         for what, factor in (("stress", 1.0), ("force", most)):
             held(array, f"a {what} in block@{ib}", (factor * s for triple in inside.values() for s in triple))
         if inside:
