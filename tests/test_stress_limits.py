@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from offsets.generated import NSPARE, WFRIC
+from offsets.generated import NSPARE, TDEL, WFRIC
 from udec_ia import Model, UdecError
 
 EVERYWHERE = (-1.0, 99.0, -1.0, 99.0)
@@ -116,7 +116,7 @@ def test_a_work_beyond_the_reals_is_an_error() -> None:
     """The work of friction only grows: at the end of the reals it takes one more slip."""
     model = loaded("rigid", 1e3)
     model.h.cr[WFRIC] = np.inf
-    with pytest.raises(UdecError, match="summed up in the run") as caught:
+    with pytest.raises(UdecError, match="has summed up") as caught:
         model.cycle(1)
     assert caught.value.number == 36
 
@@ -134,3 +134,83 @@ def test_a_mean_stress_that_the_reals_cannot_hold_changes_nothing() -> None:
         model.change(*EVERYWHERE, "sdef")
     assert caught.value.number == 28
     assert memory(model) == before
+
+
+@pytest.mark.parametrize("build", ["i32r32", "i32r64"])
+def test_a_density_whose_masses_the_reals_cannot_hold_is_refused(build: str) -> None:
+    """Before BLOCK and after it; the heaviest that is taken makes masses that are finite."""
+    largest = float(np.finfo(Model(build).h.cr.dtype).max)
+    corners = (0, 0, 0, 20, 40, 20, 40, 0)
+    model = Model(build)
+    model.block(*corners)
+    with pytest.raises(UdecError, match="moment of inertia at a density") as caught:
+        model.property(1, density=largest / 1e3)
+    assert caught.value.number == 28
+    model.property(1, density=largest / 1e8)
+    model.split(-1, 3, 41, 4)
+    model.change(*EVERYWHERE, material=2)
+    assert model.check() == []
+    model = Model(build)
+    model.property(2, density=largest / 1e3)
+    with pytest.raises(UdecError, match="moment of inertia at a density"):
+        model.block(*corners)
+    assert len(model.table("block")) == 0
+
+
+def test_factors_that_the_reals_cannot_interpolate_are_refused() -> None:
+    """Halfway from the greatest real to the least their difference would be infinite."""
+    model = Model("i32r32")
+    with pytest.raises(UdecError, match="f2 - f1") as caught:
+        model.function(1, 0.0, 3e38, 1.0, -3e38)
+    assert caught.value.number == 28
+    with pytest.raises(UdecError, match="t3 - t2"):
+        model.function(1, -3.2e38, 1.0, -3.1e38, 0.0, 3e38, 1.0)
+    assert model.check() == []
+
+
+def test_an_edge_of_zones_that_is_next_to_nothing_is_refused() -> None:
+    """The number of zones would be beyond 64 bits."""
+    model = blocks("i32r64", "sdef")
+    for edge in (1e-320, 1e-200, 1e-100):
+        with pytest.raises(UdecError, match="in number") as caught:
+            model.generate(*EVERYWHERE, "automatic", edge=edge)
+        assert caught.value.number == 28
+
+
+def test_a_potential_that_the_reals_cannot_hold_is_refused() -> None:
+    """1.6e6 kg at a height of 10 m under a gravity of 1e35 m/s2."""
+    model = Model("i32r32")
+    model.block(0, 0, 0, 20, 40, 20, 40, 0)
+    model.property(1, density=2000, kn=1e8, ks=1e8)
+    model.cycle(1)
+    model.gravity(0, -1e35)
+    before = memory(model)
+    with pytest.raises(UdecError, match="potential of gravity") as caught:
+        model.energy("on")
+    assert caught.value.number == 28
+    assert memory(model) == before
+
+
+def test_an_energy_beyond_the_reals_at_the_end_of_a_cycle_is_an_error() -> None:
+    """A velocity of 1e20 is a 32-bit real, and its square times a mass is not."""
+    model = Model("i32r32")
+    model.block(0, 0, 0, 20, 40, 20, 40, 0)
+    model.property(1, density=2000, kn=1e30, ks=1e30)
+    model.energy("on")
+    model.boundary(*EVERYWHERE, xvel=1e18)
+    with pytest.raises(UdecError, match="energy") as caught:
+        model.cycle(1)
+    assert caught.value.number == 36
+
+
+def test_the_moment_of_inertia_of_a_block_that_leaps_is_that_of_its_shape() -> None:
+    """In one step a block in two zones goes a thousand times farther than it is long, in 32 bits."""
+    model = blocks("i32r32", "fdef")
+    model.boundary(*EVERYWHERE, xvel=0.0)
+    model.cycle(1)
+    before = model.table("block")["KBI"][0]
+    model.boundary(*EVERYWHERE, xvel=4e5 / float(model.h.cr[TDEL]))
+    model.cycle(1)
+    block = model.table("block")[0]
+    assert block["KX"] > 3e5
+    assert block["KBI"] == pytest.approx(before, rel=1e-4)

@@ -142,11 +142,15 @@ def pvelfd(h: Memory, ib: int) -> None:
 
 @kernel
 def sum_up(h: Memory, ib: int) -> None:
-    """Centroid, velocity, angular velocity and moment of inertia of block `ib` from its grid-points."""
-    x0, y0 = getr(h, ib, KX), getr(h, ib, KY)
-    zero = real(h, 0.0)
+    """Centroid, velocity, angular velocity and moment of inertia of block `ib` from its grid-points.
+
+    Sums are taken around where the centroid was, moved as the first grid-point was: however far a block goes
+    in a step, that is inside it or near, and the moment of inertia is no difference of large numbers.
+    """
+    zero, dt = real(h, 0.0), h.cr[TDEL]
     mass, mx, my, px, py, turn, second = zero, zero, zero, zero, zero, zero, zero
     ig = iget(h, iget(h, ib, KBEX), KFG)
+    x0, y0 = getr(h, ib, KX) + getr(h, ig, KXDG) * dt, getr(h, ib, KY) + getr(h, ig, KYDG) * dt
     while ig != 0:
         m, xd, yd = getr(h, ig, KGPM), getr(h, ig, KXDG), getr(h, ig, KYDG)
         dx, dy = getr(h, ig, KXG) - x0, getr(h, ig, KYG) - y0

@@ -9,6 +9,7 @@ from offsets.generated import (
     KB,
     KBEX,
     KBM,
+    KBRO,
     KED11,
     KED12,
     KED22,
@@ -95,6 +96,17 @@ def share_extension(h: Memory, ib: int, jb: int) -> None:
     put_strain_rate(h, je, getr(h, ie, KED11), getr(h, ie, KED12), getr(h, ie, KED22))
     share_mass(h, ib)
     share_mass(h, jb)
+
+
+@kernel
+def greatest_block(h: Memory) -> float:
+    """Greatest distance of a corner from the centroid of its block."""
+    most = real(h, 0.0)
+    ib = h.ci[IBPNT]
+    while ib != 0:
+        most = max(most, getr(h, ib, KBRO))
+        ib = iget(h, ib, KB)
+    return most
 
 
 @kernel

@@ -395,9 +395,10 @@ def set_function(array: MainArray, number: int, points: Sequence[tuple[float, fl
         raise UdecError(28, f"n is {number}", advice, parameter="n")
     for k, (t, f) in enumerate(points, 1):
         finite(array, **{f"t{k}": t, f"f{k}": f})
-    for k, ((one, _), (two, _)) in enumerate(pairwise(points), 2):
-        if two <= one:
-            raise UdecError(28, f"{two:g} follows {one:g}", "the times must ascend", parameter=f"t{k}")
+    for k, ((t1, f1), (t2, f2)) in enumerate(pairwise(points), 2):
+        if t2 <= t1:
+            raise UdecError(28, f"{t2:g} follows {t1:g}", "the times must ascend", parameter=f"t{k}")
+        finite(array, **{f"t{k} - t{k - 1}": t2 - t1, f"f{k} - f{k - 1}": f2 - f1})
     require(array, size_of(array.h, NVSG) + len(points) * size_of(array.h, NVTP))
     h = array.h
     isg = next(

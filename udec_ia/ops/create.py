@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from offsets.generated import DTOL, IODPNT, KL, KLB, KP, KR, LROUND, NBLK, NVBL, NVCR, NVDO
+from offsets.generated import DENS, DTOL, IODPNT, KL, KLB, KP, KR, LROUND, NBLK, NVBL, NVCR, NVDO
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.array import MainArray
@@ -17,7 +17,9 @@ from udec_ia.kernels.split import makep, new_block
 from udec_ia.kernels.tolerances import default_rounding, set_rounding
 from udec_ia.ops.limits import (
     EDGE_DIGITS,
+    NMAT,
     ROUNDING_DIGITS,
+    bearable,
     check_resolution,
     constitutive_number,
     finite,
@@ -45,7 +47,8 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
         raise UdecError(5, f"{len(corners)} given", "give at least three corners, clockwise")
     for k, (x, y) in enumerate(corners, 1):
         finite(array, **{f"x{k}": x, f"y{k}": y})
-    _check_size(array, corners)
+    size = _check_size(array, corners)
+    bearable(array, float(h.cr[DENS : DENS + NMAT].max()), size)
     _check_outline(corners)
     _check_edges(array, corners)
     require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
@@ -63,8 +66,8 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     return int(ib)
 
 
-def _check_size(array: MainArray, corners: Sequence[Point]) -> None:
-    """Error 28 unless the reals can hold a length to the power of four, as a moment of inertia is."""
+def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
+    """How far the block reaches. Error 28 unless the reals can hold its fourth power."""
     reals = np.finfo(array.scheme.real_type)
     size = max(abs(x) + abs(y) for x, y in corners)
     least, most = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
@@ -72,6 +75,7 @@ def _check_size(array: MainArray, corners: Sequence[Point]) -> None:
         bits = array.scheme.real_bits
         detail = f"a block {size:g} across, where {bits}-bit reals bear {least:.0e} to {most:.0e}"
         raise UdecError(28, detail, "take another unit of length", parameter="x1")
+    return size
 
 
 def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:

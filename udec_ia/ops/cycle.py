@@ -83,7 +83,7 @@ Prepared = Callable[[], None]
 def prepare(array: MainArray) -> None:
     """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
 
-    Errors 11, 12, 13, 14 and 16.
+    Errors 11, 12, 13, 14, 16, 26 and 28.
     """
     h = array.h
     if h.ci[NBLK] == 0:
@@ -146,9 +146,11 @@ def cycle(
     array.h.ci[NERR] = array.h.ci[IERAD] = 0  # a run that was interrupted may have left an error behind
     energy.begin(array)
     try:
-        return _run(array, n, report, every, bound, watch)
+        done = _run(array, n, report, every, bound, watch)
     finally:
         energy.end(array)
+    _check_finite(array)
+    return done
 
 
 def _run(
@@ -170,19 +172,18 @@ def _run(
             continue
         seconds = max(perf_counter() - start, 1e-6)
         piece = max(1, min(int(piece * REPORT_SECONDS / seconds), 4 * piece))
-    _check_finite(array)
     return done
 
 
 def _check_finite(array: MainArray) -> None:
-    """Error 36 if the run has ended with a force, a velocity, a stress or a work beyond the reals."""
+    """Error 36 if the run has ended with a force, a velocity, a stress or an energy beyond the reals."""
     h, group = array.h, int(not_finite(array.h))
     if group != 0:
         kind, *here = ("contact", KXC, KYC) if iget(h, group, HEAD) == MCON else ("block", KX, KY)
         x, y = (float(getr(h, group, k)) for k in here)
         what = f"a force, a velocity or a stress of {kind}@{group} at ({x:g}, {y:g}) is"
     elif not np.isfinite(h.cr).all():
-        what = "a work or a displacement summed up in the run is"
+        what = "an energy or a displacement that the run has summed up is"
     else:
         return
     largest = float(np.finfo(array.scheme.real_type).max)

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from offsets.generated import (
     EPOT,
     EPUT,
@@ -72,12 +74,12 @@ def keeps_account(array: MainArray) -> Any:
 def switch(array: MainArray, on: bool) -> None:
     """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends. Error 28 as `begin`."""
     h = array.h
-    stored = _stored(array) if on else 0.0
+    stored, reference = (_stored(array), _height(array)) if on else (0.0, 0.0)
     h.ci[LENER] = int(on)
     for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
         h.cr[name] = 0
     h.cr[EPUT] = h.cr[ESTOR] = stored
-    h.cr[EREF] = float(height(h)) if on else 0.0
+    h.cr[EREF] = reference
 
 
 def balance(h: Memory) -> Balance:
@@ -94,22 +96,30 @@ def balance(h: Memory) -> Balance:
 def begin(array: MainArray) -> None:
     """A CYCLE begins: note what commands have done since the last one.
 
-    Error 28, and nothing is noted, if the reals cannot hold the energy of the stresses there are.
+    Error 28, and nothing is noted, if the reals cannot hold the energy of the stresses there are, or its
+    change.
     """
     h = array.h
     if h.ci[LENER]:
-        stored = _stored(array)
-        h.cr[EPUT] = balance(h).commands
-        h.cr[ESTOR] = stored
-        h.cr[EREF] = float(height(h)) - float(h.cr[EPOT])
+        stored, reference, put = _stored(array), _height(array) - float(h.cr[EPOT]), balance(h).commands
+        held(array, "the energy that commands have put in", [put, reference])
+        h.cr[EPUT], h.cr[ESTOR], h.cr[EREF] = put, stored, reference
 
 
 def end(array: MainArray) -> None:
-    """A CYCLE has ended."""
+    """A CYCLE has ended. What the reals cannot hold becomes infinite."""
     h = array.h
     if h.ci[LENER]:
-        h.cr[ESTOR] = _energy(h)
-        h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
+        with np.errstate(over="ignore"):
+            h.cr[ESTOR] = _energy(h)
+            h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
+
+
+def _height(array: MainArray) -> float:
+    """Potential of gravity against the origin. Error 28 if the reals cannot hold it."""
+    potential = float(height(array.h))
+    held(array, "the potential of gravity", [potential])
+    return potential
 
 
 def _stored(array: MainArray) -> float:

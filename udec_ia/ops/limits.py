@@ -106,6 +106,12 @@ def held(array: MainArray, what: str, values: Iterable[float]) -> None:
         )
 
 
+def bearable(array: MainArray, density: float, radius: float) -> None:
+    """Error 28 unless the reals can hold mass and moment of inertia of all that fits in such a circle."""
+    mass = density * 4 * radius * radius
+    held(array, f"mass or moment of inertia at a density of {density:g}", [mass, mass * radius * radius])
+
+
 def not_negative(array: MainArray, **numbers: float) -> None:
     """Error 28 unless all numbers are finite and not negative."""
     finite(array, **numbers)

@@ -110,7 +110,7 @@ def _checked(corners: ArrayLike, edge: float) -> Floats:
     if not area > 0:
         raise UdecError(28, "the corners must run clockwise and enclose an area")
     round_it = float(np.linalg.norm(following(given) - given, axis=1).sum())
-    zones = area / (EQUILATERAL * edge * edge) + round_it / edge
+    zones = area / EQUILATERAL / edge / edge + round_it / edge
     if zones > MOST_ZONES:
         least = max((2 * area / (EQUILATERAL * MOST_ZONES)) ** 0.5, 2 * round_it / MOST_ZONES)
         detail = f"zones with an edge of {edge:g} would be {zones:.2g} in number, over {MOST_ZONES:.0g}"

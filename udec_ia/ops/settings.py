@@ -51,12 +51,13 @@ from offsets.generated import (
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.masses import greatest_block
 from udec_ia.kernels.motion import FIXED
 from udec_ia.kernels.sdef import put_strain_rate
 from udec_ia.ops.bounds import given_velocities
 from udec_ia.ops.change import renew_corners
 from udec_ia.ops.forces import renew_forces
-from udec_ia.ops.limits import finite, material_number, not_negative, positive, whole
+from udec_ia.ops.limits import bearable, finite, material_number, not_negative, positive, whole
 from udec_ia.ops.lists import chain
 from udec_ia.ops.ranges import Range, blocks_in
 
@@ -95,6 +96,8 @@ def set_property(array: MainArray, material: int, **values: float | None) -> Non
     k, g = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
     lame = {"K + 4G/3": k + 4 * g / 3, "K - 2G/3": k - 2 * g / 3}  # constants of plane strain
     finite(array, **lame)
+    if "density" in given:
+        bearable(array, given["density"], float(greatest_block(array.h)))
     for name, value in given.items():
         cr[PROPERTIES[name] + i] = value
     cr[ALAM1 + i], cr[ALAM2 + i] = lame.values()

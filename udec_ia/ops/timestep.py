@@ -91,6 +91,8 @@ from udec_ia.ops.lists import chain
 
 Array = Any  # of addresses, or of the reals found there
 DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12; a grid-point has the first two
+# A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
+OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
 
 @dataclass(frozen=True)
@@ -268,6 +270,7 @@ def _rate(stiffness: Array, drag: Array, mass: Array) -> Array:
     return np.sqrt(square + half * half) + half
 
 
+@OVERFLOWS
 def bound(array: MainArray) -> Limit:
     """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
     rows = _Rows(array.h)
@@ -277,6 +280,7 @@ def bound(array: MainArray) -> Limit:
     return rows.limit()
 
 
+@OVERFLOWS
 def estimate(array: MainArray) -> Limit:
     """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
     h = array.h
