@@ -15,7 +15,7 @@ import numpy as np
 from offsets.generated import CTOL, IDPNT, KD, KDLOOP, NVIRT
 from udec_ia.heap.accessors import Memory, iget, int64, real
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.near import arc_on_arc, arc_on_edge, box
+from udec_ia.kernels.near import box, facing
 from udec_ia.kernels.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.kernels.sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
 
@@ -31,19 +31,6 @@ def _boxes(h: Memory, seg: Any, n: int, reach: float) -> Any:
 
 
 @kernel
-def _overlap(h: Memory, seg: Any, i: int, j: int, reach: float) -> float:
-    """By how much segments `i` and `j` overlap, at most `reach`; 0 if they do not face each other."""
-    ip, jp = seg[i, CORNER], seg[j, CORNER]
-    if seg[i, ARC] + seg[j, ARC] == 2:
-        can, overlap = arc_on_arc(h, ip, jp, reach)
-    elif seg[i, ARC] == 1:
-        can, overlap = arc_on_edge(h, ip, jp, reach)
-    else:
-        can, overlap = arc_on_edge(h, jp, ip, reach)
-    return overlap if can else real(h, 0.0)
-
-
-@kernel
 def _deep_in_domain(h: Memory, idm: int, reach: float) -> tuple[int, int, float]:
     """deep_overlap for one domain, which has a loop."""
     items = count_items(h, idm)
@@ -54,8 +41,8 @@ def _deep_in_domain(h: Memory, idm: int, reach: float) -> tuple[int, int, float]
         i, j = pairs[k, 0], pairs[k, 1]
         if seg[i, BLOCK] == seg[j, BLOCK] or seg[i, ARC] + seg[j, ARC] == 0:
             continue
-        overlap = _overlap(h, seg, i, j, reach)
-        if overlap > h.cr[CTOL]:
+        code, overlap = facing(h, seg, i, j, reach)
+        if code != 0 and overlap > h.cr[CTOL]:
             return seg[i, CORNER], seg[j, CORNER], overlap
     return int64(0), int64(0), real(h, 0.0)
 

@@ -1,74 +1,26 @@
 """Has a run driven a number beyond the reals?
 
 A force or a velocity that is infinite, or no number at all, moves its block out of the world in the next
-cycle, and error 36 ends the run there. After the last cycle there is no next one: so all groups that a
-cycle writes are looked through once. Corners follow from their block or their grid-points, and need no look.
+cycle, and error 36 ends the run there. After the last cycle there is no next one: so all reals of blocks,
+of what belongs to them and of contacts are looked through once.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from offsets.generated import (
-    IBPNT,
-    ICPNT,
-    KB,
-    KBEX,
-    KBFT,
-    KBFX,
-    KBFY,
-    KBI,
-    KBRO,
-    KC,
-    KCFN,
-    KCFS,
-    KCN,
-    KCS,
-    KED11,
-    KED12,
-    KED21,
-    KED22,
-    KFG,
-    KFZ,
-    KG,
-    KGFX,
-    KGFY,
-    KS111,
-    KS112,
-    KS122,
-    KSA11,
-    KSA12,
-    KSA21,
-    KSA22,
-    KSJ11,
-    KSJ12,
-    KSJ22,
-    KTD,
-    KX,
-    KXD,
-    KXDC,
-    KXDG,
-    KXG,
-    KY,
-    KYD,
-    KYDC,
-    KYDG,
-    KYG,
-    KZ,
-    KZS11,
-    KZS12,
-    KZS22,
-    MFDEF,
-    MSDEF,
-)
+from offsets import generated, read_table
+from offsets.generated import IBPNT, ICPNT, KB, KBEX, KC, KFG, KFZ, KG, KP, KR, KZ, MFDEF, MSDEF
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
 from udec_ia.heap.jit import kernel
 
-OF_BLOCK = (KX, KY, KXD, KYD, KTD, KBI, KBRO, KBFX, KBFY, KBFT)
-OF_SDEF = (KED11, KED12, KED21, KED22, KS111, KS112, KS122, KSA11, KSA12, KSA21, KSA22, KSJ11, KSJ12, KSJ22)
-OF_POINT = (KXG, KYG, KXDG, KYDG, KGFX, KGFY)
-OF_ZONE = (KZS11, KZS12, KZS22)
-OF_CONTACT = (KXDC, KYDC, KCS, KCN, KCFS, KCFN)
+# Offsets of all reals of a kind of group, from the field table.
+REALS = {
+    group.name: tuple(getattr(generated, field.name) for field in group.fields if field.real)
+    for group in read_table().groups
+}
+OF_BLOCK, OF_CORNER, OF_CONTACT = REALS["block"], REALS["corner"], REALS["contact"]
+OF_SDEF, OF_FDEF, OF_POINT, OF_ZONE = REALS["sdef"], REALS["fdef"], REALS["gridpoint"], REALS["zone"]
 
 
 @kernel
@@ -82,25 +34,29 @@ def _finite(h: Memory, iad: int, fields: tuple[Offset, ...]) -> bool:
 
 @kernel
 def _all_finite(h: Memory, iad: int, following: Offset, fields: tuple[Offset, ...]) -> bool:
-    """True if those fields are finite in all groups of the list that begins at `iad`."""
+    """True if those fields are finite in all groups of the list that begins at `iad`, or of the ring."""
+    first = iad
     while iad != 0:
         if not _finite(h, iad, fields):
             return False
         iad = iget(h, iad, following)
+        if iad == first:
+            break
     return True
 
 
 @kernel
 def _body_finite(h: Memory, ib: int) -> bool:
-    """True if block `ib` and its extension hold finite numbers."""
+    """True if block `ib`, its corners and its extension hold finite numbers."""
+    if not (_finite(h, ib, OF_BLOCK) and _all_finite(h, iget(h, ib, KP), KR, OF_CORNER)):
+        return False
     kind, ie = iget(h, ib, HEAD), iget(h, ib, KBEX)
-    if kind == MSDEF and not _finite(h, ie, OF_SDEF):
-        return False
-    if kind == MFDEF and not _all_finite(h, iget(h, ie, KFG), KG, OF_POINT):
-        return False
-    if kind == MFDEF and not _all_finite(h, iget(h, ie, KFZ), KZ, OF_ZONE):
-        return False
-    return _finite(h, ib, OF_BLOCK)
+    if kind == MSDEF:
+        return _finite(h, ie, OF_SDEF)
+    if kind == MFDEF:
+        points = _all_finite(h, iget(h, ie, KFG), KG, OF_POINT)
+        return points and _all_finite(h, iget(h, ie, KFZ), KZ, OF_ZONE) and _finite(h, ie, OF_FDEF)
+    return True
 
 
 @kernel

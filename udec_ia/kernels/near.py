@@ -160,6 +160,25 @@ def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: fl
 
 
 @kernel
+def facing(h: Memory, seg: Any, i: int, j: int, most: float) -> tuple[int, float]:
+    """Code of the contact, of at most that overlap, that segments `i` and `j` can have, 0 for none.
+
+    One of them at least is an arc. Also returned: their overlap.
+    """
+    ip, jp = seg[i, CORNER], seg[j, CORNER]
+    if seg[i, ARC] + seg[j, ARC] == 2:
+        code = CORNER_CORNER
+        can, overlap = arc_on_arc(h, ip, jp, most)
+    elif seg[i, ARC] == 1:
+        code = CORNER_EDGE
+        can, overlap = arc_on_edge(h, ip, jp, most)
+    else:
+        code = EDGE_CORNER
+        can, overlap = arc_on_edge(h, jp, ip, most)
+    return (code if can else 0), overlap
+
+
+@kernel
 def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
     """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
 
@@ -171,16 +190,8 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
     jb, jp, jarc = seg[j, BLOCK], seg[j, CORNER], seg[j, ARC]
     if ib == jb or iarc + jarc == 0:
         return 0, zero
-    if iarc + jarc == 2:
-        code = CORNER_CORNER
-        can, overlap = arc_on_arc(h, ip, jp, h.cr[CTOL])
-    elif iarc == 1:
-        code = CORNER_EDGE
-        can, overlap = arc_on_edge(h, ip, jp, h.cr[CTOL])
-    else:
-        code = EDGE_CORNER
-        can, overlap = arc_on_edge(h, jp, ip, h.cr[CTOL])
-    if not can:
+    code, overlap = facing(h, seg, i, j, h.cr[CTOL])
+    if code == 0:
         return 0, zero
     if iarc == 1:
         had = _has_contact(h, ib, ip, jp, jarc)

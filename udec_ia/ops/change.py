@@ -116,12 +116,11 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
         for ib in meshed:
             straighten(array.h, ib)
         _change_all(array, changing, kind)
-        if not meshed:
-            return
-        update_flagged(array)
-        check_overlaps(array, float(array.h.cr[DTOL]), "leave the block fully-deformable")
-        if array.h.ci[MCTOT] > 0:
-            renew_forces(array)
+        if meshed:
+            update_flagged(array)
+            check_overlaps(array, float(array.h.cr[DTOL]), "leave the block fully-deformable")
+            if array.h.ci[MCTOT] > 0:
+                renew_forces(array)
 
 
 def _change_all(array: MainArray, changing: list[int], kind: int) -> None:

@@ -74,11 +74,11 @@ def keeps_account(array: MainArray) -> Any:
 def switch(array: MainArray, on: bool) -> None:
     """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends. Error 28 as `begin`."""
     h = array.h
-    stored, reference = (_stored(array), _height(array)) if on else (0.0, 0.0)
+    energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[LENER] = int(on)
     for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
         h.cr[name] = 0
-    h.cr[EPUT] = h.cr[ESTOR] = stored
+    h.cr[EPUT] = h.cr[ESTOR] = energy
     h.cr[EREF] = reference
 
 
@@ -86,11 +86,10 @@ def balance(h: Memory) -> Balance:
     """The account as it is now. Error 26 if none is kept."""
     if not h.ci[LENER]:
         raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
-    moving = float(kinetic(h, soft_in(h)))
-    springs, blocks = float(strain_of_contacts(h)), float(strain_of_blocks(h, soft_in(h)))
-    commands = float(h.cr[EPUT]) + (moving + springs + blocks - float(h.cr[ESTOR]))
+    stored = _stored(h)
+    commands = _put_in(h, sum(stored))
     lost = (float(h.cr[name]) for name in (WFRIC, WMASS, WSTIF, WYIELD, WSHAPE))
-    return Balance(commands, float(h.cr[WBOUND]), moving, springs, blocks, float(h.cr[EPOT]), *lost)
+    return Balance(commands, float(h.cr[WBOUND]), *stored, float(h.cr[EPOT]), *lost)
 
 
 def begin(array: MainArray) -> None:
@@ -101,9 +100,10 @@ def begin(array: MainArray) -> None:
     """
     h = array.h
     if h.ci[LENER]:
-        stored, reference, put = _stored(array), _height(array) - float(h.cr[EPOT]), balance(h).commands
+        energy, reference = _energy(array), _height(array) - float(h.cr[EPOT])
+        put = _put_in(h, energy)
         held(array, "the energy that commands have put in", [put, reference])
-        h.cr[EPUT], h.cr[ESTOR], h.cr[EREF] = put, stored, reference
+        h.cr[EPUT], h.cr[ESTOR], h.cr[EREF] = put, energy, reference
 
 
 def end(array: MainArray) -> None:
@@ -111,7 +111,7 @@ def end(array: MainArray) -> None:
     h = array.h
     if h.ci[LENER]:
         with np.errstate(over="ignore"):
-            h.cr[ESTOR] = _energy(h)
+            h.cr[ESTOR] = sum(_stored(h))
             h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
 
 
@@ -122,14 +122,19 @@ def _height(array: MainArray) -> float:
     return potential
 
 
-def _stored(array: MainArray) -> float:
+def _energy(array: MainArray) -> float:
     """Kinetic and strain energy. Error 28 if the reals cannot hold it."""
-    energy = _energy(array.h)
+    energy = sum(_stored(array.h))
     held(array, "the kinetic and strain energy", [energy])
     return energy
 
 
-def _energy(h: Memory) -> float:
-    """Kinetic and strain energy."""
+def _stored(h: Memory) -> tuple[float, float, float]:
+    """Kinetic energy, and strain energy of contacts and of blocks."""
     soft = soft_in(h)
-    return float(kinetic(h, soft)) + float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
+    return float(kinetic(h, soft)), float(strain_of_contacts(h)), float(strain_of_blocks(h, soft))
+
+
+def _put_in(h: Memory, energy: float) -> float:
+    """What commands have put in so far, where `energy` is what is stored now, and ESTOR was before them."""
+    return float(h.cr[EPUT]) + (energy - float(h.cr[ESTOR]))
