@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from offsets.table import RATIOS, Group, Table, lay_out, read_table
+from offsets.table import COMMON_TYPES, RATIOS, Group, Table, lay_out, read_table
 
 HERE = Path(__file__).parent
 SCHEMES = {  # name: (integer bits, real bits), report 3.5
@@ -39,17 +39,19 @@ def python_text(table: Table) -> str:
             if field.role == "head":
                 continue
             values = ", ".join(str(layout.offset[field.name]) for layout in layouts)
-            kind = "real" if field.real else "int"
+            kind = field.type
+            if field.values not in ("-", field.target):
+                kind += f" {field.values}"
             lines.append(f"{field.name} = ({values})  # {kind}: {field.text}")
         lines.append(f"{group.size_name} = ({', '.join(str(layout.size) for layout in layouts)})")
-    for real, title in ((False, "Integers"), (True, "Reals")):
-        lines += ["", f"# {title} of the common block: index of the variable, or of its first element"]
+    for kind, number in COMMON_TYPES.items():
+        lines += ["", f"# The common block, type {kind}: index of the variable, or of its first element"]
         index = 0
         for field in table.common:
-            if field.real == real:
+            if field.type == kind:
                 lines.append(f"{field.name} = {index}  # {field.text}")
                 index += field.count
-        lines.append(f"{'NCOMR' if real else 'NCOMI'} = {index}")
+        lines.append(f"{number} = {index}")
     return "\n".join(lines) + "\n"
 
 

@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "883c6723bdcdd135470bf60610e323ce184c81731c7289dc131828014ca2c64f"
+DIGEST = "1afbdbe192c20840329fd59903b6fe6c699df76ae692a7197f89f6312621d7c8"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -17,29 +17,29 @@ MSIG = 9  # signal
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
-KP = (2, 2, 2)  # int: one corner in the block's corner list; never 0
-KMAT = (3, 3, 3)  # int: material number
-KCONS = (4, 4, 4)  # int: constitutive number
+KP = (2, 2, 2)  # int corner!: one corner in the block's corner list
+KMAT = (3, 3, 3)  # int 1..50: material number
+KCONS = (4, 4, 4)  # int 1..5: constitutive number
 KX = (6, 4, 3)  # real: x coordinate of centroid
 KY = (7, 5, 4)  # real: y coordinate of centroid
 KXD = (8, 6, 5)  # real: x velocity
 KYD = (9, 7, 6)  # real: y velocity
 KTD = (10, 8, 7)  # real: angular velocity (anticlockwise positive)
-KBM = (11, 9, 8)  # real: block mass; 0 until a density is known
-KBI = (12, 10, 9)  # real: block moment of inertia about the centroid
+KBM = (11, 9, 8)  # real 0..: block mass; 0 until a density is known
+KBI = (12, 10, 9)  # real 0..: block moment of inertia about the centroid
 KBFX = (13, 11, 10)  # real: x centroid force-sum
 KBFY = (14, 12, 11)  # real: y centroid force-sum
 KBFT = (15, 13, 12)  # real: centroid moment sum
 KBEX = (15, 26, 48)  # int: extension pointer (to SDEF or FDEF data); 0 for a rigid block
-KBFIX = (16, 27, 49)  # int: 1 if the block is fixed (FIX), 0 if it is free
+KBFIX = (16, 27, 49)  # int 0..2,4,6: 0 free, 1 fixed, else velocities given: 2 in x, 4 in y, 6 both
 KBB = (17, 28, 50)  # int: previous block in block list; 0 at the head of the list
-KBRO = (19, 16, 14)  # real: greatest distance of a corner from the centroid
+KBRO = (19, 16, 14)  # real 0..: greatest distance of a corner from the centroid
 NVBL = (19, 32, 56)
 
 # one corner of one block (page 53)
-KL = (1, 1, 1)  # int: next corner or contact on block, clockwise; never 0
-KR = (2, 2, 2)  # int: next corner, anticlockwise; never 0
-KNB = (3, 3, 3)  # int: host block; never 0
+KL = (1, 1, 1)  # int item!: next corner or contact on block, clockwise
+KR = (2, 2, 2)  # int corner!: next corner, anticlockwise
+KNB = (3, 3, 3)  # int block!: host block
 KXP = (5, 3, 2)  # real: x coordinate of corner
 KYP = (6, 4, 3)  # real: y coordinate of corner
 KXCP = (7, 5, 4)  # real: x coordinate of local circle centre
@@ -48,19 +48,19 @@ KRAD = (9, 7, 6)  # real: radius of local circle; negative at a concave corner
 KXDP = (10, 8, 7)  # real: x velocity of corner
 KYDP = (11, 9, 8)  # real: y velocity of corner
 KGP = (11, 18, 32)  # int: grid-point of the corner; 0 unless the block is fully-deformable
-KLB = (12, 19, 33)  # int: previous corner or contact on block, so anticlockwise; never 0
+KLB = (12, 19, 33)  # int item!: previous corner or contact on block, so anticlockwise
 NVCR = (13, 20, 36)
 
 # one contact: it stands in the clockwise lists of two blocks (page 54)
 KC = (1, 1, 1)  # int: next contact in contact list; 0 at the end of the list
-KB1 = (2, 2, 2)  # int: first block involved; never 0
-KB2 = (3, 3, 3)  # int: second block involved; never 0
-KL1 = (4, 4, 4)  # int: next item in the clockwise list of block KB1; never 0
-KL2 = (5, 5, 5)  # int: next item in the clockwise list of block KB2; never 0
-KD1 = (6, 6, 6)  # int: domain to the left of the contact, going from KB1 to KB2; never 0
-KD2 = (7, 7, 7)  # int: domain to the right of the contact, going from KB1 to KB2; never 0
-KCM = (8, 8, 8)  # int: material number
-KCC = (9, 9, 9)  # int: constitutive number
+KB1 = (2, 2, 2)  # int block!: first block involved
+KB2 = (3, 3, 3)  # int block!: second block involved
+KL1 = (4, 4, 4)  # int item!: next item in the clockwise list of block KB1
+KL2 = (5, 5, 5)  # int item!: next item in the clockwise list of block KB2
+KD1 = (6, 6, 6)  # int domain!: domain to the left of the contact, going from KB1 to KB2
+KD2 = (7, 7, 7)  # int domain!: domain to the right of the contact, going from KB1 to KB2
+KCM = (8, 8, 8)  # int 1..50: material number
+KCC = (9, 9, 9)  # int 1..5: constitutive number
 KXC = (11, 6, 4)  # real: x contact coordinate
 KYC = (12, 7, 5)  # real: y contact coordinate
 KXDC = (13, 8, 6)  # real: relative x velocity (of block KB2 relative to block KB1)
@@ -69,11 +69,11 @@ KCS = (15, 10, 8)  # real: relative shear displacement
 KCN = (16, 11, 9)  # real: relative normal displacement: the overlap, negative for a gap
 KCFS = (17, 12, 10)  # real: shear force
 KCFN = (18, 13, 11)  # real: normal force (positive compression)
-KCCOD = (18, 26, 44)  # int: 1 corner/corner, 2 corner/edge, 3 edge/corner, 4 virtual (ours)
-KCP1 = (19, 27, 45)  # int: first corner after the contact in the list of block KB1; never 0
-KCP2 = (20, 28, 46)  # int: first corner after the contact in the list of block KB2; never 0
-KLB1 = (21, 29, 47)  # int: previous item in the clockwise list of block KB1; never 0
-KLB2 = (22, 30, 48)  # int: previous item in the clockwise list of block KB2; never 0
+KCCOD = (18, 26, 44)  # int 1..4: 1 corner/corner, 2 corner/edge, 3 edge/corner, 4 virtual (ours)
+KCP1 = (19, 27, 45)  # int corner!: first corner after the contact in the list of block KB1
+KCP2 = (20, 28, 46)  # int corner!: first corner after the contact in the list of block KB2
+KLB1 = (21, 29, 47)  # int item!: previous item in the clockwise list of block KB1
+KLB2 = (22, 30, 48)  # int item!: previous item in the clockwise list of block KB2
 KCB = (23, 31, 49)  # int: previous contact in contact list; 0 at the head of the list
 NVCN = (24, 32, 52)
 
@@ -102,15 +102,15 @@ KSA22 = (12, 12, 12)  # real: applied stress tensor (multiplied by block area)
 KSJ11 = (13, 13, 13)  # real: Euler tensor: integral of density x' x' about the centroid
 KSJ12 = (14, 14, 14)  # real: Euler tensor: integral of density x' y'
 KSJ22 = (15, 15, 15)  # real: Euler tensor: integral of density y' y'
-KSAREA = (16, 16, 16)  # real: block area
+KSAREA = (16, 16, 16)  # real 0..: block area
 NVSD = (16, 32, 64)
 
 # fully-deformable extension of a block: heads of its two lists (page ours)
 KFG = (0, 0, 0)  # int: first grid-point of the block; 0 before GENERATE
 KFZ = (1, 1, 1)  # int: first zone of the block; 0 before GENERATE
-KFNG = (2, 2, 2)  # int: number of grid-points
-KFNZ = (3, 3, 3)  # int: number of zones
-KFMIX = (4, 4, 4)  # int: 1 if successive zones are pairs for mixed discretisation, else 0
+KFNG = (2, 2, 2)  # int 0..: number of grid-points
+KFNZ = (3, 3, 3)  # int 0..: number of zones
+KFMIX = (4, 4, 4)  # int 0..1: 1 if successive zones are pairs for mixed discretisation, else 0
 KFS11 = (6, 4, 3)  # real: stress that the zones begin with
 KFS12 = (7, 5, 4)  # real: stress that the zones begin with
 KFS22 = (8, 6, 5)  # real: stress that the zones begin with
@@ -118,11 +118,11 @@ NVFD = (8, 12, 20)
 
 # one triangular zone of a fully-deformable block (page 55)
 KZ = (0, 0, 0)  # int: next zone in zone list; 0 at the end of the list
-KZG = (1, 1, 1)  # int: the three surrounding grid-points; never 0
+KZG = (1, 1, 1)  # int gridpoint!: the three surrounding grid-points
 KZS11 = (5, 3, 2)  # real: stress tensor
 KZS12 = (6, 4, 3)  # real: stress tensor
 KZS22 = (7, 5, 4)  # real: stress tensor
-KZM = (8, 6, 5)  # real: zone mass
+KZM = (8, 6, 5)  # real 0..: zone mass
 NVZO = (8, 12, 20)
 
 # one grid-point (mass-point) of a fully-deformable block (page 55)
@@ -134,9 +134,9 @@ KXDG = (5, 4, 4)  # real: x velocity
 KYDG = (6, 5, 5)  # real: y velocity
 KGFX = (7, 6, 6)  # real: x force-sum
 KGFY = (8, 7, 7)  # real: y force-sum
-KGPM = (9, 8, 8)  # real: grid-point mass
-KGFIX = (9, 16, 32)  # int: velocities that are given, not calculated: 1 in x, 2 in y, 3 both
-KGEDGE = (10, 17, 33)  # int: 1 if its corner is a point of an edge, which is not rounded, else 0
+KGPM = (9, 8, 8)  # real 0..: grid-point mass
+KGFIX = (9, 16, 32)  # int 0..3: velocities that are given, not calculated: 1 in x, 2 in y, 3 both
+KGEDGE = (10, 17, 33)  # int 0..1: 1 if its corner is a point of an edge, which is not rounded, else 0
 NVGP = (11, 18, 36)
 
 # domain extension: data of an edge-to-edge contact (page ours)
@@ -149,12 +149,12 @@ NVDE = (5, 10, 20)
 
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
-KUB = (2, 2, 2)  # int: block that it acts on; never 0
+KUB = (2, 2, 2)  # int block!: block that it acts on
 KUG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on the block
 KUP = (4, 4, 4)  # int: corner of the block that it acts on; 0 if it does not act on a corner
 KUQ = (5, 5, 5)  # int: other end of the edge whose load it carries; 0 if it is not on an edge
 KUS = (6, 6, 6)  # int: signal that load and velocity are multiplied by; 0 if constant
-KUFIX = (7, 7, 7)  # int: velocities that are given: 1 in x, 2 in y, 3 both
+KUFIX = (7, 7, 7)  # int 0..3: velocities that are given: 1 in x, 2 in y, 3 both
 KUFX = (9, 5, 3)  # real: force in x
 KUFY = (10, 6, 4)  # real: force in y
 KUVX = (11, 7, 5)  # real: velocity in x
@@ -166,13 +166,14 @@ NVBN = (15, 22, 36)
 
 # a factor that changes with time: a sine or a FUNCTION (page ours)
 KT = (1, 1, 1)  # int: next signal in the list; 0 at the end of the list
-KTNUM = (2, 2, 2)  # int: number of the FUNCTION; 0 for a sine
+KTNUM = (2, 2, 2)  # int 0..: number of the FUNCTION; 0 for a sine
 KTP = (3, 3, 3)  # int: first point of the function; 0 for a sine
 KTFREQ = (5, 3, 2)  # real: frequency of the sine
 KTBEG = (6, 4, 3)  # real: time at which the sine began
 KTLAST = (7, 5, 4)  # real: time for which the sine lasts
 KTNOW = (8, 6, 5)  # real: the factor in the present cycle
-NVSG = (8, 12, 20)
+KTREST = (9, 7, 6)  # real: what a real cannot hold of the time at which the sine began: KTBEG + KTREST
+NVSG = (9, 14, 24)
 
 # one point of a FUNCTION (page ours)
 KTPN = (0, 0, 0)  # int: next point, later in time; 0 at the end of the function
@@ -184,12 +185,12 @@ NVTP = (3, 6, 12)
 KH = (1, 1, 1)  # int: next history in history list; 0 at the end of the list
 KHB = (2, 2, 2)  # int: previous history in history list; 0 at the head of the list
 KHG = (3, 3, 3)  # int: group whose field is recorded; 0 when it has gone, or for no group
-KHK = (4, 4, 4)  # int: kind of that group, as it comes in this table; 0 common block, -1 whole model
-KHF = (5, 5, 5)  # int: number of the field in its group, counted from 0
-KHN = (6, 6, 6)  # int: cycles from one recording to the next
+KHK = (4, 4, 4)  # int -1..: kind of that group, as it comes in this table; 0 common block, -1 whole model
+KHF = (5, 5, 5)  # int 0..: number of the field in its group, counted from 0
+KHN = (6, 6, 6)  # int 1..: cycles from one recording to the next
 NVHI = (7, 8, 8)
 
-# Integers of the common block: index of the variable, or of its first element
+# The common block, type int: index of the variable, or of its first element
 JUNK = 0  # list of spare memory groups; 0 when there are none
 MFREE = 1  # first unused memory address
 MTOP = 2  # size of the main array; groups end at or below this address
@@ -221,7 +222,7 @@ NTIPS = 27  # contacts that the last search refused because a tip stands in thei
 JPHASE = 28  # pass of the cycle to be resumed after memory was found; 0 for none
 NCOMI = 29
 
-# Reals of the common block: index of the variable, or of its first element
+# The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
 FRAC = 1  # requested fraction of critical time-step
 ALPHA = 2  # mass damping coefficient
@@ -243,37 +244,41 @@ GTOL = 17  # slack on the border between two contact codes (our use)
 HTOL = 18  # largest displacement that may wait for the domain pass (our use)
 GRAVX = 19  # x gravitational acceleration
 GRAVY = 20  # y gravitational acceleration
-TIME = 21  # time since the first cycle
-UPEND = 22  # displacement that waits to be added to every KUMAX
-WFRIC = 23  # work done against friction so far
-WBOUND = 24  # work of the boundary conditions since ENERGY ON
-WMASS = 25  # energy taken by mass damping and by INTERNAL since ENERGY ON
-WSTIF = 26  # energy taken by stiffness damping since ENERGY ON
-WYIELD = 27  # work on deformable blocks that their elasticity has not kept since ENERGY ON
-WSHAPE = 28  # work that changes of shape take without a force that shows it since ENERGY ON
-EPUT = 29  # energy there at ENERGY ON and put in by commands since; taken out: negative
-ESTOR = 30  # kinetic energy and strain energy when the last CYCLE ended
-EPOT = 31  # potential of gravity then, against that at ENERGY ON
-EREF = 32  # potential of gravity against the origin that counts as 0
-AKN = 33  # normal joint stiffness, material I
-AKS = 83  # shear joint stiffness, material I
-AMU = 133  # joint friction coefficient, material I
-COH = 183  # joint cohesion, material I
-DENS = 233  # density, material I
-BULK = 283  # bulk modulus, material I
-SHEAR = 333  # shear modulus, material I
-ALAM1 = 383  # Lame constant, material I
-ALAM2 = 433  # Lame constant, material I
-JDIL = 483  # joint dilation: tangent of the dilation angle, material I
-RMU = 533  # residual joint friction coefficient, material I
-RCOH = 583  # residual joint cohesion, material I
-UCRIT = 633  # slip at which a joint has reached its residual strength, material I
-BMU = 683  # internal friction coefficient of block material, material I
-BCOH = 733  # cohesion of block material, material I
-BTEN = 783  # tensile strength of block material, material I
-BDIL = 833  # dilation of block material: tangent of the dilation angle, material I
-PAR1 = 883  # a number for the user's own laws, material I
-PAR2 = 933  # a number for the user's own laws, material I
-PAR3 = 983  # a number for the user's own laws, material I
-PAR4 = 1033  # a number for the user's own laws, material I
-NCOMR = 1083
+UPEND = 21  # displacement that waits to be added to every KUMAX
+AKN = 22  # normal joint stiffness, material I
+AKS = 72  # shear joint stiffness, material I
+AMU = 122  # joint friction coefficient, material I
+COH = 172  # joint cohesion, material I
+DENS = 222  # density, material I
+BULK = 272  # bulk modulus, material I
+SHEAR = 322  # shear modulus, material I
+ALAM1 = 372  # Lame constant, material I
+ALAM2 = 422  # Lame constant, material I
+JDIL = 472  # joint dilation: tangent of the dilation angle, material I
+RMU = 522  # residual joint friction coefficient, material I
+RCOH = 572  # residual joint cohesion, material I
+UCRIT = 622  # slip at which a joint has reached its residual strength, material I
+BMU = 672  # internal friction coefficient of block material, material I
+BCOH = 722  # cohesion of block material, material I
+BTEN = 772  # tensile strength of block material, material I
+BDIL = 822  # dilation of block material: tangent of the dilation angle, material I
+PAR1 = 872  # a number for the user's own laws, material I
+PAR2 = 922  # a number for the user's own laws, material I
+PAR3 = 972  # a number for the user's own laws, material I
+PAR4 = 1022  # a number for the user's own laws, material I
+NCOMR = 1072
+
+# The common block, type double: index of the variable, or of its first element
+TIME = 0  # time since the first cycle
+WFRIC = 1  # work done against friction so far
+WBOUND = 2  # work of the boundary conditions since ENERGY ON
+WMASS = 3  # energy taken by mass damping and by INTERNAL since ENERGY ON
+WSTIF = 4  # energy taken by stiffness damping since ENERGY ON
+WYIELD = 5  # work on deformable blocks that their elasticity has not kept since ENERGY ON
+WSHAPE = 6  # work that changes of shape take without a force that shows it since ENERGY ON
+EPUT = 7  # energy there at ENERGY ON and put in by commands since; taken out: negative
+ESTOR = 8  # kinetic energy and strain energy when the last CYCLE ended
+EPOT = 9  # potential of gravity then, against that at ENERGY ON
+EREF = 10  # potential of gravity against the origin that counts as 0
+WDRIVE = 11  # work that the boundary conditions have put in so far, not less what they have taken
+NCOMD = 12

@@ -9,11 +9,15 @@ size is rounded up for the same reason, which keeps every group address aligned.
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
 TABLE = Path(__file__).with_name("groups.table")
 RATIOS = (1, 2, 4)
+GROUP_TYPES = ("int", "real")
+COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
 
 
 class TableError(ValueError):
@@ -25,13 +29,20 @@ class Field:
     """One variable of a data group, or one variable of the common block."""
 
     name: str
-    real: bool
+    type: str  # "int", "real" or "double"
     count: int
     target: str | None  # kind of group a pointer points to, "item" for corner-or-contact, None for data
     role: str
     unit: str
     page: str
     text: str
+    values: str = "-"  # what it may hold, as the table has it: a kind of group, a range, or "-"
+    allowed: tuple[tuple[int, int | None], ...] = ()  # ranges of what it may hold, ends included; () for all
+
+    @property
+    def real(self) -> bool:
+        """True for a field that is no integer."""
+        return self.type != "int"
 
     @property
     def ours(self) -> bool:
@@ -63,7 +74,7 @@ class HeadCode:
 
 @dataclass(frozen=True)
 class Table:
-    """The whole table. `digest` is the SHA-256 of its text: equal digests mean equal layouts."""
+    """The whole table. `digest` is the SHA-256 of its text: tables with equal digests are the same."""
 
     groups: tuple[Group, ...]
     heads: tuple[HeadCode, ...]
@@ -112,8 +123,9 @@ def read_table(text: str | None = None) -> Table:
             elif fields is None:
                 raise ValueError("a field stands before the first GROUP")
             else:
-                fields.append(_field(words, doc))
-                if fields is not common:
+                in_group = fields is not common
+                fields.append(_field(words, doc, GROUP_TYPES if in_group else COMMON_TYPES))
+                if in_group:
                     last = groups[-1]
                     groups[-1] = Group(
                         last.name, last.size_name, last.list_head, last.page, last.text, tuple(fields)
@@ -128,19 +140,33 @@ def _check_names(groups: list[Group], common: list[Field]) -> None:
     """TableError if two fields have one name: generated.py has all of them side by side."""
     names = [field.name for group in groups for field in group.fields if field.role != "head"]
     names += [field.name for field in common]
-    double = {name for name in names if names.count(name) > 1}
+    double = {name for name, times in Counter(names).items() if times > 1}
     if double:
         raise TableError(f"groups.table: two fields are called {', '.join(sorted(double))}")
 
 
-def _field(words: list[str], doc: str) -> Field:
-    name, kind, target, role, unit, page = words
+def _field(words: list[str], doc: str, types: Collection[str]) -> Field:
+    name, kind, values, role, unit, page = words
     base, _, count = kind.partition("*")
-    if base not in ("int", "real"):
-        raise ValueError(f"type {base!r} is neither int nor real")
-    return Field(
-        name, base == "real", int(count or 1), None if target == "-" else target, role, unit, page, doc
-    )
+    if base not in types:
+        raise ValueError(f"type {base!r} is none of {', '.join(types)}")
+    target = values.rstrip("!") if values[0].isalpha() else None
+    if target is not None:
+        allowed = _ranges("1.." if values.endswith("!") else "0..")
+    else:
+        allowed = () if values == "-" else _ranges(values)
+    if int(count or 1) < 1:
+        raise ValueError(f"there are {count} of it")
+    return Field(name, base, int(count or 1), target, role, unit, page, doc, values, allowed)
+
+
+def _ranges(text: str) -> tuple[tuple[int, int | None], ...]:
+    """((0, 2), (4, 4), (6, None)) for "0..2,4,6.."; None for no upper end."""
+    found: list[tuple[int, int | None]] = []
+    for part in text.split(","):
+        low, dots, high = part.partition("..")
+        found.append((int(low), int(high) if high else None if dots else int(low)))
+    return tuple(found)
 
 
 def lay_out(group: Group, ratio: int) -> Layout:

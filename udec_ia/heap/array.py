@@ -11,12 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import MFREE, MTOP, NCOMI, NCOMR, NERR, NWANT
+from offsets import generated
+from offsets.generated import MFREE, MTOP, NCOMD, NCOMI, NCOMR, NERR, NWANT
+from offsets.table import Field
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
+OVERFLOW = 1  # error 1, memory overflow
 LINE = 64  # bytes that the machine's memory hands out at a time
 
 
@@ -25,6 +28,12 @@ def _words(n: int, kind: Any) -> Any:
     data = np.zeros(n * kind.itemsize + LINE, np.uint8)
     start = -data.ctypes.data % LINE
     return data[start : start + n * kind.itemsize].view(kind)
+
+
+def variable(h: Memory, field: Field) -> Any:
+    """The elements of a variable of the common block, in place."""
+    first = getattr(generated, field.name)
+    return {"int": h.ci, "real": h.cr, "double": h.cd}[field.type][first : first + field.count]
 
 
 class MainArray:
@@ -41,8 +50,8 @@ class MainArray:
         self.scheme = scheme
         self.fixed = mtop is not None
         words = self._whole_reals(min(FIRST_SIZE, scheme.top_address) if mtop is None else mtop)
-        ci, cr = np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type)
-        self.h = self._views(_words(words, scheme.int_type), ci, cr)
+        common = np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type), np.zeros(NCOMD, np.float64)
+        self.h = self._views(_words(words, scheme.int_type), *common)
         self.h.ci[MFREE] = 1
         self.h.ci[MTOP] = words
 
@@ -55,8 +64,8 @@ class MainArray:
     def _whole_reals(self, words: int) -> int:
         return words // self.scheme.ratio * self.scheme.ratio
 
-    def _views(self, ia: Any, ci: Any, cr: Any) -> Memory:
-        return Memory(ia, ia.view(self.scheme.real_type), ci, cr)
+    def _views(self, ia: Any, ci: Any, cr: Any, cd: Any) -> Memory:
+        return Memory(ia, ia.view(self.scheme.real_type), ci, cr, cd)
 
     @property
     def limit(self) -> int:
@@ -66,7 +75,7 @@ class MainArray:
     def grow(self) -> bool:
         """Make the room that an interrupted routine asked for; False if the limit forbids it.
 
-        On success error and request are cleared, and the routine can be called again.
+        On success error 1 and the request are cleared, and the routine can be called again.
         """
         ci = self.h.ci
         need = int(ci[MFREE] + ci[NWANT])
@@ -74,9 +83,11 @@ class MainArray:
             return False
         wanted = max(2 * need, FIRST_SIZE if need < LARGE else AMPLE)  # words not touched yet cost nothing
         size = min(self._whole_reals(wanted), self.limit)
-        self.h = self._views(self._copied(size), ci, self.h.cr)
+        self.h = self._views(self._copied(size), ci, self.h.cr, self.h.cd)
         ci[MTOP] = size
-        ci[NERR] = ci[NWANT] = 0
+        ci[NWANT] = 0
+        if ci[NERR] == OVERFLOW:
+            ci[NERR] = 0
         return True
 
     def refit(self, mtop: int | None) -> bool:
@@ -85,7 +96,7 @@ class MainArray:
             size = self._whole_reals(mtop)
             if self.h.ci[MFREE] - 1 > size or mtop > self.scheme.top_address:
                 return False
-            self.h = self._views(self._copied(size), self.h.ci, self.h.cr)
+            self.h = self._views(self._copied(size), *self.h[2:])
             self.h.ci[MTOP] = size
         self.fixed = mtop is not None
         return True
@@ -94,5 +105,5 @@ class MainArray:
         """An independent copy of the whole state."""
         other = object.__new__(MainArray)
         other.scheme, other.fixed = self.scheme, self.fixed
-        other.h = self._views(self._copied(len(self.h.ia)), self.h.ci.copy(), self.h.cr.copy())
+        other.h = self._views(self._copied(len(self.h.ia)), *(part.copy() for part in self.h[2:]))
         return other

@@ -52,10 +52,11 @@ def kernel(function: F, inline: bool = False) -> F:
     """
     if config.DISABLE_JIT:
         return function
+    layer = Path(function.__code__.co_filename).parent.name  # two of them may have a file of the same name
     kept = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE)
     try:
-        return cast(F, Kernel(function, error_model="numpy", forceinline=inline))
+        return cast(F, Kernel(function, CACHE / layer, error_model="numpy", forceinline=inline))
     finally:
         config.CACHE_DIR = kept
 
@@ -63,14 +64,3 @@ def kernel(function: F, inline: bool = False) -> F:
 def inlined(function: F) -> F:
     """A kernel that becomes a part of its callers: for what the cycle does once for every contact."""
     return kernel(function, inline=True)
-
-
-def is_cached(scheme: str) -> bool:
-    """True if a run in the word scheme `scheme` has left the kernels of exactly these sources on disk."""
-    return (CACHE / scheme).exists()
-
-
-def note_cached(scheme: str) -> None:
-    """Note that the kernels for `scheme` are on disk now."""
-    if CACHE.exists():
-        (CACHE / scheme).touch()

@@ -3,11 +3,15 @@
 numba numbers such files and keeps an index of them. Two processes that compile at the same time, for two word
 schemes perhaps, may take the same number, and what one of them has compiled is then found under the name of
 the other. Here a file is named by the types, and says for which types it is.
+
+numba also keeps apart what was compiled in different folders. Our cache is named by the sources themselves
+(jit.py), so two copies of the same sources share what is in it.
 """
 
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 from typing import Any
 
 from numba.core.caching import IndexDataCacheFile
@@ -32,8 +36,8 @@ class KeptCode(IndexDataCacheFile):
         return str(self._data_name(int(hashlib.sha256(str(key).encode()).hexdigest()[:12], 16)))
 
 
-def keep_code(dispatcher: Any) -> None:
-    """Have numba keep the machine code of `dispatcher` in files of our kind."""
+def keep_code(dispatcher: Any, folder: Path) -> None:
+    """Have numba keep the machine code of `dispatcher` in files of our kind in `folder`."""
     cache = dispatcher._cache
-    base = cache._impl.filename_base
-    cache._cache_file = KeptCode(cache._cache_path, base, cache._impl.locator.get_source_stamp())
+    cache._impl.locator._cache_path = str(folder)
+    cache._cache_file = KeptCode(str(folder), cache._impl.filename_base, None)

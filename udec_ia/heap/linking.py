@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import update_wrapper
+from pathlib import Path
 from typing import Any
 
 from numba import njit, types
@@ -20,7 +21,9 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
+from udec_ia.heap.compiling import compiling
 from udec_ia.heap.kept import keep_code
+from udec_ia.signals import poll
 
 
 class _NoEnvironment:
@@ -60,8 +63,8 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
             found[library] = None
 
 
-class _WholeCompiler(Compiler):
-    form: type[JITCodeLibrary] = _Whole
+class _KernelCompiler(Compiler):
+    form: type[JITCodeLibrary]
 
     def define_pipelines(self) -> Any:
         state = self.state
@@ -70,17 +73,29 @@ class _WholeCompiler(Compiler):
         return super().define_pipelines()
 
 
-class _PartCompiler(_WholeCompiler):
+class _PartCompiler(_KernelCompiler):
     form = _Part
 
 
-class Kernel:
-    """A compiled function in both its forms: called from Python it is whole, from a kernel a part."""
+class _WholeCompiler(_KernelCompiler):
+    form = _Whole
 
-    def __init__(self, function: Callable[..., Any], **flags: Any) -> None:
+    def compile_extra(self, function: Callable[..., Any]) -> Any:
+        """Compile `function` with all the parts that it needs. What is found on disk does not come here."""
+        with compiling():
+            return super().compile_extra(function)
+
+
+class Kernel:
+    """A compiled function in both its forms: called from Python it is whole, from a kernel a part.
+
+    folder: where the machine code of the whole is kept.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path, **flags: Any) -> None:
         update_wrapper(self, function)
         self.whole = njit(cache=True, no_cfunc_wrapper=True, pipeline_class=_WholeCompiler, **flags)(function)
-        keep_code(self.whole)
+        keep_code(self.whole, folder)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
         )(function)
@@ -93,7 +108,11 @@ class _KernelType(types.Dispatcher):
     """What a kernel is to the kernels that call it."""
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """Signature of a call, for which the part is compiled unless it has been."""
+        """Signature of a call, for which the part is compiled unless it has been.
+
+        Between the parts of what takes a minute to compile, an interrupt does no harm.
+        """
+        poll()
         return super().get_call_type(context, tuple(types.unliteral(arg) for arg in args), kws)
 
 

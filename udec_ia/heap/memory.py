@@ -23,12 +23,12 @@ from __future__ import annotations
 
 from offsets.generated import IHPNT, JUNK, KH, KHG, MFREE, MTOP, NERR, NWANT
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
+from udec_ia.heap.array import OVERFLOW
 from udec_ia.heap.jit import kernel
 
 JNEXT: Offset = HEAD
 JSIZE: Offset = (1, 1, 1)
 JSIZES: Offset = (2, 2, 2)
-OVERFLOW = 1  # error 1, memory overflow
 
 
 @kernel
@@ -51,6 +51,14 @@ def _link_chain(h: Memory, before: int, group: int) -> None:
 
 
 @kernel
+def want(h: Memory, words: int) -> None:
+    """Ask for `words` words of fresh memory (NWANT): error 1, unless there is another error already."""
+    h.ci[NWANT] = words
+    if h.ci[NERR] == 0:
+        h.ci[NERR] = OVERFLOW
+
+
+@kernel
 def find(h: Memory, nv: Offset) -> int:
     """Address of a group of the size `nv` (NVBL, NVCR, ...), its words zero.
 
@@ -68,8 +76,7 @@ def find(h: Memory, nv: Offset) -> int:
     else:
         group = h.ci[MFREE]
         if group + n - 1 > h.ci[MTOP]:
-            h.ci[NERR] = OVERFLOW
-            h.ci[NWANT] = n
+            want(h, n)
             return int64(0)
         h.ci[MFREE] = group + n
     for i in range(n):
@@ -111,8 +118,7 @@ def room(h: Memory, words: int) -> bool:
     out of memory never leaves the map half-made.
     """
     if h.ci[MFREE] + words - 1 > h.ci[MTOP]:
-        h.ci[NERR] = OVERFLOW
-        h.ci[NWANT] = words
+        want(h, words)
         return False
     return True
 

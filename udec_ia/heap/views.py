@@ -1,9 +1,9 @@
 """What a kernel sees of the program's memory, and how compiled code sees it.
 
-An array of numba is seven words and a reference count, and the memory is handed to every kernel. So
-Memory has a type of its own when compiled: four bare addresses, which stay in registers, and nothing
-to count. The arrays live while a kernel runs because its caller holds the Memory; a kernel never keeps
-or returns one.
+An array of numba is seven words and a reference count, and the memory is handed to every kernel. So Memory
+has a type of its own when compiled: four bare addresses, which stay in registers, and nothing to count; a
+fifth would go over the stack at every call, so `ra`, the same address as `ia`, is made of that. The arrays
+live while a kernel runs because its caller holds the Memory; a kernel never keeps or returns one.
 """
 
 from __future__ import annotations
@@ -12,40 +12,75 @@ from functools import reduce
 from typing import Any, NamedTuple
 
 from numba import types
-from numba.extending import NativeValue, make_attribute_wrapper, models, register_model, typeof_impl, unbox
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    NativeValue,
+    infer_getattr,
+    lower_getattr,
+    make_attribute_wrapper,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
 from numba.np.numpy_support import from_dtype
 
 
 class Memory(NamedTuple):
     """All that a kernel sees.
 
-    ia: IA() as integers; ra: the same bytes as reals; ci, cr: integers and reals of the common block,
-    indexed by the names of `offsets.generated`.
+    ia: IA() as integers; ra: the same bytes as reals; ci, cr, cd: integers, reals and doubles of the common
+    block, indexed by the names of `offsets.generated`.
     """
 
     ia: Any
     ra: Any
     ci: Any
     cr: Any
+    cd: Any
 
 
 class MemoryType(types.Type):
-    """Compiled type of Memory for one word scheme; `dtypes` are those of its four arrays."""
+    """Compiled type of Memory for one word scheme; `dtypes` are those of its five arrays."""
 
     def __init__(self, *dtypes: Any) -> None:
         self.dtypes = dtypes
         super().__init__(name=f"Memory{dtypes}")
 
 
+def _kept(kind: MemoryType) -> list[tuple[str, Any]]:
+    """The arrays whose addresses are kept, and their types."""
+    return [(name, d) for name, d in zip(Memory._fields, kind.dtypes, strict=True) if name != "ra"]
+
+
 @register_model(MemoryType)
 class _FourPointers(models.StructModel):
     def __init__(self, manager: Any, kind: MemoryType) -> None:
-        pointers = [types.CPointer(dtype) for dtype in kind.dtypes]
-        super().__init__(manager, kind, list(zip(Memory._fields, pointers, strict=True)))
+        super().__init__(manager, kind, [(name, types.CPointer(dtype)) for name, dtype in _kept(kind)])
 
 
 for _name in Memory._fields:
-    make_attribute_wrapper(MemoryType, _name, _name)
+    if _name != "ra":
+        make_attribute_wrapper(MemoryType, _name, _name)
+
+
+def _pointer_to_reals(kind: MemoryType) -> Any:
+    return types.CPointer(kind.dtypes[Memory._fields.index("ra")])
+
+
+@infer_getattr
+class _Reals(AttributeTemplate):
+    key = MemoryType
+
+    def resolve_ra(self, kind: MemoryType) -> Any:
+        return _pointer_to_reals(kind)
+
+
+@lower_getattr(MemoryType, "ra")
+def _reals(context: Any, builder: Any, kind: MemoryType, value: Any) -> Any:
+    """The address of `ia` as that of reals."""
+    pointers = context.make_helper(builder, kind, value=value)
+    return builder.bitcast(pointers.ia, context.get_value_type(_pointer_to_reals(kind)))
 
 
 @typeof_impl.register(Memory)
@@ -58,7 +93,7 @@ def _addresses(kind: MemoryType, memory: Any, c: Any) -> Any:
     """Code that takes the four addresses out of the Python object `memory`."""
     pointers = c.context.make_helper(c.builder, kind)
     failed = []
-    for name, dtype in zip(Memory._fields, kind.dtypes, strict=True):
+    for name, dtype in _kept(kind):
         array_type = types.Array(dtype, 1, "C")
         member = c.pyapi.object_getattr_string(memory, name)
         array = c.unbox(array_type, member)

@@ -9,6 +9,13 @@ block leaves it whole.
 
 Nothing is ever moved to a corner that is merely near: a cut that would leave an edge shorter than the
 smallest allowed, or that runs almost along an edge, is refused with its coordinates.
+
+The smallest edge, while the rounding length is still open, is what the reals resolve, however long the edge
+that is cut: EDGE_DIGITS last digits of the coordinates (ops.limits). The end of a cut is found to some of
+them, so the length of the edge is known to a part in a thousand, and so is the area of the piece whose width
+it is. The rounding length that such an edge asks for, an eighth of it, is 1250 digits, and FTOL, the least
+length that decides about a contact, is 62. Later two rounding lengths are the limit, which were held against
+the digits when they were set.
 """
 
 from __future__ import annotations
@@ -22,10 +29,8 @@ from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.lists import next_corner
 
-MOST = 64  # crossings of one block that can be handled
-OK, TOO_CLOSE, TOO_SHORT = 0, 1, 2
+OK, TOO_CLOSE, TOO_SHORT, TOO_MANY = 0, 1, 2, 3
 GRAZING = 0.01  # sine of the smallest angle between a cut and an edge
-SHORTEST = 1.0e-3  # shortest new edge, as a part of the cut edge, while the rounding length is still open
 LEAST, SLACK = 5, 6  # columns of a line
 T, X, Y = 0, 1, 2
 CORNER, AT = 0, 1
@@ -100,7 +105,8 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
     """Crossings of the outline of block `ib` with the line, in order along the line.
 
     where: rows (distance along the line, x, y). which: rows (corner, 1 at that corner or 0 on the edge
-    that ends at it). Returns their number, or -1 if the block cannot be treated (the place is in row 0).
+    that ends at it). Returns their number, -1 if the block cannot be treated (the place is in row 0), or
+    -2 if there are more of them than rows.
     """
     ip0 = iget(h, ib, KP)
     n = 0
@@ -120,8 +126,8 @@ def crossings(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
         elif hit:
             t, x, y = _edge_crossing(h, ip, line)
         if hit:
-            if n == MOST:
-                return -1
+            if n == len(where):
+                return -2
             k = n
             while k > 0 and where[k - 1, T] > t:
                 for column in range(3):
@@ -170,11 +176,8 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
         if at == 0:
             vx, vy = x - getr(h, ia, KXP), y - getr(h, ia, KYP)
             part = np.sqrt(vx * vx + vy * vy)
-            least = min(part, z - part)
-            if least < line[LEAST]:
+            if min(part, z - part) < line[LEAST]:
                 return TOO_SHORT
-            if rounding_is_open(h) and least < z * real(h, SHORTEST):
-                return TOO_CLOSE
     return OK
 
 
@@ -197,11 +200,11 @@ def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
 def try_cuts(h: Memory, ib: int, line: Any, where: Any, which: Any) -> tuple[int, int]:
     """Can block `ib` be split wherever the line crosses it? Status and number of cuts.
 
-    The place of what is refused is put in row 0 of `where`.
+    The place of what is refused is put in row 0 of `where`. TOO_MANY asks for more rows.
     """
     n = crossings(h, ib, line, where, which)
     if n < 0:
-        return TOO_CLOSE, 0
+        return TOO_CLOSE if n == -1 else TOO_MANY, 0
     cuts = 0
     for k in range(0, n - 1, 2):
         if is_cut(line, where, k):

@@ -14,8 +14,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from offsets.generated import (
     DTOL,
     ETOL,
@@ -50,7 +48,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.bridge import flag_all
-from udec_ia.kernels.cross import AT, CORNER, MOST, OK, X, Y, first_cut, rounding_is_open, try_cuts
+from udec_ia.kernels.cross import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.ford import restart, settle_all
 from udec_ia.kernels.lists import idomp, is_corner, nextcp, prevcp
 from udec_ia.kernels.masses import share_extension
@@ -61,7 +59,7 @@ from udec_ia.kernels.tolerances import set_rounding
 from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.update import update, update_all
 
-DONE, NO_MEMORY, NO_BOXES, REFUSED_CLOSE, REFUSED_SHORT = 0, 1, 2, 3, 4
+DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
 
 
 @kernel
@@ -108,24 +106,27 @@ def in_path(boxes: Any, k: int, line: Any, far: Any) -> bool:
 
 
 @kernel
-def path(h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where: Any) -> tuple[int, int]:
-    """Rows of the blocks that the line splits: status and their number.
+def path(
+    h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where: Any, which: Any
+) -> tuple[int, int, int]:
+    """Rows of the blocks that the line splits: status, their number and that of the cuts.
 
-    When a block refuses, its address is returned instead of the number, the place in row 0 of `where`.
+    When a block refuses, its address is returned instead of the number, the place in row 0 of `where`. With
+    NO_ROWS a block has more crossings than `where` and `which` have rows.
     """
-    which = np.empty((MOST, 2), np.int64)
     far = (line[0] + line[2] * line[4], line[1] + line[3] * line[4])
-    found = 0
+    found, all_cuts = 0, 0
     for k in range(n):
         if not in_path(boxes, k, line, far):
             continue
         what, cuts = try_cuts(h, blocks[k], line, where, which)
         if what != OK:
-            return REFUSED_CLOSE + what - 1, blocks[k]
+            return REFUSED_CLOSE + what - 1, blocks[k], 0
         if cuts > 0:
             rows[found] = k
             found += 1
-    return DONE, found
+            all_cuts += cuts
+    return DONE, found, all_cuts
 
 
 @kernel
@@ -219,23 +220,28 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
 
 @kernel
 def cut_path(
-    h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, found: int, soft: Any
+    h: Memory,
+    boxes: Any,
+    blocks: Any,
+    n: int,
+    line: Any,
+    rows: Any,
+    found: int,
+    cuts: int,
+    where: Any,
+    which: Any,
+    soft: Any,
 ) -> tuple[int, int]:
-    """Split the blocks in the given rows and update the domains at the cracks' ends.
+    """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
-    Returns the status and the new number of boxes.
+    `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
+    so `where` and `which` do as they did for `path`. Returns the status and the new number of boxes.
     """
-    where, which = np.empty((MOST, 3), line.dtype), np.empty((MOST, 2), np.int64)
     first = n
     rounding_length = h.cr[DTOL]
     need = size_of(h, NVBL) + 4 * size_of(h, NVCR) + 6 * size_of(h, NVCN) + 5 * size_of(h, NVDO)
     if soft is not None:
         need += size_of(h, NVSD) + off_grid(h) * size_of(h, NVBN)
-    cuts = 0
-    for r in range(found):
-        cuts += try_cuts(h, blocks[rows[r]], line, where, which)[1]
-    if n + cuts > len(blocks):
-        return NO_BOXES, n
     if not room(h, need * cuts + h.ci[NSPARE]):  # for the whole line, so that no cut is ever interrupted
         return NO_MEMORY, n
     for r in range(found):

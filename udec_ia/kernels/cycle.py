@@ -56,7 +56,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any
                 return done
             h.ci[JPHASE] = BLOCKS
         h.ci[MCTOT] += 1
-        h.cr[TIME] += h.cr[TDEL]
+        h.cd[TIME] += h.cr[TDEL]
         done += 1
         if h.ci[NERR] != 0:
             return done

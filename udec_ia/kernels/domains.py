@@ -8,9 +8,9 @@ A contact point counts with the velocities of both its blocks: any point of a do
 no faster than two points that were looked at, and no contact can be missed.
 
 A domain is updated already when the sum would exceed ETOL in the next step, so that what is nearly near
-enough is not passed in one long step. In a step with a relative displacement of more than 2 ETOL two blocks
-can go from a gap of ATOL to an overlap of more than CTOL, and no contact between them would ever be formed:
-if any have, that is an error (through.py).
+enough has its contact before it touches. In a step with a relative displacement of more than ETOL two blocks
+can go from no overlap to one of more than CTOL, with which no contact is formed: if any have, that is an
+error. Why nothing else can be missed is said in through.py.
 
 While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
 block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
@@ -56,9 +56,7 @@ from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.points import velocity_at
 from udec_ia.kernels.segments import loop_start
 from udec_ia.kernels.through import gone_through
-from udec_ia.kernels.touch import VIRTUAL
-
-OVERLAP_TOO_GREAT = 15
+from udec_ia.kernels.touch import OVERLAP_TOO_GREAT, VIRTUAL
 
 
 @kernel
@@ -132,9 +130,11 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
             umax += moved
         putr(h, idm, KUMAX, umax)
         most = max(most, umax)
-        if moved > h.cr[ETOL] + h.cr[ETOL] and h.ci[NERR] == 0 and gone_through(h, idm):
-            h.ci[NERR] = OVERLAP_TOO_GREAT
-            h.ci[IERAD] = idm
+        if moved > h.cr[ETOL] and h.ci[NERR] == 0:
+            ip = gone_through(h, idm, moved)
+            if ip != 0:
+                h.ci[NERR] = OVERLAP_TOO_GREAT
+                h.ci[IERAD] = ip
         idm = iget(h, idm, KD)
     h.cr[UPEND] = real(h, 0.0)
     return bool(most > h.cr[ETOL])

@@ -35,6 +35,7 @@ from offsets.generated import (
     KBFY,
     KBI,
     KBM,
+    KBRO,
     KC,
     KCFN,
     KCFS,
@@ -134,6 +135,69 @@ def kinetic(h: Memory, soft: Any) -> float:
                     twice += _kinetic_of_strain(h, iget(h, ib, KBEX))
         ib = iget(h, ib, KB)
     return twice / 2
+
+
+@inlined
+def _moves(h: Memory, ib: int, speed: float) -> bool:
+    """True if a point of block `ib` with that speed gets anywhere in a step: if places can tell it."""
+    far = abs(getr(h, ib, KX)) + abs(getr(h, ib, KY)) + getr(h, ib, KBRO)
+    return far + speed * h.cr[TDEL] > far
+
+
+@kernel
+def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
+    """As `liveliest`, of the grid-points of block `ib`."""
+    total, most, at = 0.0, 0.0, int64(0)
+    ig = iget(h, iget(h, ib, KBEX), KFG)
+    while ig != 0:
+        xd, yd = np.float64(getr(h, ig, KXDG)), np.float64(getr(h, ig, KYDG))
+        energy = getr(h, ig, KGPM) * (xd * xd + yd * yd) / 2
+        if _moves(h, ib, abs(getr(h, ig, KXDG)) + abs(getr(h, ig, KYDG))):
+            total += energy
+        else:
+            energy = 0.0
+        if energy > most:
+            most, at = energy, ig
+        ig = iget(h, ig, KG)
+    return total, most, at
+
+
+@kernel
+def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
+    """Kinetic energy of block `ib`, which has no grid-points, at the velocities of the last half step."""
+    xd, yd, td = np.float64(getr(h, ib, KXD)), np.float64(getr(h, ib, KYD)), np.float64(getr(h, ib, KTD))
+    twice = getr(h, ib, KBM) * (xd * xd + yd * yd) + getr(h, ib, KBI) * td * td
+    turning = abs(getr(h, ib, KTD))
+    if soft is not None and iget(h, ib, HEAD) == MSDEF:
+        ie = iget(h, ib, KBEX)
+        e11, e12 = np.float64(getr(h, ie, KED11)), np.float64(getr(h, ie, KED12))
+        twice += inertia(h, ie, e11, e12, np.float64(getr(h, ie, KED22)))
+        turning += abs(getr(h, ie, KED11)) + abs(getr(h, ie, KED12)) + abs(getr(h, ie, KED22))
+    speed = abs(getr(h, ib, KXD)) + abs(getr(h, ib, KYD)) + turning * getr(h, ib, KBRO)
+    return float(twice / 2) if _moves(h, ib, speed) else 0.0
+
+
+@kernel
+def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
+    """Kinetic energy at the velocities of the last half step, which is never negative, in J/m.
+
+    Then what the block or grid-point has of it that has most, and the address of that; 0 if nothing moves.
+    What is so slow that a step does not change its place is at rest.
+    """
+    total, most, at = 0.0, 0.0, int64(0)
+    ib = int64(h.ci[IBPNT])
+    while ib != 0:
+        if iget(h, ib, KBFIX) != FIXED:
+            if soft is not None and iget(h, ib, HEAD) == MFDEF:
+                energy, best, on = _motion_of_points(h, ib)
+            else:
+                energy = _motion_of_block(h, ib, soft)
+                best, on = energy, ib
+            total += energy
+            if best > most:
+                most, at = best, on
+        ib = iget(h, ib, KB)
+    return total, most, at
 
 
 @kernel

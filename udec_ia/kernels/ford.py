@@ -44,6 +44,7 @@ from offsets.generated import (
     KL2,
     KLB1,
     KLB2,
+    KRAD,
     KXC,
     KXDC,
     KYC,
@@ -61,15 +62,15 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.depth import do_not_meet
+from udec_ia.kernels.gaps import gap_taken
 from udec_ia.kernels.jointlaw import by_law, has_law, is_open
 from udec_ia.kernels.lists import is_contact
 from udec_ia.kernels.points import putfce, velocity_at
 from udec_ia.kernels.reclass import settle
 from udec_ia.kernels.segments import ahead_by, same_segment
-from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, faces
+from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, OVERLAP_TOO_GREAT, VIRTUAL, faces
 from udec_ia.kernels.works import note_corners, note_damping, note_law_damping, note_opening
-
-OVERLAP_TOO_GREAT = 15
 
 TURNED = 0.3  # sine of the angle; a little more than near.FACING, so that contacts do not come and go
 
@@ -109,9 +110,9 @@ def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool) -> b
 
 @inlined
 def overtaken(h: Memory, ic: int) -> bool:
-    """True if open contact `ic` and a neighbour on the same segment have passed each other.
+    """True if contact `ic` and a neighbour on the same segment have passed each other.
 
-    Something has slipped through the gap: the contact is no wall any more.
+    If it is open, something has slipped through its gap.
     """
     code = iget(h, ic, KCCOD)
     after, before, ip = iget(h, ic, KL1), iget(h, ic, KLB1), iget(h, ic, KCP1)
@@ -135,8 +136,35 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 
 @inlined
+def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic):
+        return True
+    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, KXC), getr(h, ic, KYC)))
+
+
+@kernel
+def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if contact `ic` overlaps by more than a narrow tip can stand.
+
+    Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
+    arc's centre is in the other block and the contact has passed a neighbour: the tip is squeezed out between
+    two blocks that touch.
+    """
+    gap = nx, ny, overlap, getr(h, ic, KXC), getr(h, ic, KYC)
+    if do_not_meet(h, iget(h, ic, KB1), iget(h, ic, KB2), gap):
+        return True
+    code, ip, iq = iget(h, ic, KCCOD), iget(h, ic, KCP1), iget(h, ic, KCP2)
+    if (code == EDGE_CORNER or getr(h, ip, KRAD) >= overlap) and (
+        code == CORNER_EDGE or getr(h, iq, KRAD) >= overlap
+    ):
+        return False
+    return overtaken(h, ic)
+
+
+@inlined
 def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """Delete contact `ic` if it is open too far, turned away or overtaken, or idle beside a twin.
+    """Delete contact `ic` if it is open too far or no wall any more, or idle beside a twin.
 
     A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
     """
@@ -144,7 +172,7 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         return False
     is_bridge = iget(h, ic, KD1) == iget(h, ic, KD2)
     if overlap >= -h.cr[BTOL]:
-        gone = overlap <= 0 and (turned_away(h, ic, nx, ny) or overtaken(h, ic))
+        gone = overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap)
         if not gone and (is_bridge or not has_twin(h, ic)):
             return False
     h.ci[NBROKE] += 1
@@ -171,12 +199,16 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
 def push(
     h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
 ) -> None:
-    """Let the blocks of contact `ic` feel its forces; error 15 if it overlaps by too much."""
+    """Let the blocks of contact `ic` feel its forces.
+
+    Error 15 if it overlaps by too much, or if a tip is squeezed out between two others.
+    """
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, KXC), getr(h, ic, KYC)
     putfce(h, iget(h, ic, KB1), ic, -fx, -fy, x, y, soft)
     putfce(h, iget(h, ic, KB2), ic, fx, fy, x, y, soft)
-    if overlap > h.cr[DTOL2] and h.ci[NERR] == 0:
+    too_great = overlap > h.cr[DTOL2] or (overlap > h.cr[FTOL] and squeezed(h, ic, nx, ny, overlap))
+    if too_great and h.ci[NERR] == 0:
         h.ci[NERR] = OVERLAP_TOO_GREAT
         h.ci[IERAD] = ic
 
@@ -223,13 +255,13 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
     putr(h, ic, KCS, getr(h, ic, KCS) + dus)
     if fn <= zero:
         if energy is not None:
-            h.cr[WFRIC] += held * fs / (ks + ks)
+            h.cd[WFRIC] += held * fs / (ks + ks)
         fn, fs = zero, zero
     most = h.cr[COH + m] + h.cr[AMU + m] * fn
     dashpot = h.cr[BETA] * ks * sliding
     if abs(fs) > most:
         slip = (abs(fs) - most) / ks
-        h.cr[WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
+        h.cd[WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
         fs = most if fs > zero else -most
         dashpot = zero
     if energy is not None and soft is not None and before > zero and fn > zero:

@@ -62,11 +62,11 @@ def by_law(h: Memory, laws: Laws, ic: int, before: float, sliding: float) -> tup
     dfn, dfs = force_increment(h, laws, ic, fn, fs, dun, dus, before, us)
     m = iget(h, ic, KCM) - 1
     if fn + dfn <= zero:
-        h.cr[WFRIC] += fs * (dus + fs / h.cr[AKS + m]) * half
+        h.cd[WFRIC] += fs * (dus + fs / h.cr[AKS + m]) * half
         no_force(h, ic)
         return zero, zero
     lost = (fn + dfn * half) * (dun - dfn / h.cr[AKN + m]) + (fs + dfs * half) * (dus - dfs / h.cr[AKS + m])
-    h.cr[WFRIC] += lost
+    h.cd[WFRIC] += lost
     putr(h, ic, KCFN, fn + dfn)
     putr(h, ic, KCFS, fs + dfs)
     putr(h, ic, KCS, us + dus)

@@ -9,6 +9,9 @@ addresses of machine code, as numbers, and calls what lies there with a fixed li
 `machine_code` brings a compiled law to this form, `call` calls it. A call costs what it costs in C, and
 no kernel is compiled anew for it. Laws calculate with 64-bit reals in every word scheme. Kernels that are not
 compiled call the Python function itself.
+
+What a law raises never comes to the kernel: its increments are then no numbers, and it is noted what it was
+called with.
 """
 
 from __future__ import annotations
@@ -106,12 +109,12 @@ def is_given(laws: Laws, i: int) -> bool:
 def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
     """What law `i` returns for material `mat` and six reals: three reals, of which joint laws use two.
 
-    Where Python raises, compiled arithmetic gives what is not a number.
+    What is not a number if the law raises an exception, whatever it is: no pass may end half way.
     """
     try:
         with np.errstate(all="ignore"):
             return laws.calls[i](*map(np.float64, state), laws.materials[mat - 1])
-    except (ArithmeticError, ValueError):
+    except Exception:
         return (np.nan, np.nan, np.nan)
 
 
@@ -171,11 +174,34 @@ def _call(laws: Any, i: Any, mat: Any, state: Any) -> Callable[..., Any]:
     return impl
 
 
-def machine_code(law: Any, n: int) -> Any:
-    """A compiled law, which returns `n` numbers, in the form that kernels call: its `address` is the law."""
+@intrinsic
+def _note(typing: Any, place: Any, state: Any) -> Any:
+    """Put the reals `state` at a machine address, unless there are numbers already."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        to = builder.inttoptr(args[0], _REAL.as_pointer())
+        first = builder.load(to)
+        with builder.if_then(builder.fcmp_unordered("uno", first, first)):
+            for k, real in enumerate(cgutils.unpack_tuple(builder, args[1], 6)):
+                builder.store(real, cgutils.gep_inbounds(builder, to, k))
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.UniTuple(types.float64, 6)), generate
+
+
+def machine_code(law: Any, n: int, noted: Any) -> Any:
+    """A compiled law, which returns `n` numbers, in the form that kernels call: its `address` is the law.
+
+    noted: six reals that are no numbers. When the law raises an exception for the first time, it leaves there
+    what it was called with. They must live as long as the law.
+    """
     result = types.CPointer(types.UniTuple(types.float64, n))
+    place = noted.ctypes.data
 
     def entry(a: float, b: float, c: float, d: float, e: float, f: float, material: Any, result: Any) -> None:
-        result[0] = law(a, b, c, d, e, f, material[0])
+        try:
+            result[0] = law(a, b, c, d, e, f, material[0])
+        except Exception:
+            _note(place, (a, b, c, d, e, f))
 
     return numba.cfunc(types.void(*STATE, types.CPointer(MATERIAL), result))(entry)

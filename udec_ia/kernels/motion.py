@@ -12,6 +12,8 @@ every length to rounding, so that a block does not grow while it spins.
 
 from __future__ import annotations
 
+import numpy as np
+
 from offsets.generated import (
     CON1,
     CON2,
@@ -70,6 +72,21 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
         putr(h, ip, KXCP, xn + (c * rx - s * ry))
         putr(h, ip, KYCP, yn + (s * rx + c * ry))
         fetch(h, ip, NVCR, LEAD)
+        ip = iget(h, ip, KR)
+        if ip == ip0:
+            return
+
+
+@kernel
+def carry_corners(h: Memory, ib: int) -> None:
+    """Velocities of the corners of block `ib` from those of the block."""
+    x, y = np.float64(getr(h, ib, KX)), np.float64(getr(h, ib, KY))
+    xd, yd, td = np.float64(getr(h, ib, KXD)), np.float64(getr(h, ib, KYD)), np.float64(getr(h, ib, KTD))
+    ip0 = iget(h, ib, KP)
+    ip = ip0
+    while True:
+        putr(h, ip, KXDP, xd - td * (np.float64(getr(h, ip, KYP)) - y))
+        putr(h, ip, KYDP, yd + td * (np.float64(getr(h, ip, KXP)) - x))
         ip = iget(h, ip, KR)
         if ip == ip0:
             return

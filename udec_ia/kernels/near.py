@@ -16,10 +16,12 @@ import numpy as np
 from offsets.generated import (
     ATOL,
     CTOL,
+    DTOL,
     ETOL,
     FTOL,
     GTOL,
     KCCOD,
+    KP,
     KR,
     KRAD,
     KXC,
@@ -31,7 +33,9 @@ from offsets.generated import (
     NTIPS,
 )
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.depth import do_not_meet
+from udec_ia.kernels.gaps import taken_between
 from udec_ia.kernels.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.segments import (
     ARC,
@@ -45,7 +49,6 @@ from udec_ia.kernels.segments import (
     same_segment,
 )
 from udec_ia.kernels.sort import stable_order
-from udec_ia.kernels.tips import blocked
 from udec_ia.kernels.touch import (
     CORNER_CORNER,
     CORNER_EDGE,
@@ -61,6 +64,7 @@ from udec_ia.kernels.touch import (
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 AROUND = 6  # items looked at on either side for a contact of the same two blocks
+STRAY = -1  # no code: what overlaps can have no contact
 SMALL = 48  # segments of a domain in which all pairs are tried
 
 
@@ -179,18 +183,45 @@ def facing(h: Memory, seg: Any, i: int, j: int, most: float) -> tuple[int, float
 
 
 @kernel
-def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
+def _unless_stray(h: Memory, ib: int, jb: int, overlap: float, x: float, y: float) -> int:
+    """0, or STRAY if blocks `ib` and `jb` overlap by more than FTOL and have no contact near (x, y)."""
+    if overlap <= h.cr[FTOL]:
+        return 0
+    near = h.cr[DTOL] + h.cr[FTOL] + overlap
+    ip = iget(h, ib, KP)
+    item = nextcp(h, ib, ip)
+    while item != ip:
+        if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, KCCOD) != VIRTUAL:
+            dx, dy = getr(h, item, KXC) - x, getr(h, item, KYC) - y
+            if dx * dx + dy * dy <= near * near:
+                return 0
+        item = nextcp(h, ib, item)
+    return STRAY
+
+
+@kernel
+def _taken(h: Memory, seg: Any, i: int, j: int, gap: Any) -> bool:
+    """True if a third block stands in the gap of the contact that segments `i` and `j` would have."""
+    ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
+    return taken_between(h, ib, iad, nextcp(h, ib, iad), jb, gap) or taken_between(
+        h, jb, jad, nextcp(h, jb, jad), ib, gap
+    )
+
+
+@kernel
+def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
 
-    Urgent is the greatest overlap at the place in the list where the contact belongs. An open contact that
-    would be given up at once, because something stands in its gap, is not made but asked for again.
+    STRAY if their blocks overlap there, and no contact can be made. Urgent is the greatest overlap at the
+    place in the list where the contact belongs. An open contact that would be given up at once, because
+    something stands in its gap, is not made but asked for again.
     """
     zero = real(h, 0.0)
     ib, ip, iarc = seg[i, BLOCK], seg[i, CORNER], seg[i, ARC]
     jb, jp, jarc = seg[j, BLOCK], seg[j, CORNER], seg[j, ARC]
     if ib == jb or iarc + jarc == 0:
         return 0, zero
-    code, overlap = facing(h, seg, i, j, h.cr[CTOL])
+    code, overlap = facing(h, seg, i, j, h.cr[DTOL])
     if code == 0:
         return 0, zero
     if iarc == 1:
@@ -199,19 +230,24 @@ def judge(h: Memory, seg: Any, tips: Any, i: int, j: int) -> tuple[int, float]:
         had = _has_contact(h, jb, jp, ip, iarc)
     if had:
         return 0, zero
-    _, _, _, x, y, _ = meet(h, code, ip, jp)
+    nx, ny, _, x, y, _ = meet(h, code, ip, jp)
     if _one_beside(h, ib, seg[i, ITEM], jb, x, y) or _one_beside(h, jb, seg[j, ITEM], ib, x, y):
         return 0, zero
+    gap = nx, ny, overlap, x, y
+    if overlap > h.cr[FTOL] and do_not_meet(h, ib, jb, gap):
+        return 0, zero
+    if overlap > h.cr[CTOL]:
+        return _unless_stray(h, ib, jb, overlap, x, y), zero
     wrong = max(
         _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], x, y),
         _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], x, y),
     )
     if wrong > h.cr[ETOL]:
-        return 0, zero
+        return _unless_stray(h, ib, jb, overlap, x, y), zero
     passed = wrong > h.cr[FTOL]
-    if (passed and overlap <= 0) or (len(tips) > 0 and blocked(h, seg, tips, ib, jb, code, ip, jp)):
+    if (passed and overlap <= 0) or _taken(h, seg, i, j, gap):
         h.ci[NTIPS] += 1
-        return 0, zero
+        return _unless_stray(h, ib, jb, overlap, x, y), zero
     return code, overlap - wrong
 
 
@@ -234,8 +270,16 @@ def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float
     return min(ax, bx) - grow, min(ay, by) - grow, max(ax, bx) + grow, max(ay, by) + grow
 
 
+@inlined
+def goes_before(code: int, urgent: float, best: int, most: float) -> bool:
+    """True if a contact of that code and urgency goes before the best one until now; STRAY comes last."""
+    if code > 0:
+        return best <= 0 or urgent > most
+    return code == STRAY and best == 0
+
+
 @kernel
-def _search_all(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
+def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
     best, bi, bj = 0, 0, 0
     most = real(h, 0.0)
@@ -248,8 +292,8 @@ def _search_all(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
             cx, cy, dx, dy = box(h, seg, j, half)
             if cx > bx or dx < ax or cy > by or dy < ay:
                 continue
-            code, urgent = judge(h, seg, tips, i, j)
-            if code != 0 and (best == 0 or urgent > most):
+            code, urgent = judge(h, seg, i, j)
+            if goes_before(code, urgent, best, most):
                 best, bi, bj, most = code, i, j, urgent
     return best, bi, bj
 
@@ -282,7 +326,7 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 
 
 @kernel
-def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
+def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """As _search_all, but only pairs that share a cell of a grid as wide as the mean edge is long."""
     total = real(h, 0.0)
     half = h.cr[ATOL] * real(h, 0.5)
@@ -307,17 +351,20 @@ def _search_cells(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int
                 i, j = row[order[u]], row[order[v]]
                 if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                     continue
-                code, urgent = judge(h, seg, tips, i, j)
-                if code != 0 and (best == 0 or urgent > most):
+                code, urgent = judge(h, seg, i, j)
+                if goes_before(code, urgent, best, most):
                     best, bi, bj, most = code, i, j, urgent
         first = last
     return best, bi, bj
 
 
 @kernel
-def search(h: Memory, seg: Any, tips: Any, n: int) -> tuple[int, int, int]:
-    """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none."""
+def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+    """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none.
+
+    STRAY if nothing can be done any more, and two blocks overlap without a contact.
+    """
     h.ci[NTIPS] = 0
     if n <= SMALL:
-        return _search_all(h, seg, tips, n)
-    return _search_cells(h, seg, tips, n)
+        return _search_all(h, seg, n)
+    return _search_cells(h, seg, n)

@@ -4,6 +4,11 @@ Unbalanced is what accelerates something free: a rigid block, a grid-point of a 
 strains of a simply-deformable one; moments and strains as a force at the distance of the farthest corner.
 The weight counts, and so do the loads of boundary conditions: these are put on the force sums for a moment,
 whose old words are kept and put back, so that looking changes no bit.
+
+Balance is not rest: what slides or flies at a constant speed is in balance, and so is what swings through
+its state of rest. A mass m with the velocity v presses on a stiffness K with v sqrt(K m) before it is
+stopped. Over the force F that is carried, that is the root of the kinetic over the strain energy. So a model
+is at rest to within a ratio if neither its force ratio nor its kinetic over its strain energy is greater.
 """
 
 from __future__ import annotations
@@ -57,6 +62,7 @@ from offsets.generated import (
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.bounds import load, push_load
+from udec_ia.kernels.energy import liveliest, strain_of_blocks, strain_of_contacts
 from udec_ia.kernels.fdef import zone_area
 from udec_ia.kernels.motion import FIXED, GIVEN_X, GIVEN_Y
 from udec_ia.kernels.sdef import straining_force
@@ -228,3 +234,19 @@ def force_ratio(h: Memory, soft: Any) -> float:
     if most == 0:
         return most
     return most * count / total if total > 0 else real(h, np.inf)
+
+
+@kernel
+def motion_ratio(h: Memory, soft: Any) -> float:
+    """Kinetic over strain energy; 0 if nothing moves, infinite if something does and nothing is strained."""
+    moving, _, _ = liveliest(h, soft)
+    if moving == 0:
+        return 0.0
+    strained = strain_of_contacts(h) + strain_of_blocks(h, soft)
+    return moving / strained if strained > 0 else np.inf
+
+
+@kernel
+def at_rest(h: Memory, soft: Any, ratio: float) -> bool:
+    """True if the model is at rest to within `ratio`: the forces are balanced, and little moves."""
+    return force_ratio(h, soft) <= ratio and motion_ratio(h, soft) <= ratio

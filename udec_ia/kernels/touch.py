@@ -45,6 +45,8 @@ CORNER_EDGE = 2
 EDGE_CORNER = 3
 VIRTUAL = 4
 
+OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
+
 
 @inlined
 def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:

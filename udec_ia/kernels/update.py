@@ -1,8 +1,9 @@
 """Updating a domain: look for new contacts in it and make them (UPDATE, UPDT; report 2.2).
 
 An update makes the most urgent contact that the domain needs and looks again, in both parts if the
-domain was cut, until nothing more is needed. Every single contact leaves a sound map; when memory runs
-out the update stops between two contacts and can be taken up again.
+domain was cut, until nothing more is needed. Blocks that overlap then where no contact can be made are
+error 15. Every single contact leaves a sound map; when memory runs out the update stops between two contacts
+and can be taken up again.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ from offsets.generated import (
     ETOL,
     HTOL,
     IDPNT,
+    IERAD,
     KD,
     KD1,
     KD2,
     KDLOOP,
     KUMAX,
     NBROKE,
+    NERR,
     NTIPS,
     NVCN,
     NVDO,
@@ -31,11 +34,14 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.bridge import bridge
+from udec_ia.kernels.gaps import give_up_taken
 from udec_ia.kernels.hook import cut_among_pieces, rehook
-from udec_ia.kernels.near import search
+from udec_ia.kernels.near import SMALL, STRAY, search
 from udec_ia.kernels.segments import (
+    ARC,
     BLOCK,
     COLUMNS,
+    CORNER,
     ITEM,
     PIECE,
     collect,
@@ -43,7 +49,8 @@ from udec_ia.kernels.segments import (
     not_virtual,
     settle_loop,
 )
-from udec_ia.kernels.tips import find_tips, give_up_blocked
+from udec_ia.kernels.through import edge_lies_in
+from udec_ia.kernels.touch import OVERLAP_TOO_GREAT
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
 WAITING = 64  # domains that may wait for their turn in one update
@@ -74,8 +81,24 @@ def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
 
 
 @kernel
+def _without_contact(h: Memory, seg: Any, n: int, code: int, i: int, j: int) -> int:
+    """A corner, or an edge by its corner, that lies in another block where no contact tells it, or 0.
+
+    code, i, j: what the search has found. Edges are looked at in small domains, such as cracks.
+    """
+    if code == STRAY:
+        return int64(seg[i, CORNER] if seg[i, ARC] == 1 else seg[j, CORNER])
+    for one in range(n if n <= SMALL else 0):
+        for two in range(n):
+            edges = seg[one, ARC] + seg[two, ARC] == 0 and seg[one, BLOCK] != seg[two, BLOCK]
+            if edges and edge_lies_in(h, seg[one, CORNER], seg[two, BLOCK], seg[two, CORNER]):
+                return int64(seg[one, CORNER])
+    return int64(0)
+
+
+@kernel
 def updt(h: Memory, idm: int) -> tuple[int, int]:
-    """Make the most urgent contact in domain `idm` (UPDT), or give up one that a tip has blocked.
+    """Make the most urgent contact in domain `idm` (UPDT), or give up one in whose gap a third block stands.
 
     Returns what was done, and the new domain (CUT) or the domain that `idm` is part of now (MERGED).
     """
@@ -86,13 +109,16 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     ties = np.empty((min(h.ci[NVIRT], items), 3), np.int64)
     n, nties = collect(h, idm, seg, ties)
-    tips = find_tips(h, seg, n)
-    if len(tips) > 0:
-        found, merged = give_up_blocked(h, idm, seg, tips)
+    if getr(h, idm, KUMAX) >= h.cr[ETOL] + h.cr[ETOL]:  # a long step, or a domain that was flagged
+        found, merged = give_up_taken(h, idm, seg, n)
         if found:
             return MERGED, merged
-    code, i, j = search(h, seg, tips, n)
-    if code == 0:
+    code, i, j = search(h, seg, n)
+    if code <= 0:
+        ip = _without_contact(h, seg, n, code, i, j)
+        if ip != 0 and h.ci[NERR] == 0:
+            h.ci[NERR] = OVERLAP_TOO_GREAT
+            h.ci[IERAD] = ip
         return NOTHING, zero
     ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
     one, two = seg[i, PIECE], seg[j, PIECE]

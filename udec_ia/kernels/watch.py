@@ -16,11 +16,12 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.cycle import run_cycles
 from udec_ia.kernels.energy import height, kinetic, strain_of_blocks, strain_of_contacts
-from udec_ia.kernels.rest import force_ratio, unbalanced
+from udec_ia.kernels.rest import at_rest, force_ratio, unbalanced
 
 CHECK = 10  # cycles between two looks at the force ratio
 COMMON_BLOCK = 0
 UNBALANCED, RATIO, KINETIC, STRAIN = 0, 1, 2, 3
+INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
 
 
 @kernel
@@ -34,21 +35,23 @@ def quantity(h: Memory, which: int, soft: Any) -> float:
         return kinetic(h, soft)
     if which == STRAIN:
         return strain_of_contacts(h) + strain_of_blocks(h, soft)
-    return height(h) - h.cr[EREF]
+    return height(h) - h.cd[EREF]
 
 
 @kernel
-def number_now(h: Memory, ih: int, offset: int, is_real: int, soft: Any) -> float:
+def number_now(h: Memory, ih: int, offset: int, type_code: int, soft: Any) -> float:
     """What history `ih` has to record now; not a number if its group has gone."""
     kind, group = iget(h, ih, KHK), iget(h, ih, KHG)
     if kind < COMMON_BLOCK:
         return quantity(h, offset, soft)
     if kind == COMMON_BLOCK:
-        return float(h.cr[offset]) if is_real == 1 else float(h.ci[offset])
+        if type_code == DOUBLE:
+            return float(h.cd[offset])
+        return float(h.cr[offset]) if type_code == REAL else float(h.ci[offset])
     if group == 0:
         return np.nan
     k = (offset, offset, offset)
-    return float(getr(h, group, k)) if is_real == 1 else float(iget(h, group, k))
+    return float(getr(h, group, k)) if type_code == REAL else float(iget(h, group, k))
 
 
 @kernel
@@ -81,7 +84,7 @@ def record(h: Memory, soft: Any, places: Any, rows: Any, count: Any) -> bool:
         i += 1
         ih = iget(h, ih, KH)
     if due:
-        row[0], row[1] = h.ci[MCTOT], h.cr[TIME]
+        row[0], row[1] = h.ci[MCTOT], h.cd[TIME]
         count[0] += 1
     return due
 
@@ -90,10 +93,10 @@ def record(h: Memory, soft: Any, places: Any, rows: Any, count: Any) -> bool:
 def run_watched(
     h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any
 ) -> tuple[int, bool]:
-    """Up to `n` cycles; returns how many were completed, and whether the force ratio fell to `ratio`.
+    """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
     laws: the last four arguments of run_cycles. Stops early when NERR is set, when `rows` is full, and at
-    the ratio, which is looked at every CHECK cycles of the run; a negative one is never reached.
+    rest, which is looked at every CHECK cycles of the run; to within a negative ratio it never is.
     """
     done = 0
     while done < n and count[0] < len(rows):
@@ -106,6 +109,6 @@ def run_watched(
             record(h, laws[0], places, rows, count)
         if completed < asked or h.ci[NERR] != 0:
             return done, False
-        if ratio >= 0 and h.ci[MCTOT] % CHECK == 0 and force_ratio(h, laws[0]) <= ratio:
+        if ratio >= 0 and h.ci[MCTOT] % CHECK == 0 and at_rest(h, laws[0], ratio):
             return done, True
     return done, False

@@ -25,6 +25,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from offsets.generated import (
     AKS,
     ALPB,
@@ -102,9 +104,9 @@ def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None
     f: the force on it, weight and loads included.
     """
     if given:
-        h.cr[WBOUND] -= f * v * h.cr[TDEL]
+        h.cd[WBOUND] -= np.float64(f) * v * h.cr[TDEL]
     else:
-        h.cr[WMASS] += h.cr[ALPHA] * h.cr[TDEL] * real(h, 0.25) * m * (v + u) * (v + u)
+        h.cd[WMASS] += np.float64(h.cr[ALPHA]) * h.cr[TDEL] * 0.25 * m * (v + u) * (v + u)
 
 
 @kernel
@@ -135,7 +137,7 @@ def note_strain(h: Memory, ie: int) -> None:
     """Damping of the strain rates of extension `ie`."""
     e11, e12, e22 = strain(h, ie)
     u11, u12, u22 = getr(h, ie, KED11) + e11, getr(h, ie, KED12) + e12, getr(h, ie, KED22) + e22
-    h.cr[WMASS] += h.cr[ALPB] * h.cr[TDEL] * real(h, 0.25) * inertia(h, ie, u11, u12, u22)
+    h.cd[WMASS] += np.float64(h.cr[ALPB]) * h.cr[TDEL] * 0.25 * inertia(h, ie, u11, u12, u22)
 
 
 @kernel
@@ -149,7 +151,9 @@ def turning(h: Memory, ib: int, ahead: bool) -> float:
     if ahead:
         _, _, td = next_velocity(h, ib)
         e11, e12, e22 = strain(h, ie)
-    return (inertia(h, ie, e11, e12, e22) + getr(h, ib, KBI) * td * td) * real(h, 0.5)
+    w = np.float64(td)
+    of_strain = inertia(h, ie, np.float64(e11), np.float64(e12), np.float64(e22))
+    return (of_strain + getr(h, ib, KBI) * w * w) * 0.5
 
 
 @inlined
@@ -209,7 +213,7 @@ def note_loads(h: Memory) -> None:
                 e11, e12, e22 = strain(h, iget(h, ib, KBEX))
                 ux, uy = ux + e11 * rx + e12 * ry, uy + e12 * rx + e22 * ry
         if iget(h, ib, KBFIX) != FIXED:
-            h.cr[WBOUND] += (fx * (vx + ux) + fy * (vy + uy)) * h.cr[TDEL] * real(h, 0.5)
+            h.cd[WBOUND] += (np.float64(fx) * (vx + ux) + fy * (vy + uy)) * h.cr[TDEL] * 0.5
         iu = iget(h, iu, KU)
 
 
@@ -226,10 +230,10 @@ def note_forces(h: Memory, soft: Any) -> None:
                 note_block(h, ib)
             if soft is not None and kind == MSDEF:
                 note_strain(h, iget(h, ib, KBEX))
-                h.cr[WSHAPE] += turning(h, ib, True)
+                h.cd[WSHAPE] += turning(h, ib, True)
             if soft is not None and kind != MRIG:
-                taken = stress_power(h, ib, True) * h.cr[TDEL] * real(h, 0.5)
-                h.cr[WYIELD] += taken + real(h, strain_of_block(h, ib))
+                taken = np.float64(stress_power(h, ib, True)) * h.cr[TDEL] * 0.5
+                h.cd[WYIELD] += taken + strain_of_block(h, ib)
         ib = iget(h, ib, KB)
     if soft is not None:
         note_loads(h)
@@ -242,12 +246,12 @@ def note_stresses(h: Memory, soft: Any) -> None:
     while soft is not None and ib != 0:
         kind = iget(h, ib, HEAD)
         if kind != MRIG and iget(h, ib, KBFIX) != FIXED:
-            now = stress_power(h, ib, False)
-            h.cr[WYIELD] += now * h.cr[TDEL] * real(h, 0.5) - real(h, strain_of_block(h, ib))
+            now = np.float64(stress_power(h, ib, False))
+            h.cd[WYIELD] += now * h.cr[TDEL] * 0.5 - strain_of_block(h, ib)
             if kind == MSDEF:
-                h.cr[WSHAPE] -= turning(h, ib, False)
+                h.cd[WSHAPE] -= turning(h, ib, False)
             elif h.cr[BETA] != 0:
-                h.cr[WSTIF] += (point_power(h, ib) - now) * h.cr[TDEL]
+                h.cd[WSTIF] += (point_power(h, ib) - now) * h.cr[TDEL]
         ib = iget(h, ib, KB)
 
 
@@ -267,7 +271,7 @@ def note_opening(h: Memory, ic: int) -> None:
     """What the shear spring of contact `ic` held, whose hold is broken because it opens."""
     fs = getr(h, ic, KCFS)
     ks = h.cr[AKS + iget(h, ic, KCM) - 1]
-    h.cr[WFRIC] += fs * fs / (ks + ks)
+    h.cd[WFRIC] += fs * fs / (ks + ks)
 
 
 @inlined
@@ -279,7 +283,7 @@ def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) ->
     """
     if iget(h, iget(h, ic, KB1), HEAD) != MRIG or iget(h, iget(h, ic, KB2), HEAD) != MRIG:
         mean = (getr(h, ic, KCFN) + fn) * real(h, 0.5)
-        h.cr[WSHAPE] += mean * (closing * h.cr[TDEL] - grown)
+        h.cd[WSHAPE] += mean * (closing * h.cr[TDEL] - grown)
 
 
 @inlined
@@ -293,11 +297,11 @@ def note_damping(
     """
     closing, sliding = now
     done = kn * closing * (before[0] + closing) + ks * sliding * (before[1] + shear)
-    h.cr[WSTIF] += h.cr[BETA] * h.cr[TDEL] * real(h, 0.5) * done
+    h.cd[WSTIF] += h.cr[BETA] * h.cr[TDEL] * real(h, 0.5) * done
 
 
 @inlined
 def note_law_damping(h: Memory, ic: int, normal: float, shear: float, closing: float, sliding: float) -> None:
     """What contact `ic`, which follows a law, takes by what its blocks feel beyond the forces it holds."""
     done = (normal - getr(h, ic, KCFN)) * closing + (shear - getr(h, ic, KCFS)) * sliding
-    h.cr[WSTIF] += done * h.cr[TDEL]
+    h.cd[WSTIF] += done * h.cr[TDEL]

@@ -10,22 +10,20 @@ grid-points, the forces L (2 ta + tb)/6 and L (ta + 2 tb)/6: their resultant and
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from itertools import pairwise
+from typing import Any
+
+import numpy as np
 
 from offsets.generated import (
     ALAM1,
     ALAM2,
     DENS,
     IBNPNT,
-    IBPNT,
     ISGPNT,
-    KB,
-    KBEX,
     KBFIX,
-    KFG,
-    KG,
     KGFIX,
     KGP,
     KMAT,
@@ -39,6 +37,7 @@ from offsets.generated import (
     KTPF,
     KTPN,
     KTPT,
+    KTREST,
     KU,
     KUB,
     KUCXX,
@@ -60,7 +59,6 @@ from offsets.generated import (
     KYG,
     KYP,
     MBND,
-    MFDEF,
     MSIG,
     NVBN,
     NVSG,
@@ -68,19 +66,21 @@ from offsets.generated import (
     TIME,
 )
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
-from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.motion import FIXED
+from udec_ia.kernels.ranges import edges_between, points_between
+from udec_ia.kernels.timestep import addresses
 from udec_ia.ops.limits import finite, held, not_negative, positive, whole
-from udec_ia.ops.lists import chain, items
+from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import require
-from udec_ia.ops.ranges import Range, check_range
+from udec_ia.ops.ranges import Range, check_range, why_nothing
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
 Target = tuple[int, int, int, int]  # as KUB, KUG, KUP and KUQ of a condition
 ZERO: Triple = (0.0, 0.0, 0.0)
+ALL: Range = (-math.inf, math.inf, -math.inf, math.inf)
 
 
 @dataclass
@@ -140,15 +140,14 @@ def boundary(
     fix = (xvel is not None) + 2 * (yvel is not None)
     loads: dict[Target, Load] = {}
     if moves:
-        for target in _points(array.h, where):
-            loads.setdefault(target, Load()).add(xforce, yforce)
+        for ib, ig in points_between(array.h, *map(float, where)).tolist():
+            loads.setdefault((ib, ig, 0, 0), Load()).add(xforce, yforce)
     if presses:
-        for ib, ip in _edges(array.h, where):
+        for ib, ip in edges_between(array.h, *map(float, where)).tolist():
             _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
     if not loads:
-        place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
         advice = "a range holds what lies inside it and not on its limits"
-        raise UdecError(24, f"nothing lies in the range {place}", advice, parameter="x1")
+        raise UdecError(24, _why_nothing(array.h, where, moves), advice, parameter="x1")
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     words = len(loads) * size_of(array.h, NVBN) + size_of(array.h, NVSG)
     signal = _find_function(array.h, function) if function is not None else 0
@@ -156,10 +155,10 @@ def boundary(
     h = array.h
     if sine is not None:
         signal = _make_sine(h, *sine)
+    if fix:
+        _release(h, {target[:2] for target in loads if target[2] == 0}, fix)
     for target, load in loads.items():
         on_point = target[2] == 0 and bool(fix)
-        if on_point:
-            _release(h, target, fix)
         _make(h, target, load, fix if on_point else 0, (xvel or 0.0, yvel or 0.0), signal)
     return len(loads)
 
@@ -181,32 +180,23 @@ def _inside(where: Range, x: float, y: float) -> bool:
     return where[0] < x < where[1] and where[2] < y < where[3]
 
 
-def _points(h: Memory, where: Range) -> Iterator[Target]:
-    """Grid-points in the range, and other blocks with their centroids in it."""
-    for ib in chain(h, int(h.ci[IBPNT]), KB):
-        if iget(h, ib, HEAD) == MFDEF:
-            for ig in chain(h, iget(h, iget(h, ib, KBEX), KFG), KG):
-                if _inside(where, float(getr(h, ig, KXG)), float(getr(h, ig, KYG))):
-                    yield ib, ig, 0, 0
-        elif _inside(where, float(getr(h, ib, KX)), float(getr(h, ib, KY))):
-            yield ib, 0, 0, 0
+def _why_nothing(h: Memory, where: Range, moves: bool) -> str:
+    """Why there is nothing in the range that `moves`, or else no edge."""
+    if moves:
+        points = (_named(h, ib, ig) for ib, ig in points_between(h, *ALL).tolist())
+        return why_nothing(where, "grid-point and no centroid", points)
+    edges = (
+        (f"block@{ib}'s", (_corner(h, iget(h, ip, KR)), _corner(h, ip)))
+        for ib, ip in edges_between(h, *ALL).tolist()
+    )
+    return why_nothing(where, "edge with both ends", edges)
 
 
-def _awaits_zones(h: Memory, ib: int) -> bool:
-    """True for a fully-deformable block that GENERATE has not divided yet: it takes no condition."""
-    return iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) == 0
-
-
-def _edges(h: Memory, where: Range) -> Iterator[tuple[int, int]]:
-    """Block and end corner of the edges with both ends in the range."""
-    for ib in chain(h, int(h.ci[IBPNT]), KB):
-        if _awaits_zones(h, ib):
-            continue
-        for ip in items(h, ib):
-            if is_corner(h, ip):
-                ends = [_corner(h, ip), _corner(h, iget(h, ip, KR))]
-                if all(_inside(where, x, y) for x, y in ends):
-                    yield ib, ip
+def _named(h: Memory, ib: int, ig: int) -> tuple[str, tuple[tuple[float, float], ...]]:
+    """Name and place of grid-point `ig` of block `ib`, or of the block if it is 0."""
+    if ig:
+        return f"gridpoint@{ig} of block@{ib}", ((float(getr(h, ig, KXG)), float(getr(h, ig, KYG))),)
+    return f"block@{ib}", ((float(getr(h, ib, KX)), float(getr(h, ib, KY))),)
 
 
 def _corner(h: Memory, ip: int) -> tuple[float, float]:
@@ -271,90 +261,103 @@ def _make(
         puti(h, ib, KBFIX, iget(h, ib, KBFIX) | 2 * fix)
 
 
-def _release(h: Memory, target: Target, fix: int) -> None:
-    """Earlier conditions no longer give the velocities `fix` of the target; those left with nothing go."""
-    ib, ig, _, _ = target
-    for iu in chain(h, int(h.ci[IBNPNT]), KU):
-        if iget(h, iu, KUFIX) & fix and iget(h, iu, KUB) == ib and iget(h, iu, KUG) == ig:
-            puti(h, iu, KUFIX, iget(h, iu, KUFIX) & ~fix)
-            reals = (KUFX, KUFY, KUCXX, KUCXY, KUCYY)
-            if iget(h, iu, KUFIX) == 0 and not any(float(getr(h, iu, k)) for k in reals):
-                drop(h, iu)
+def _release(h: Memory, points: set[tuple[int, int]], fix: int) -> None:
+    """Earlier conditions no longer give the velocities `fix` of the points; those left with nothing go.
+
+    points: blocks and grid-points, as KUB and KUG.
+    """
+    bounds = _all(h)
+    gives = bounds[integers(h, bounds, KUFIX) & fix != 0]
+    left = [iu for iu in gives.tolist() if (iget(h, iu, KUB), iget(h, iu, KUG)) in points]
+    for iu in left:
+        puti(h, iu, KUFIX, iget(h, iu, KUFIX) & ~fix)
+    loads = (KUFX, KUFY, KUCXX, KUCXY, KUCYY)
+    _drop(h, [iu for iu in left if iget(h, iu, KUFIX) == 0 and not any(getr(h, iu, k) for k in loads)])
+
+
+def _all(h: Memory) -> Any:
+    """Addresses of all conditions, in the order of their list."""
+    return addresses(h, int(h.ci[IBNPNT]), KU)
 
 
 def number_of_conditions(h: Memory) -> int:
     """How many boundary conditions there are."""
-    return sum(1 for _ in chain(h, int(h.ci[IBNPNT]), KU))
+    return len(_all(h))
 
 
-def drop(h: Memory, iu: int) -> None:
-    """Take condition `iu` out of the list and give its group back."""
+def _drop(h: Memory, gone: list[int]) -> None:
+    """Take the conditions `gone` out of the list and give their groups back, in one walk along it."""
+    leaving = set(gone)
+    signals = {iget(h, iu, KUS) for iu in gone} - {0}
+    before, cut = 0, False
+    for iu in [*_all(h).tolist(), 0] if gone else ():
+        if iu in leaving:
+            cut = True
+            continue
+        if cut and before:
+            puti(h, before, KU, iu)
+        elif cut:
+            h.ci[IBNPNT] = iu
+        before, cut = iu, False
+    for iu in gone:
+        puti(h, iu, HEAD, 0)
+        lose(h, iu, NVBN)
+    if signals:
+        _lose_sines(h, signals.difference(integers(h, _all(h), KUS).tolist()))
+
+
+def _lose_sines(h: Memory, unused: set[int]) -> None:
+    """Give back those of the signals `unused` that are sines: no command can name them."""
     before = 0
-    for other in chain(h, int(h.ci[IBNPNT]), KU):
-        if other == iu:
-            break
-        before = other
-    if before:
-        puti(h, before, KU, iget(h, iu, KU))
-    else:
-        h.ci[IBNPNT] = iget(h, iu, KU)
-    isg = iget(h, iu, KUS)
-    puti(h, iu, HEAD, 0)
-    lose(h, iu, NVBN)
-    if isg and not iget(h, isg, KTP):
-        _lose_unused(h, isg)
+    for isg in chain(h, int(h.ci[ISGPNT]), KT):
+        if isg not in unused or iget(h, isg, KTP):
+            before = isg
+            continue
+        if before:
+            puti(h, before, KT, iget(h, isg, KT))
+        else:
+            h.ci[ISGPNT] = iget(h, isg, KT)
+        puti(h, isg, HEAD, 0)
+        lose(h, isg, NVSG)
 
 
-def _lose_unused(h: Memory, isg: int) -> None:
-    """Give back sine `isg`, which no command can name, when no condition is left that it belongs to."""
-    if any(iget(h, iu, KUS) == isg for iu in chain(h, int(h.ci[IBNPNT]), KU)):
-        return
-    before = next((s for s in chain(h, int(h.ci[ISGPNT]), KT) if iget(h, s, KT) == isg), 0)
-    if before:
-        puti(h, before, KT, iget(h, isg, KT))
-    else:
-        h.ci[ISGPNT] = iget(h, isg, KT)
-    puti(h, isg, HEAD, 0)
-    lose(h, isg, NVSG)
-
-
-def given_velocities(h: Memory, ib: int) -> int:
-    """KBFIX of block `ib` if it is not fixed: which velocities its conditions give."""
-    fix = 0
-    for iu in chain(h, int(h.ci[IBNPNT]), KU):
-        if iget(h, iu, KUB) == ib and iget(h, iu, KUG) == 0:
-            fix |= 2 * iget(h, iu, KUFIX)
+def given_velocities(h: Memory) -> dict[int, int]:
+    """KBFIX of the blocks, if they are not fixed, whose velocities conditions give: which of them."""
+    bounds = _all(h)
+    fix: dict[int, int] = {}
+    for iu in bounds[(integers(h, bounds, KUFIX) != 0) & (integers(h, bounds, KUG) == 0)].tolist():
+        ib = iget(h, iu, KUB)
+        fix[ib] = fix.get(ib, 0) | 2 * iget(h, iu, KUFIX)
     return fix
 
 
-def forget_block(h: Memory, ib: int) -> None:
-    """Take away all conditions on block `ib`, which is about to go or to change."""
-    for iu in chain(h, int(h.ci[IBNPNT]), KU):
-        if iget(h, iu, KUB) == ib:
-            _free(h, iu)
+def forget_blocks(h: Memory, blocks: Iterable[int]) -> None:
+    """Take away all conditions on `blocks`, which are about to go or to change."""
+    bounds = _all(h)
+    _free(h, bounds[np.isin(integers(h, bounds, KUB), list(blocks))].tolist())
 
 
-def _free(h: Memory, iu: int) -> None:
-    """Take condition `iu` away and set free what it held."""
-    ib, ig = iget(h, iu, KUB), iget(h, iu, KUG)
-    if ig:
-        puti(h, ig, KGFIX, iget(h, ig, KGFIX) & ~iget(h, iu, KUFIX))
-    elif iget(h, ib, KBFIX) != FIXED:
-        puti(h, ib, KBFIX, iget(h, ib, KBFIX) & ~(2 * iget(h, iu, KUFIX)))
-    drop(h, iu)
+def _free(h: Memory, gone: list[int]) -> None:
+    """Take the conditions `gone` away and set free what they held."""
+    for iu in gone:
+        ib, ig = iget(h, iu, KUB), iget(h, iu, KUG)
+        if ig:
+            puti(h, ig, KGFIX, iget(h, ig, KGFIX) & ~iget(h, iu, KUFIX))
+        elif iget(h, ib, KBFIX) != FIXED:
+            puti(h, ib, KBFIX, iget(h, ib, KBFIX) & ~(2 * iget(h, iu, KUFIX)))
+    _drop(h, gone)
 
 
 def _set_free(h: Memory, where: Range) -> int:
     """Take away the conditions in the range; returns their number."""
-    points = set(_points(h, where))
+    points = set(map(tuple, points_between(h, *map(float, where)).tolist()))
     gone = [
         iu
-        for iu in chain(h, int(h.ci[IBNPNT]), KU)
-        if tuple(iget(h, iu, k) for k in (KUB, KUG, KUP, KUQ)) in points
+        for iu in _all(h).tolist()
+        if (iget(h, iu, KUP) == 0 and (iget(h, iu, KUB), iget(h, iu, KUG)) in points)
         or (iget(h, iu, KUP) and _inside(where, *_corner(h, iget(h, iu, KUP))))
     ]
-    for iu in gone:
-        _free(h, iu)
+    _free(h, gone)
     return len(gone)
 
 
@@ -362,7 +365,9 @@ def _make_sine(h: Memory, frequency: float, lasts: float) -> int:
     """A signal that is a sine of the given frequency for a time."""
     isg = _make_signal(h)
     putr(h, isg, KTFREQ, frequency)
-    putr(h, isg, KTBEG, float(h.cr[TIME]))
+    begins = float(h.cd[TIME])
+    putr(h, isg, KTBEG, begins)
+    putr(h, isg, KTREST, begins - float(getr(h, isg, KTBEG)))
     putr(h, isg, KTLAST, lasts)
     return isg
 

@@ -38,12 +38,8 @@ from offsets.generated import (
     KTD,
     KX,
     KXD,
-    KXDP,
-    KXP,
     KY,
     KYD,
-    KYDP,
-    KYP,
     KZ,
     MCTOT,
     MFDEF,
@@ -62,9 +58,10 @@ from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.bounds import push_loads
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.masses import share_mass, zone_means
+from udec_ia.kernels.motion import carry_corners
 from udec_ia.kernels.sdef import put_stress
 from udec_ia.kernels.shape import geo
-from udec_ia.ops.bounds import forget_block
+from udec_ia.ops.bounds import forget_blocks
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import constitutive_number, held, material_number
 from udec_ia.ops.lists import chain, items
@@ -95,7 +92,7 @@ def change(
     if kind is not None:
         change_types(array, blocks, TYPES[kind])
     h = array.h
-    for ib in blocks:
+    for ib in blocks if material is not None or constitutive is not None else ():
         contacts = [ic for ic in items(h, ib) if not is_corner(h, ic) and iget(h, ic, KB1) == ib]
         for number, of_block, of_contact in ((material, KMAT, KCM), (constitutive, KCONS, KCC)):
             if number is not None:
@@ -135,6 +132,7 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
             stress = applied_stress(h, ib)
             held(array, f"the stress in block@{ib}", stress)
             _put_stress(h, ib, stress)
+    forget_blocks(h, [ib for ib in changing if MFDEF in (kind, iget(h, ib, HEAD))])
     for ib in changing:
         if iget(h, ib, HEAD) != kind:
             become(h, ib, kind, mean_stress(h, ib))
@@ -143,9 +141,10 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
 
 
 def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> None:
-    """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one."""
-    if MFDEF in (iget(h, ib, HEAD), kind):
-        forget_block(h, ib)
+    """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one.
+
+    Conditions on a block that is or becomes fully-deformable must have been taken away before.
+    """
     if iget(h, ib, HEAD) == MFDEF:
         _lose_zones(h, ib)
     if iget(h, ib, HEAD) != MRIG:
@@ -191,16 +190,7 @@ def _lose_zones(h: Memory, ib: int) -> None:
     for k, value in ((KX, x), (KY, y), (KBI, second), (KTD, turning / second if second else 0.0)):
         putr(h, ib, k, value)
     renew_reach(h, ib)
-    renew_corners(h, ib)
-
-
-def renew_corners(h: Memory, ib: int) -> None:
-    """Velocities of the corners of block `ib` from those of the block."""
-    x, y, td = (float(getr(h, ib, k)) for k in (KX, KY, KTD))
-    for ip in items(h, ib):
-        if is_corner(h, ip):
-            putr(h, ip, KXDP, float(getr(h, ib, KXD)) - td * (float(getr(h, ip, KYP)) - y))
-            putr(h, ip, KYDP, float(getr(h, ib, KYD)) + td * (float(getr(h, ip, KXP)) - x))
+    carry_corners(h, ib)
 
 
 def applied_stress(h: Memory, ib: int) -> Stress:

@@ -14,6 +14,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.bridge import maked
 from udec_ia.kernels.shape import density_of, makeb
 from udec_ia.kernels.split import makep, new_block
+from udec_ia.kernels.sweep import meeting
 from udec_ia.kernels.tolerances import default_rounding, set_rounding
 from udec_ia.ops.limits import (
     EDGE_DIGITS,
@@ -49,7 +50,7 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
         finite(array, **{f"x{k}": x, f"y{k}": y})
     size = _check_size(array, corners)
     bearable(array, float(h.cr[DENS : DENS + NMAT].max()), size)
-    _check_outline(corners)
+    _check_outline(array, corners)
     _check_edges(array, corners)
     require(array, size_of(h, NVBL) + len(corners) * size_of(h, NVCR) + size_of(h, NVDO))
     h = array.h
@@ -90,26 +91,35 @@ def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
         check_resolution(array, "x1", "a rounding length", d, ROUNDING_DIGITS, size)
 
 
-def _check_outline(corners: Sequence[Point]) -> None:
+def _check_outline(array: MainArray, corners: Sequence[Point]) -> None:
     """Error 6 unless the corners, taken clockwise, enclose an area and no two edges meet elsewhere."""
     n = len(corners)
     edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
     for i, (a, b) in enumerate(edges):
         if a == b:
             raise _crooked(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
-    for i, (a, b) in enumerate(edges):
-        for j in range(i + 1, n):
-            if j - i in (1, n - 1):
-                shared, end = (b, edges[j][1]) if j - i == 1 else (a, edges[j][0])
-                start = a if j - i == 1 else b
-                if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
-                    corner = corners.index(shared)
-                    raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
-            elif _meet(a, b, *edges[j]):
-                raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
+    for i, j in _near(array, edges):
+        (a, b), (c, d) = edges[i], edges[j]
+        if j - i in (1, n - 1):
+            start, shared, end = (a, b, d) if j - i == 1 else (b, a, c)
+            if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
+                corner = corners.index(shared)
+                raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
+        elif _meet(a, b, c, d):
+            raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
     x, y = corners[0]  # far from the origin the products of coordinates would lose the area
     if not sum((b[0] - x) * (a[1] - y) - (a[0] - x) * (b[1] - y) for a, b in edges) > 0:
         raise UdecError(6, "its corners run anticlockwise", CLOCKWISE)
+
+
+def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[int, int]]:
+    """Numbers of the edges whose boxes meet, two by two, in ascending order."""
+    ends = np.array(edges, array.scheme.real_type)
+    boxes = np.hstack([ends.min(axis=1), ends.max(axis=1)])
+    if np.ptp(boxes[:, 1]) > np.ptp(boxes[:, 0]):  # the sweep is along x
+        boxes = boxes[:, [1, 0, 3, 2]]
+    pairs = np.sort(meeting(np.ascontiguousarray(boxes), len(boxes)), axis=1)
+    return [(i, j) for i, j in pairs[np.lexsort(pairs.T[::-1])].tolist()]
 
 
 def _crooked(detail: str, k: int) -> UdecError:

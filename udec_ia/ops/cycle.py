@@ -7,7 +7,6 @@ a second and have no influence on the results.
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter
 
 import numpy as np
 
@@ -22,7 +21,6 @@ from offsets.generated import (
     CON2,
     DTOL,
     DTOL2,
-    ETOL,
     FRAC,
     IBPNT,
     IERAD,
@@ -35,16 +33,19 @@ from offsets.generated import (
     KCN,
     KFZ,
     KMAT,
+    KNB,
     KX,
     KXC,
     KXG,
+    KXP,
     KY,
     KYC,
     KYG,
+    KYP,
     KZG,
     MCON,
+    MCOR,
     MCTOT,
-    MDOM,
     MFDEF,
     MRIG,
     MSDEF,
@@ -52,11 +53,13 @@ from offsets.generated import (
     NCYC,
     NERR,
     NSOFT,
+    NWANT,
     TDEL,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.array import OVERFLOW, MainArray
+from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.blocks import TOO_FAR
 from udec_ia.kernels.cycle import BLOCKS, run_cycles
 from udec_ia.kernels.finite import not_finite
@@ -64,15 +67,18 @@ from udec_ia.kernels.laws import LAW_FAILED
 from udec_ia.kernels.masses import make_masses
 from udec_ia.kernels.shape import TOO_SHORT
 from udec_ia.kernels.tensor import INSIDE_OUT
+from udec_ia.kernels.touch import OVERLAP_TOO_GREAT
 from udec_ia.ops import energy
-from udec_ia.ops.laws import Bound, LawBook, failure
+from udec_ia.ops.laws import Bound, LawBook
 from udec_ia.ops.limits import last_digit
 from udec_ia.ops.lists import chain
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import check_strained_edges, crowded, settle_default
+from udec_ia.ops.runaway import Runaway
 from udec_ia.ops.soft import soft
 from udec_ia.ops.timestep import kind_of, time_step
 from udec_ia.ops.watch import Watch
+from udec_ia.signals import poll
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -126,13 +132,16 @@ def cycle(
     prepared: Prepared | None = None,
     laws: LawBook | None = None,
     watch: Watch | None = None,
+    settled: Callable[[], None] | None = None,
+    runaway: Runaway | None = None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
     prepared: called before the first cycle, when the time-step is known.
-    watch: records on the way and may end the run before.
+    watch: records on the way and may end the run before. runaway: error 37 if it finds energy from nowhere.
+    settled: called after every piece of the run, before its errors are raised: what was computed is to stay.
     Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
     too coarse for contacts, or a force grown beyond them: the cycle in which it did is completed.
     """
@@ -143,35 +152,59 @@ def cycle(
     bound = laws.bind(array)
     keep_spare(array)
     array.h.ci[NCYC] = n
-    array.h.ci[NERR] = array.h.ci[IERAD] = 0  # a run that was interrupted may have left an error behind
+    # a run that was interrupted may have left an error behind, or a wish for memory
+    array.h.ci[NERR] = array.h.ci[IERAD] = array.h.ci[NWANT] = 0
     energy.begin(array)
+    runaway = runaway or Runaway()
+    runaway.begin(array, bound.own_blocks)
     try:
-        done = _run(array, n, report, every, bound, watch)
+        done = _run(array, n, report, every, bound, watch, settled or (lambda: None), runaway)
     finally:
-        energy.end(array)
+        finish(array, watch)
+        runaway.end(array)
     _check_finite(array)
     return done
 
 
+def finish(array: MainArray, watch: Watch | None) -> None:
+    """What a run that ends leaves, why ever it ends. To do it twice does no harm."""
+    energy.end(array)
+    if watch is not None:
+        watch.hand_on()
+
+
 def _run(
-    array: MainArray, n: int, report: Report | None, every: int | None, bound: Bound, watch: Watch | None
+    array: MainArray,
+    n: int,
+    report: Report | None,
+    every: int | None,
+    bound: Bound,
+    watch: Watch | None,
+    settled: Callable[[], None],
+    runaway: Runaway,
 ) -> int:
     """`n` cycles, in pieces. Returns how many were completed."""
     if watch is not None:
         watch.begin()
     done, piece = 0, every or FIRST_PIECE
+    settled()
     while done < n and not (watch is not None and watch.reached):
-        start = perf_counter()
-        most = min(piece, n - done)
-        given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
-        done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
-        _raise_error(array)
+        poll()
+        start = working_time()
+        before, target = done, min(done + piece, n)
+        while done < target and not (watch is not None and watch.reached):
+            most = min(target - done, runaway.ahead(array.h))
+            given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
+            done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
+            settled()
+            _raise_error(array, bound.book)
+            runaway.look(array)
         if report is not None:
             report(done)
         if every is not None:
             continue
-        seconds = max(perf_counter() - start, 1e-6)
-        piece = max(1, min(int(piece * REPORT_SECONDS / seconds), 4 * piece))
+        seconds = max(working_time() - start, 1e-6)
+        piece = max(1, min(int((done - before) * REPORT_SECONDS / seconds), 4 * piece))
     return done
 
 
@@ -182,7 +215,7 @@ def _check_finite(array: MainArray) -> None:
         kind, *here = ("contact", KXC, KYC) if iget(h, group, HEAD) == MCON else ("block", KX, KY)
         x, y = (float(getr(h, group, k)) for k in here)
         what = f"a force, a velocity or a stress of {kind}@{group} at ({x:g}, {y:g}) is"
-    elif not np.isfinite(h.cr).all():
+    elif not (np.isfinite(h.cr).all() and np.isfinite(h.cd).all()):
         what = "an energy or a displacement that the run has summed up is"
     else:
         return
@@ -212,18 +245,37 @@ def _too_far(array: MainArray, ib: int) -> UdecError:
     )
 
 
-def _raise_error(array: MainArray) -> None:
-    """Find memory if that is what a kernel stopped for; else raise the error it left behind."""
+def _without_contact(array: MainArray, ip: int) -> UdecError:
+    """Error 15: corner `ip` has come into another block where there is no contact."""
+    h = array.h
+    x, y, ib = float(getr(h, ip, KXP)), float(getr(h, ip, KYP)), iget(h, ip, KNB)
+    detail = (
+        f"blocks have gone into each other in cycle {int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a "
+        f"contact in time: block@{ib} with its corner at ({x:g}, {y:g})"
+    )
+    advice = "take a greater KN, lower velocities, a smaller FRACTION or a greater ROUND"
+    return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=ip)
+
+
+def _raise_error(array: MainArray, laws: LawBook) -> None:
+    """Find memory if that is what a kernel stopped for; else raise the error it left behind.
+
+    An error of a cycle that needs memory, too, is raised when the cycle is complete, or if it cannot be.
+    """
     h = array.h
     number = int(h.ci[NERR])
-    if number == 0:
-        return
-    if number == 1 and h.ci[JPHASE] == BLOCKS:
-        h.ci[NERR] = 0
+    if number == OVERFLOW and h.ci[JPHASE] == BLOCKS:
+        h.ci[NERR] = h.ci[NWANT] = 0
         keep_spare(array)
         return
-    if number == 1:
-        find_room(array)
+    if h.ci[NWANT] != 0:
+        try:
+            find_room(array)
+            return
+        except UdecError:
+            if number == OVERFLOW:
+                raise
+    if number == 0:
         return
     group = int(h.ci[IERAD])
     h.ci[NERR] = h.ci[IERAD] = 0
@@ -232,23 +284,19 @@ def _raise_error(array: MainArray) -> None:
     if number == TOO_SHORT:
         raise crowded(array, group, int(h.ci[MCTOT]))
     if number == LAW_FAILED:
-        raise failure(array, group)
+        raise laws.failure(array, group)
     if number == TOO_FAR:
         raise _too_far(array, group)
-    if iget(h, group, HEAD) == MDOM:
-        detail = (
-            f"blocks around domain@{group} approach by more than {2 * h.cr[ETOL]:g} and have gone into each "
-            f"other in cycle {int(h.ci[MCTOT])} of {h.cr[TDEL]:g} s, too fast for a contact in time"
-        )
-        advice = "take a greater KN, a smaller FRACTION or a greater ROUND"
-        raise UdecError(number, detail, advice, group=group)
+    if iget(h, group, HEAD) == MCOR:
+        raise _without_contact(array, group)
     if iget(h, group, HEAD) != MCON:  # it vanished in a later pass of the same cycle
         raise UdecError(number, f"in cycle {int(h.ci[MCTOT])}", "take a smaller FRACTION or a greater ROUND")
-    m = iget(h, group, KCM)
+    m, overlap = iget(h, group, KCM), getr(h, group, KCN)
+    most = f"{h.cr[DTOL2]:g}" if overlap > h.cr[DTOL2] else "the tip there is thick"
     detail = (
         f"contact@{group} of block@{iget(h, group, KB1)} and block@{iget(h, group, KB2)} at "
-        f"({getr(h, group, KXC):g}, {getr(h, group, KYC):g}) overlaps by {getr(h, group, KCN):g}, more than "
-        f"{h.cr[DTOL2]:g}, in cycle {int(h.ci[MCTOT])}"
+        f"({getr(h, group, KXC):g}, {getr(h, group, KYC):g}) overlaps by {overlap:g}, more than "
+        f"{most}, in cycle {int(h.ci[MCTOT])}"
     )
     advice = (
         f"KN of material {m} is {h.cr[AKN + m - 1]:g}, the time-step {h.cr[TDEL]:g} is {h.cr[FRAC]:g} of "

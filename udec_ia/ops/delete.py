@@ -6,7 +6,7 @@ from offsets.generated import MCTOT, MRIG, NBLK
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.remove import delb
-from udec_ia.ops.bounds import forget_block
+from udec_ia.ops.bounds import forget_blocks
 from udec_ia.ops.change import become
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.ranges import Range, blocks_in
@@ -26,8 +26,8 @@ def delete(array: MainArray, where: Range) -> int:
         raise UdecError(
             19, f"only {int(h.ci[NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
         )
+    forget_blocks(h, blocks)
     for ib in blocks:
-        forget_block(h, ib)
         become(h, ib, MRIG)  # gives back what only a deformable block has
         delb(h, ib)
     update_flagged(array)

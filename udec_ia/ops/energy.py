@@ -34,6 +34,8 @@ from udec_ia.kernels.energy import height, kinetic, strain_of_blocks, strain_of_
 from udec_ia.ops.limits import held
 from udec_ia.ops.soft import soft_in
 
+SUM_BITS = 64  # of the reals that hold the account, in every word scheme
+
 
 class Balance(NamedTuple):
     """Energies in J per m of thickness. commands: there at first, and put in by commands since."""
@@ -77,9 +79,9 @@ def switch(array: MainArray, on: bool) -> None:
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[LENER] = int(on)
     for name in (WBOUND, WFRIC, WMASS, WSTIF, WYIELD, WSHAPE, EPOT):
-        h.cr[name] = 0
-    h.cr[EPUT] = h.cr[ESTOR] = energy
-    h.cr[EREF] = reference
+        h.cd[name] = 0
+    h.cd[EPUT] = h.cd[ESTOR] = energy
+    h.cd[EREF] = reference
 
 
 def balance(h: Memory) -> Balance:
@@ -88,22 +90,22 @@ def balance(h: Memory) -> Balance:
         raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
     stored = _stored(h)
     commands = _put_in(h, sum(stored))
-    lost = (float(h.cr[name]) for name in (WFRIC, WMASS, WSTIF, WYIELD, WSHAPE))
-    return Balance(commands, float(h.cr[WBOUND]), *stored, float(h.cr[EPOT]), *lost)
+    lost = (float(h.cd[name]) for name in (WFRIC, WMASS, WSTIF, WYIELD, WSHAPE))
+    return Balance(commands, float(h.cd[WBOUND]), *stored, float(h.cd[EPOT]), *lost)
 
 
 def begin(array: MainArray) -> None:
     """A CYCLE begins: note what commands have done since the last one.
 
-    Error 28, and nothing is noted, if the reals cannot hold the energy of the stresses there are, or its
+    Error 28, and nothing is noted, if 64-bit reals cannot hold the energy of the stresses there are, or its
     change.
     """
     h = array.h
     if h.ci[LENER]:
-        energy, reference = _energy(array), _height(array) - float(h.cr[EPOT])
+        energy, reference = _energy(array), _height(array) - float(h.cd[EPOT])
         put = _put_in(h, energy)
-        held(array, "the energy that commands have put in", [put, reference])
-        h.cr[EPUT], h.cr[ESTOR], h.cr[EREF] = put, energy, reference
+        held(array, "the energy that commands have put in", [put, reference], SUM_BITS)
+        h.cd[EPUT], h.cd[ESTOR], h.cd[EREF] = put, energy, reference
 
 
 def end(array: MainArray) -> None:
@@ -111,21 +113,21 @@ def end(array: MainArray) -> None:
     h = array.h
     if h.ci[LENER]:
         with np.errstate(over="ignore"):
-            h.cr[ESTOR] = sum(_stored(h))
-            h.cr[EPOT] = float(height(h)) - float(h.cr[EREF])
+            h.cd[ESTOR] = sum(_stored(h))
+            h.cd[EPOT] = float(height(h)) - float(h.cd[EREF])
 
 
 def _height(array: MainArray) -> float:
-    """Potential of gravity against the origin. Error 28 if the reals cannot hold it."""
+    """Potential of gravity against the origin. Error 28 if 64-bit reals cannot hold it."""
     potential = float(height(array.h))
-    held(array, "the potential of gravity", [potential])
+    held(array, "the potential of gravity", [potential], SUM_BITS)
     return potential
 
 
 def _energy(array: MainArray) -> float:
-    """Kinetic and strain energy. Error 28 if the reals cannot hold it."""
+    """Kinetic and strain energy. Error 28 if 64-bit reals cannot hold it."""
     energy = sum(_stored(array.h))
-    held(array, "the kinetic and strain energy", [energy])
+    held(array, "the kinetic and strain energy", [energy], SUM_BITS)
     return energy
 
 
@@ -137,4 +139,4 @@ def _stored(h: Memory) -> tuple[float, float, float]:
 
 def _put_in(h: Memory, energy: float) -> float:
     """What commands have put in so far, where `energy` is what is stored now, and ESTOR was before them."""
-    return float(h.cr[EPUT]) + (energy - float(h.cr[ESTOR]))
+    return float(h.cd[EPUT]) + (energy - float(h.cd[ESTOR]))

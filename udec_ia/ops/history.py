@@ -17,9 +17,12 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
+from udec_ia.kernels.watch import DOUBLE, INTEGER, REAL
 from udec_ia.ops.limits import whole
 from udec_ia.ops.memory import require
 from udec_ia.ops.recordable import COMMON, Recordable, by_codes, recordable
+
+CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}
 
 
 class Definition(NamedTuple):
@@ -53,17 +56,18 @@ def define(array: MainArray, what: Recordable, groups: Sequence[int], every: int
     if not 1 <= whole(n=every) <= most:
         raise UdecError(28, f"n is {every}", f"a history is recorded every 1 to {most} cycles", parameter="n")
     require(array, len(groups) * size_of(array.h, NVHI))
+    h, before = array.h, next(reversed(addresses(array)), 0)
     for group in groups:
-        h = array.h
-        ih, before = int(find(h, NVHI)), addresses(array)[-1:]
+        ih = int(find(h, NVHI))
         numbers = (HEAD, MHIS), (KHG, group), (KHK, what.kind), (KHF, what.number), (KHN, every)
         for offset, number in numbers:
             puti(h, ih, offset, number)
         if before:
-            puti(h, before[0], KH, ih)
-            puti(h, ih, KHB, before[0])
+            puti(h, before, KH, ih)
+            puti(h, ih, KHB, before)
         else:
             h.ci[IHPNT] = ih
+        before = ih
 
 
 def addresses(array: MainArray) -> list[int]:
@@ -86,13 +90,13 @@ def definitions(array: MainArray) -> list[Definition]:
 
 
 def places(array: MainArray) -> np.ndarray:
-    """For the recording kernel: where in its group each history's number stands, and 1 if it is a real."""
+    """For the recording kernel: where in its group each history's number stands, and the code of its type."""
     which = array.scheme.ratio >> 1
     found = np.zeros((len(addresses(array)), 2), np.int64)
     for row, (what, _, _) in zip(found, definitions(array), strict=True):
         if what.kind >= COMMON:
             offset = getattr(generated, what.field.name)
-            row[:] = offset[which] if what.group else offset, what.field.real
+            row[:] = offset[which] if what.group else offset, CODES[what.field.type]
         else:
             row[0] = what.number
     return found

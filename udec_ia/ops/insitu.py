@@ -33,7 +33,7 @@ from udec_ia.ops.bounds import ZERO, Triple
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import finite, held
 from udec_ia.ops.lists import chain
-from udec_ia.ops.ranges import Range, blocks_in
+from udec_ia.ops.ranges import Range, blocks_in, why_no_block
 
 
 def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:
@@ -61,9 +61,7 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
         if inside:
             stresses[ib] = inside
     if not stresses:
-        place = "x {:g} to {:g}, y {:g} to {:g}".format(*where)
-        advice = "CHANGE and GENERATE make them"
-        raise UdecError(24, f"no deformable block with zones in {place}", advice, parameter="x1")
+        raise _no_stress(array, where)
     for ib, inside in stresses.items():
         for iad, triple in inside.items():
             if iget(h, ib, HEAD) == MSDEF:
@@ -73,6 +71,19 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
                     putr(h, iad, k, s)
     renew_forces(array)
     return len(stresses)
+
+
+def _no_stress(array: MainArray, where: Range) -> UdecError:
+    """Error 24: no block lies in the range, or none that carries stress."""
+    blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
+    if not blocks:
+        return UdecError(24, why_no_block(array, where), parameter="x1")
+    if any(iget(array.h, ib, HEAD) == MFDEF for ib in blocks):
+        advice = f"GENERATE divides one into zones, CHANGE {limits} SDEF does without"
+        return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
+    detail = f"all blocks there are rigid and carry no stress, such as block@{blocks[0]}"
+    advice = f"make the blocks deformable before: CHANGE {limits} SDEF, with BULK and G of their material"
+    return UdecError(24, detail, advice, parameter="x1")
 
 
 def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:

@@ -9,6 +9,7 @@ import dis
 import hashlib
 import inspect
 import linecache
+import os
 import re
 import traceback
 from collections.abc import Callable, Iterable, Mapping
@@ -18,10 +19,11 @@ from types import CodeType, FunctionType
 from typing import Any
 
 import numba
+import numpy as np
 from numba import config, types
 
 from udec_ia.errors import UdecError
-from udec_ia.kernels.lawcall import FIRST, LAST, MATERIAL, STATE, machine_code
+from udec_ia.kernels.lawcall import FIRST, LAST, MATERIAL, STATE, Material, machine_code
 
 NUMBERS = range(FIRST, LAST + 1)
 RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {f"clj{n}": 2 for n in NUMBERS}  # how many numbers a law returns
@@ -30,6 +32,8 @@ FORMS = {
     3: "(s11, s12, s22, de11, de12, de22, m) and return ds11, ds12, ds22",
     2: "(fn, fs, dun, dus, un, us, m) and return dfn, dfs",
 }
+UNCHECKED = ("flat", "as_strided")  # where numba takes any index, whatever it is told
+NAMED = ("LOAD_ATTR", "LOAD_METHOD", "LOAD_GLOBAL")
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 Given = str | Path | Mapping[str, Callable[..., Any]]
 
@@ -39,7 +43,9 @@ class Law:
     """A law that was given: `name` is cl2 ... clj5, `origin` the name of its file.
 
     digest: SHA-256 of the text of the file. call: what stands among the calls of a Laws: the address of its
-    machine code, or the function itself if kernels are not compiled. code: owner of the machine code.
+    machine code, or a Python function if kernels are not compiled. code: owner of the machine code.
+    function: the law itself. noted: the six reals with which it has raised an exception, not numbers as long
+    as it has not.
     """
 
     name: str
@@ -47,6 +53,28 @@ class Law:
     digest: str
     call: Any
     code: Any
+    function: FunctionType
+    noted: Any
+
+    def raised(self, material: Material) -> tuple[str, str]:
+        """What the law has raised and where, and what it was called with; "" if it has raised nothing."""
+        if np.isnan(self.noted[0]):
+            return "", ""
+        names = inspect.signature(self.function).parameters
+        called = ", ".join(f"{name} = {value:.6g}" for name, value in zip(names, self.noted, strict=False))
+        return f": {self._reason(material)}", f"correct the law; it was called with {called}"
+
+    def _reason(self, material: Material) -> str:
+        """What the Python function raises when it is called as the law was."""
+        law, code = _in_python(self.function, RESULTS[self.name], self.noted), self.function.__code__
+        try:
+            with np.errstate(all="ignore"):
+                law(*self.noted, material)
+        except Exception as error:
+            line = _line(error, code.co_filename) or code.co_firstlineno
+            said = " ".join(str(error).split())
+            return f"{type(error).__name__}: {said}, in line {line} of {Path(code.co_filename).name}"
+        return "an exception that only compiled code raises"
 
 
 def read_laws(given: Given | Iterable[Given] | None) -> dict[str, Law]:
@@ -82,11 +110,17 @@ def _place(error: UdecError, file: str, line: int, column: int = 0) -> UdecError
     return error
 
 
+def _line(error: BaseException, file: str) -> int:
+    """The last line of `file` on the way to where `error` was raised; 0 if there is none."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    return (lines[-1] if lines else 0) or 0
+
+
 def _find(name: str | Path) -> Path:
     """The file `name`, or that of the law which comes with the program under this name."""
     path = Path(name)
     shipped = SHIPPED / f"{path.stem.replace('-', '_')}.py"
-    there = path.is_file() or path.name != str(name) or not shipped.is_file()
+    there = os.path.isfile(path) or path.name != str(name) or not shipped.is_file()
     return path if there else shipped
 
 
@@ -107,8 +141,7 @@ def _of_file(path: Path) -> list[Law]:
         wrong = _wrong(f"{error.msg}", "this is not Python")
         raise _place(wrong, error.filename or file, error.lineno or 1, error.offset or 0) from error
     except (Exception, SystemExit) as error:
-        lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == file]
-        raise _place(_wrong(f"{type(error).__name__}: {error}"), file, (lines or [1])[-1] or 1) from error
+        raise _place(_wrong(f"{type(error).__name__}: {error}"), file, _line(error, file) or 1) from error
     functions = {name: space[name] for name in RESULTS if name in space}
     if not functions:
         raise _wrong(f"{file} defines no law", f"a law is a function called {', '.join(RESULTS)}")
@@ -148,9 +181,10 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
         inspect.signature(plain).bind(*range(7))
     except TypeError as error:
         raise _wrong(f"{name} does not take 7 arguments", advice, plain.__code__) from error
+    noted = np.full(6, np.nan)
     if config.DISABLE_JIT:
-        return Law(name, origin, digest, plain, plain)
-    compiled = _compiled(plain, {})
+        return Law(name, origin, digest, _in_python(plain, n, noted), None, plain, noted)
+    compiled = _compiled(function, {})
     try:
         compiled.compile((*STATE, MATERIAL))
     except Exception as error:  # numba has more of them than it documents
@@ -159,27 +193,58 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
     if not _are_numbers(signature.return_type, n):
         detail = f"{name} returns {signature.return_type} instead of {n} numbers"
         raise _wrong(detail, advice, plain.__code__)
-    code = machine_code(compiled, n)
-    return Law(name, origin, digest, code.address, code)
+    code = machine_code(compiled, n, noted)
+    return Law(name, origin, digest, code.address, code, plain, noted)
 
 
-def _compiled(function: FunctionType, done: dict[FunctionType, Any]) -> Any:
-    """A compiled copy of `function`, with what it calls of the same file compiled too."""
+def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tuple[float, ...]]:
+    """`function` as Python runs it, to return `n` numbers; as compiled, it notes what it raises for."""
+
+    def law(*given: Any) -> tuple[float, ...]:
+        try:
+            numbers = tuple(map(float, function(*given)))
+            if len(numbers) != n:
+                raise ValueError(f"{len(numbers)} numbers returned instead of {n}")
+        except Exception:
+            if np.isnan(noted[0]):
+                noted[:] = given[:6]
+            raise
+        return numbers
+
+    return law
+
+
+def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
+    """A compiled copy of the function `given`, with what it calls of the same file compiled too.
+
+    Indices are checked, unless its author has decorated it with numba.njit(boundscheck=False).
+    """
+    function: FunctionType = getattr(given, "py_func", given)
+    checked = getattr(given, "targetoptions", {}).get("boundscheck") is not False
     for step in dis.get_instructions(function):
         if step.opname == "RAISE_VARARGS":
-            line = step.positions.lineno if step.positions else 0
             advice = 'return float("nan") instead: the run then stops with error 35'
-            raise _wrong(f"{function.__name__} raises an exception", advice, function.__code__, line or 0)
+            raise _wrong_step(f"{function.__name__} raises an exception", advice, function, step)
+        if checked and step.opname in NAMED and step.argval in UNCHECKED:
+            advice = "index the array itself, or what its method ravel returns"
+            raise _wrong_step(f"numba does not check the indices of {step.argval}", advice, function, step)
     space = dict(function.__globals__)
     copy = FunctionType(
         function.__code__, space, function.__name__, function.__defaults__, function.__closure__
     )
-    done[function] = numba.njit(error_model="numpy")(copy)
+    done[function] = numba.njit(error_model="numpy", boundscheck=checked)(copy)
     for name in function.__code__.co_names:
-        other = space.get(name)
-        if isinstance(other, FunctionType) and other.__globals__ is function.__globals__:
-            space[name] = done[other] if other in done else _compiled(other, done)
+        called = space.get(name)
+        plain = getattr(called, "py_func", called)
+        if isinstance(plain, FunctionType) and plain.__globals__ is function.__globals__:
+            space[name] = done[plain] if plain in done else _compiled(called, done)
     return done[function]
+
+
+def _wrong_step(detail: str, advice: str, function: FunctionType, step: dis.Instruction) -> UdecError:
+    """Error 34, at the line of `function` that `step` was made from."""
+    line = step.positions.lineno if step.positions else None
+    return _wrong(detail, advice, function.__code__, line or 0)
 
 
 def _not_compiled(name: str, error: Exception, code: CodeType) -> UdecError:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import config
+from numpy.typing import NDArray
 
 from offsets.generated import KCC, KCM, KCONS, KMAT, MCON, MCTOT
 from udec_ia.errors import UdecError
@@ -16,6 +17,7 @@ from udec_ia.kernels.lawcall import ARRAYS, Laws, Material
 from udec_ia.kernels.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.ops.lawfile import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.ops.limits import NCONS, NMAT
+from udec_ia.printable import printable
 
 Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 of the text of the file
 
@@ -24,10 +26,14 @@ class Bound(NamedTuple):
     """The laws as kernels take them.
 
     blocks: None if there is no deformable block. joints: None if no contact follows one of the laws.
+    book: where they come from.
+    own_blocks: True if a deformable block follows one.
     """
 
     blocks: Laws | None
     joints: Laws | None
+    book: LawBook
+    own_blocks: bool
 
 
 class LawBook:
@@ -42,6 +48,11 @@ class LawBook:
         self._calls = np.zeros(len(RESULTS), np.int64)
         self._materials = np.zeros((NMAT, len(ARRAYS)))
 
+    @property
+    def block_laws(self) -> list[int]:
+        """Constitutive numbers for which a block law is given."""
+        return [n for n in NUMBERS if f"cl{n}" in self.given]
+
     def record(self) -> Record:
         """What a restart file says of the laws."""
         return self.recorded | {name: (law.origin, law.digest) for name, law in self.given.items()}
@@ -50,7 +61,7 @@ class LawBook:
         """Take note of the laws that a state was made with. Returns a warning for each that has changed."""
         self.recorded = dict(recorded)
         return [
-            f"{name} of {self.given[name].origin} has another text than {name} of {origin}, "
+            f"{name} of {self.given[name].origin} has another text than {name} of {printable(origin)}, "
             "which the restart file was made with"
             for name, (origin, digest) in recorded.items()
             if name in self.given and self.given[name].digest != digest
@@ -74,14 +85,17 @@ class LawBook:
             self._demand(array, n, law, group)
         laws = self.pack(array)
         followed = any(user[AT_JOINTS, n] and f"clj{n}" in self.given for n in NUMBERS)
-        return Bound(laws if user[IN_BLOCKS].any() else None, laws if followed else None)
+        for one in self.given.values():
+            one.noted[:] = np.nan
+        own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
+        return Bound(laws if user[IN_BLOCKS].any() else None, laws if followed else None, self, own_blocks)
 
     def pack(self, array: MainArray) -> Laws:
         """The laws as kernels take them, with the materials of `array` as they are now.
 
         They are valid as long as this object lives, and until the next call.
         """
-        rows = np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)
+        rows = _materials(array)
         calls: list[Any] = [self.given[name].call if name in self.given else 0 for name in RESULTS]
         if config.DISABLE_JIT:
             return Laws(tuple(calls), [Material(*row) for row in rows])
@@ -102,13 +116,18 @@ class LawBook:
             advice = f"use number 1, or give a file with a function {law}: --constitutive law.py"
             raise UdecError(9, detail, advice, group=group)
 
+    def failure(self, array: MainArray, group: int) -> UdecError:
+        """Error 35 for the law of block or contact `group`."""
+        h = array.h
+        if iget(h, group, HEAD) == MCON:
+            who, law, material = f"contact@{group}", f"clj{iget(h, group, KCC)}", iget(h, group, KCM)
+        else:
+            who, law, material = f"block@{group}", f"cl{iget(h, group, KCONS)}", iget(h, group, KMAT)
+        detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[MCTOT])}"
+        raised, advice = self.given[law].raised(Material(*_materials(array)[material - 1]))
+        return UdecError(35, detail + raised, advice, group=group)
 
-def failure(array: MainArray, group: int) -> UdecError:
-    """Error 35 for the law of block or contact `group`."""
-    h = array.h
-    if iget(h, group, HEAD) == MCON:
-        who, law, material = f"contact@{group}", f"clj{iget(h, group, KCC)}", iget(h, group, KCM)
-    else:
-        who, law, material = f"block@{group}", f"cl{iget(h, group, KCONS)}", iget(h, group, KMAT)
-    detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[MCTOT])}"
-    return UdecError(35, detail, group=group)
+
+def _materials(array: MainArray) -> NDArray[np.float64]:
+    """One row a material: what its Material holds."""
+    return np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)

@@ -96,11 +96,14 @@ def finite(array: MainArray, **numbers: float) -> None:
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
 
 
-def held(array: MainArray, what: str, values: Iterable[float]) -> None:
-    """Error 28 unless the reals of the word scheme can hold all values, which follow from numbers given."""
-    largest = float(np.finfo(array.scheme.real_type).max)
+def held(array: MainArray, what: str, values: Iterable[float], bits: int | None = None) -> None:
+    """Error 28 unless reals can hold all values, which follow from numbers given.
+
+    bits: of the reals; by default those of the word scheme.
+    """
+    bits = bits or array.scheme.real_bits
+    largest = float(np.finfo(f"f{bits // 8}").max)
     if not all(abs(value) <= largest for value in values):
-        bits = array.scheme.real_bits
         raise UdecError(
             28, f"{what} would be greater than {bits}-bit reals can hold", f"they end at {largest:.2g}"
         )

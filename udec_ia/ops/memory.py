@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from offsets.generated import MFREE, MTOP, NCON, NERR, NSPARE, NVCN, NVDO, NWANT
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import size_of
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.array import OVERFLOW, MainArray
 from udec_ia.heap.words import ALL_SCHEMES
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
@@ -32,7 +32,9 @@ def _overflow(array: MainArray) -> UdecError:
     """Error 1 for the words that are asked for in vain."""
     ci = array.h.ci
     need = int(ci[MFREE] + ci[NWANT]) - 1
-    ci[NERR] = ci[NWANT] = 0
+    ci[NWANT] = 0
+    if ci[NERR] == OVERFLOW:
+        ci[NERR] = 0
     wider = [
         s.name
         for s in ALL_SCHEMES.values()
@@ -82,9 +84,11 @@ def refit(array: MainArray, mtop: int | None) -> None:
 @contextmanager
 def all_or_nothing(array: MainArray) -> Iterator[None]:
     """Let an error leave the array as it was before the block."""
-    before = array.copy()
+    h, before = array.h, array.copy().h
     try:
         yield
     except UdecError:
-        array.h = before.h
+        for part, kept in ((h.ia, before.ia), (h.ci, before.ci), (h.cr, before.cr), (h.cd, before.cd)):
+            part[:] = kept
+        array.h = h
         raise

@@ -47,7 +47,7 @@ def recordable() -> dict[str, Recordable]:
     ]
     found += [Recordable("", COMMON, number, field) for number, field in enumerate(table.common)]
     found += [
-        Recordable("", MODEL, number, Field(word.upper(), True, 1, None, "data", unit, "ours", text))
+        Recordable("", MODEL, number, Field(word.upper(), "real", 1, None, "data", unit, "ours", text))
         for number, (word, (unit, text)) in enumerate(QUANTITIES.items())
     ]
     return {r.field.name: r for r in found if r.field.count == 1}

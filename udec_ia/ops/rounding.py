@@ -8,6 +8,7 @@ from offsets.generated import (
     FTOL,
     IBPNT,
     ICPNT,
+    IERAD,
     KB1,
     KB2,
     KC,
@@ -20,6 +21,7 @@ from offsets.generated import (
     KYP,
     LROUND,
     MCTOT,
+    NERR,
 )
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
@@ -29,7 +31,7 @@ from udec_ia.kernels.deep import deep_overlap
 from udec_ia.kernels.ford import settle_all
 from udec_ia.kernels.shape import span, zcs
 from udec_ia.kernels.tolerances import default_rounding, edges, extent, set_rounding
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.touch import OVERLAP_TOO_GREAT, VIRTUAL
 from udec_ia.kernels.update import update_all
 from udec_ia.ops.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.memory import all_or_nothing, find_room, keep_spare
@@ -98,6 +100,11 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
     if ip != 0:
         place = float(getr(h, ip, KXP)), float(getr(h, ip, KYP))
         raise _too_deep(h, iget(h, ip, KNB), iget(h, iq, KNB), overlap, place, advice)
+    if h.ci[NERR] == OVERLAP_TOO_GREAT:  # found when the domains were updated
+        ip = int(h.ci[IERAD])
+        place = float(getr(h, ip, KXP)), float(getr(h, ip, KYP))
+        detail = f"with {h.cr[DTOL]:g} block@{iget(h, ip, KNB)} at ({place[0]:g}, {place[1]:g})"
+        raise UdecError(14, f"{detail} would lie in another block without a contact", advice, parameter="d")
 
 
 def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice: str) -> UdecError:

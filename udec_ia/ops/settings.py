@@ -52,10 +52,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.masses import greatest_block
-from udec_ia.kernels.motion import FIXED
+from udec_ia.kernels.motion import FIXED, carry_corners
 from udec_ia.kernels.sdef import put_strain_rate
 from udec_ia.ops.bounds import given_velocities
-from udec_ia.ops.change import renew_corners
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import bearable, finite, material_number, not_negative, positive, whole
 from udec_ia.ops.lists import chain
@@ -155,8 +154,9 @@ def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
     """
     h = array.h
     blocks = blocks_in(array, where)
+    given = {} if fixed else given_velocities(h)
     for ib in blocks:
-        puti(h, ib, KBFIX, FIXED if fixed else given_velocities(h, ib))
+        puti(h, ib, KBFIX, FIXED if fixed else given.get(ib, 0))
         if fixed:
             _stop(h, ib)
     if not fixed and h.ci[MCTOT] > 0 and any(iget(h, ib, HEAD) == MFDEF for ib in blocks):
@@ -168,7 +168,7 @@ def _stop(h: Memory, ib: int) -> None:
     """Set all velocities of block `ib` to zero, those of corners and grid-points and strain rates, too."""
     for k in (KXD, KYD, KTD):
         putr(h, ib, k, 0.0)
-    renew_corners(h, ib)
+    carry_corners(h, ib)
     ie = iget(h, ib, KBEX)
     if iget(h, ib, HEAD) == MSDEF:
         put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)
@@ -190,7 +190,10 @@ def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:
     if ia < 1 or (ia - 1) % ratio:
         advice = f"addresses are 1 plus a multiple of {ratio}"
         raise UdecError(30, f"{ia} is not the address of a group", advice, parameter="ia")
-    if ioff < 1 or ia + ioff * ratio - 1 > last:
+    if ioff < 1:
+        advice = "offsets count from 1: offset 1 is the first real of a group, HELP RSET"
+        raise UdecError(30, f"offset {ioff}", advice, parameter="ioff")
+    if ia + ioff * ratio - 1 > last:
         place = f"offset {ioff} from address {ia}"
         raise UdecError(30, place, f"the last word in use is {last}", parameter="ia" if ia > last else "ioff")
     h.ra[(ia - 1) // ratio + ioff - 1] = v

@@ -10,14 +10,15 @@ from offsets.generated import DTOL, KBEX, KFG, MCTOT, MFDEF, NBLK
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.cross import LEAST, MOST, X, Y, rounding_is_open
-from udec_ia.kernels.cut import DONE, NO_MEMORY, REFUSED_SHORT, cut_path, enter_boxes, path
+from udec_ia.kernels.cross import LEAST, X, Y, rounding_is_open
+from udec_ia.kernels.cut import DONE, NO_MEMORY, NO_ROWS, REFUSED_SHORT, cut_path, enter_boxes, path
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.ops.memory import find_room, keep_spare
 from udec_ia.ops.rounding import update_flagged
 from udec_ia.ops.soft import soft
 
+CROSSINGS = 64  # of one block that are looked for at first
 ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
 
 
@@ -37,15 +38,17 @@ class Boxes:
     def enter(self, array: MainArray) -> None:
         """Make sure that all blocks of the list are entered."""
         count = int(array.h.ci[NBLK])
-        if len(self.blocks) < 2 * count + MOST:
-            self._resize(array, 4 * count + MOST)
+        self.make_room(array, count)
         if self.n != count:
             self.n = enter_boxes(array.h, self.boxes, self.blocks)
             far = np.abs(self.boxes[: self.n]).max(axis=0)
             self.size = float(max(far[0], far[2]) + max(far[1], far[3]))
 
-    def _resize(self, array: MainArray, size: int) -> None:
-        boxes, blocks = np.zeros((size, 4), array.h.cr.dtype), np.zeros(size, np.int64)
+    def make_room(self, array: MainArray, count: int) -> None:
+        """Make sure that there are `count` rows."""
+        if len(self.blocks) >= count:
+            return
+        boxes, blocks = np.zeros((2 * count, 4), array.h.cr.dtype), np.zeros(2 * count, np.int64)
         boxes[: self.n], blocks[: self.n] = self.boxes[: self.n], self.blocks[: self.n]
         self.boxes, self.blocks = boxes, blocks
 
@@ -81,14 +84,21 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     keep_spare(array)
     boxes.enter(array)
     h = array.h
-    rows, where = np.empty(boxes.n, np.int64), np.empty((MOST, 3), h.cr.dtype)
-    status, found = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where)
+    rows = np.empty(boxes.n, np.int64)
+    status, most = NO_ROWS, CROSSINGS
+    while status == NO_ROWS:
+        where, which = np.empty((most, 3), h.cr.dtype), np.empty((most, 2), np.int64)
+        status, found, cuts = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where, which)
+        most *= 2
     if status != DONE:
         _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[LEAST]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
         if iget(h, ib, HEAD) == MFDEF and iget(h, iget(h, ib, KBEX), KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
-    status, boxes.n = cut_path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, soft(array))
+    boxes.make_room(array, boxes.n + cuts)
+    status, boxes.n = cut_path(
+        h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which, soft(array)
+    )
     if status == NO_MEMORY:
         try:
             find_room(array)

@@ -31,27 +31,18 @@ from offsets.generated import (
     FRAC,
     IBNPNT,
     IBPNT,
-    ICPNT,
     KB,
-    KB1,
-    KB2,
     KBEX,
     KBFIX,
     KBI,
     KBM,
-    KC,
-    KCCOD,
     KCM,
-    KCP1,
-    KCP2,
     KFG,
     KFZ,
     KG,
     KGFIX,
-    KGP,
     KGPM,
     KMAT,
-    KR,
     KSAREA,
     KSJ11,
     KSJ12,
@@ -64,11 +55,9 @@ from offsets.generated import (
     KUG,
     KUP,
     KX,
-    KXC,
     KXG,
     KXP,
     KY,
-    KYC,
     KYG,
     KYP,
     KZ,
@@ -85,12 +74,11 @@ from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.balance import greatest_stiffness, least_mass
+from udec_ia.kernels.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
+from udec_ia.kernels.stiffness import DOFS, add_contacts
 from udec_ia.kernels.timestep import addresses, soft_step
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
-from udec_ia.ops.lists import chain
 
 Array = Any  # of addresses, or of the reals found there
-DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12; a grid-point has the first two
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
@@ -112,7 +100,7 @@ class _Rows:
         meshed = blocks[integers(h, blocks, HEAD) == MFDEF]
         firsts = integers(h, integers(h, meshed, KBEX), KFG)
         points = [addresses(h, int(first), KG) for first in firsts]
-        self.address = np.unique(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
+        self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
         words = len(self.address)
         self.sum = np.zeros((words, DOFS))
         self.mass = np.full((words, DOFS), np.inf)
@@ -120,8 +108,9 @@ class _Rows:
         self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
         self.length = np.ones(words)  # radius of gyration of a block
         self._enter_blocks(blocks[integers(h, blocks, HEAD) != MFDEF])
-        for ib, own in zip(meshed, points, strict=True):
-            self._enter_zones(int(ib), own)
+        if len(meshed):
+            self._enter_points(meshed, points)
+            self._enter_zones(meshed)
 
     def row(self, addresses: Array) -> Array:
         """Rows of blocks and grid-points."""
@@ -152,21 +141,27 @@ class _Rows:
         self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
         self.sum[rows, 5] = area * 2 * (one - two) / square
 
-    def _enter_zones(self, ib: int, points: Array) -> None:
-        """Masses of the grid-points of block `ib`, and the stiffness of its zones."""
-        h, ie = self.h, iget(self.h, ib, KBEX)
-        rows, zones = self.row(points), addresses(h, int(iget(h, ie, KFZ)), KZ)
-        self.mass[rows] = _reals(h, points, KGPM)[:, None]
-        fix = integers(h, points, KGFIX)
-        held = iget(h, ib, KBFIX) == 1
-        self.free[rows, 0] = (fix & 1 == 0) & (not held)
-        self.free[rows, 1] = (fix & 2 == 0) & (not held)
+    def _enter_points(self, blocks: Array, points: list[Array]) -> None:
+        """Masses of the grid-points of `blocks`, those of each block in a row."""
+        h, own = self.h, np.concatenate(points)
+        rows, fix = self.row(own), integers(h, own, KGFIX)
+        held = np.repeat(integers(h, blocks, KBFIX) == 1, [len(row) for row in points])
+        self.mass[rows] = _reals(h, own, KGPM)[:, None]
+        self.free[rows, 0] = (fix & 1 == 0) & ~held
+        self.free[rows, 1] = (fix & 2 == 0) & ~held
+
+    def _enter_zones(self, blocks: Array) -> None:
+        """The stiffness of the zones of `blocks`."""
+        h = self.h
+        chains = [addresses(h, int(first), KZ) for first in integers(h, integers(h, blocks, KBEX), KFZ)]
+        zones = np.concatenate(chains)
+        mat = np.repeat(integers(h, blocks, KMAT) - 1, [len(chain) for chain in chains])
         corner = np.stack([integers(h, zones, KZG, i) for i in (2, 1, 0)], axis=1)
         x, y = (_reals(h, corner, k) for k in (KXG, KYG))
         b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
         corner = self.row(corner)
         twice = np.abs(b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])  # a zone may have turned inside out
-        one, two = (float(h.cr[k + iget(h, ib, KMAT) - 1]) for k in (ALAM1, ALAM2))
+        one, two = (h.cr[k + mat].astype(float) for k in (ALAM1, ALAM2))
         shear = (one - two) / 2
         free = self.free[corner, :2]
         for i in range(3):
@@ -181,44 +176,9 @@ class _Rows:
 
     def add_contacts(self) -> None:
         """The stiffness of all contacts that are not virtual."""
-        h = self.h
-        contacts = addresses(h, int(h.ci[ICPNT]), KC)
-        contacts = contacts[integers(h, contacts, KCCOD) != VIRTUAL]
-        if not len(contacts):
-            return
-        mat = integers(h, contacts, KCM) - 1
-        stiffness = np.maximum(h.cr[AKN + mat], h.cr[AKS + mat]).astype(float)
-        shares = [
-            *self._shares(contacts, KB1, KCP1, CORNER_EDGE),
-            *self._shares(contacts, KB2, KCP2, EDGE_CORNER),
-        ]
-        for axis in (0, 1):
-            total = sum((share[axis] * self.free[at]).sum(axis=1) for at, share in shares)
-            for at, share in shares:
-                rows = share[axis] * (stiffness * total)[:, None]
-                np.add.at(self.sum, at, rows)
-
-    def _shares(self, contacts: Array, kb: Offset, kp: Offset, on_corner: int) -> list[tuple[Array, Array]]:
-        """What moves with one side of the contacts: addresses, and how far a unit of each degree of freedom
-        moves the contact point in x and in y, shape (2, contacts, DOFS)."""
-        h = self.h
-        blocks, corners = integers(h, contacts, kb), integers(h, contacts, kp)
-        x, y = _reals(h, contacts, KXC), _reals(h, contacts, KYC)
-        meshed = integers(h, blocks, HEAD) == MFDEF
-        body = self._body(blocks, x, y)
-        before = integers(h, corners, KR)
-        xa, ya = _reals(h, before, KXP), _reals(h, before, KYP)
-        dx, dy = _reals(h, corners, KXP) - xa, _reals(h, corners, KYP) - ya
-        square = dx * dx + dy * dy
-        along = (x - xa) * dx + (y - ya) * dy
-        part = np.clip(np.divide(along, square, out=np.ones_like(along), where=square > 0), 0, 1)
-        part = np.where(np.isin(integers(h, contacts, KCCOD), (CORNER_CORNER, on_corner)), 1.0, part)
-        point = _point(len(body[0]))
-        here = self.row(np.where(meshed, integers(h, corners, KGP), blocks))
-        there = self.row(np.where(meshed, integers(h, before, KGP), 0))
-        first = np.where(meshed[:, None], point * part[:, None], body)
-        second = np.where(meshed[:, None], point * (1 - part)[:, None], 0.0)
-        return [(here, first), (there, second)]
+        row = np.zeros(int(self.h.ci[MFREE]) + 1, np.int32)
+        row[self.address] = np.arange(len(self.address))
+        add_contacts(self.h, row, self.length, self.free, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
@@ -360,31 +320,37 @@ def damped(step: float, beta: float) -> float:
     return step / (math.hypot(1, share) + share)
 
 
-def instability(array: MainArray) -> str:
-    """A warning if stiffness damping may make the time-step unstable, else "".
+def safe_fraction(array: MainArray, share: float) -> float:
+    """FRACTION that makes a time-step just below that which the present one is `share` of."""
+    return 0.95 * float(array.h.cr[FRAC]) / share
 
-    The highest frequency is taken to be that of the safe bound.
-    """
-    cr = array.h.cr
-    beta, step, fraction = float(cr[BETA]), float(cr[TDEL]), float(cr[FRAC])
-    if beta == 0:
-        return ""
-    critical = damped(bound(array).step, beta)
+
+def instability(array: MainArray, safe: Limit) -> str:
+    """A warning if the time-step is above `safe`, or above what stiffness damping leaves of it, else ""."""
+    beta, step = float(array.h.cr[BETA]), float(array.h.cr[TDEL])
+    critical = damped(safe.step, beta)
     if step <= critical:
         return ""
+    share = step / critical if critical else math.inf
+    fraction = f"FRACTION {safe_fraction(array, share):.2g} is safe"
+    if step <= safe.step:
+        return (
+            f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: "
+            f"{fraction}, or a smaller fcrit, or MASS damping alone"
+        )
     return (
-        f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: FRACTION "
-        f"{fraction * critical / step:.2g} is safe, or a smaller fcrit, or MASS damping alone"
+        f"the time-step of {step:.3g} s is {share:.3g} of the safe bound, which "
+        f"{kind_of(array.h, safe.address)} sets, and may be unstable: {fraction}"
     )
 
 
-def describe(array: MainArray) -> str:
-    """One line: the time-step, its shares of estimate and bound, and which groups set these."""
+def describe(array: MainArray, safe: Limit) -> str:
+    """One line: the time-step, its shares of estimate and safe bound, and which groups set these."""
     step = float(array.h.cr[TDEL])
     parts = [
         f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "
         f"({kind_of(array.h, limit.address)})"
-        for name, limit in (("estimate", estimate(array)), ("safe bound", bound(array)))
+        for name, limit in (("estimate", estimate(array)), ("safe bound", safe))
         if math.isfinite(limit.step)
     ]
     return f"time-step {step:.4g} s, {', '.join(parts)}"
@@ -392,16 +358,14 @@ def describe(array: MainArray) -> str:
 
 def kind_of(h: Memory, address: int) -> str:
     """What a message is about: `block@163`, or `grid-point@5917 of block@163`, or one of its zones."""
-    for ib in chain(h, int(h.ci[IBPNT]), KB):
-        if ib == address:
-            return f"block@{ib}"
-        if iget(h, ib, HEAD) == MSDEF and address == iget(h, ib, KBEX):
-            return f"the strain of block@{ib}"
-        if iget(h, ib, HEAD) == MFDEF:
-            for what, first, following in (("grid-point", KFG, KG), ("zone", KFZ, KZ)):
-                if address in chain(h, iget(h, iget(h, ib, KBEX), first), following):
-                    return f"{what}@{address} of block@{ib}"
-    return f"@{address}"
+    ib, what = owner(h, address)
+    if what == NOBODY:
+        return f"@{address}"
+    if what == BLOCK:
+        return f"block@{ib}"
+    if what == STRAIN:
+        return f"the strain of block@{ib}"
+    return f"{'grid-point' if what == GRIDPOINT else 'zone'}@{address} of block@{ib}"
 
 
 def _reals(h: Memory, at: Array, k: Offset) -> Array:

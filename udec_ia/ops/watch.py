@@ -7,12 +7,12 @@ between the two.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.rest import force_ratio
 from udec_ia.kernels.watch import record, run_watched
 from udec_ia.ops.history import Definition, definitions, places
 from udec_ia.ops.soft import soft
@@ -37,6 +37,7 @@ class Series:
         self.place = place
         self.every = definition.every
         self.lost = False
+        self.count = 0  # numbers recorded
         self._parts = [np.zeros((0, 3))]
         self.follow(definition)
 
@@ -61,6 +62,16 @@ class Series:
         self._parts = [np.concatenate(self._parts)]
         return self._parts[0]
 
+    def since(self, n: int) -> Any:
+        """What was recorded after the first `n` numbers, as rows of `numbers`."""
+        parts, missing = [np.zeros((0, 3))], self.count - n
+        for part in reversed(self._parts):
+            if missing <= 0:
+                break
+            parts.append(part[-missing:])
+            missing -= len(parts[-1])
+        return np.concatenate(parts[::-1])
+
     @property
     def last_cycle(self) -> int:
         """The last cycle that was recorded; -1 before the first one."""
@@ -72,13 +83,15 @@ class Series:
         new = rows[rows[:, 0] > self.last_cycle]
         if len(new):
             self._parts.append(new)
+            self.count += len(new)
 
 
 class Solution(NamedTuple):
     """How a SOLVE ended.
 
     wanted: force ratio asked for; ratio: at the end; cycles: how many it took. worst: what is farthest from
-    balance, "" if nothing is out of it.
+    balance, "" if nothing is out of it. motion: kinetic over strain energy at the end; liveliest: what has
+    most of the kinetic energy, "" if nothing moves.
     """
 
     reached: bool
@@ -86,6 +99,8 @@ class Solution(NamedTuple):
     ratio: float
     cycles: int
     worst: str
+    motion: float
+    liveliest: str
 
     def __bool__(self) -> bool:
         return self.reached
@@ -93,10 +108,15 @@ class Solution(NamedTuple):
     def __str__(self) -> str:
         if self.reached:
             return f"force ratio {self.wanted:g} reached: it is {self.ratio:.3g} after {self.cycles} cycles"
-        return (
-            f"force ratio {self.wanted:g} NOT REACHED: it is {self.ratio:.3g} after {self.cycles} cycles, "
-            f"most out of balance is {self.worst}{self._advice}"
-        )
+        found = f"force ratio {self.wanted:g} NOT REACHED: it is {self.ratio:.3g} after {self.cycles} cycles"
+        if self.ratio > self.wanted:
+            return f"{found}, most out of balance is {self.worst}{self._advice}"
+        if self.motion > self.wanted:
+            return (
+                f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
+                f"{self.liveliest} has most of it"
+            )
+        return f"{found}, and at least one cycle must show it"
 
     @property
     def _advice(self) -> str:
@@ -104,11 +124,22 @@ class Solution(NamedTuple):
         return "; see DAMPING ... INTERNAL" if "strain" in self.worst else ""
 
 
+def unsolved(solutions: Sequence[Solution]) -> list[Solution]:
+    """Those that came to their limit, but for one before a SOLVE that asked for as much: that one tells."""
+    return [
+        one
+        for i, one in enumerate(solutions)
+        if not one and all(later.wanted > one.wanted for later in solutions[i + 1 :])
+    ]
+
+
 class Watch:
     """Runs cycles of `array` and hands what is recorded to `series`.
 
-    ratio: unbalanced force ratio at which to stop. reached: True when it was. lost: those of `series` whose
-    groups were found to have gone since they were last looked at.
+    ratio: to within which there must be rest to stop. reached: True when there was, after a cycle of this
+    run: forces are those of the properties, loads and laws of now only when the contacts have been passed
+    through with them. lost: those of `series` whose groups were found to have gone since they were last
+    looked at.
     """
 
     def __init__(self, array: MainArray, series: list[Series], ratio: float = NEVER) -> None:
@@ -117,16 +148,15 @@ class Watch:
         self.ratio = float(ratio)  # a kernel is compiled for one type
         self.reached = False
         self.lost: list[Series] = []
+        self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
 
     def begin(self) -> None:
         """Look at the state before the first cycle, groups being where they will stay."""
         self.look()
         self._places = places(self.array)
         self._rows = np.empty((ROWS, 2 + len(self.series)))
-        self._count = np.zeros(1, np.int64)
         record(self.array.h, soft(self.array), self._places, self._rows, self._count)
-        self._hand_on()
-        self.reached = self.ratio >= 0 and bool(force_ratio(self.array.h, soft(self.array)) <= self.ratio)
+        self.hand_on()
 
     def run(self, n: int, laws: Any) -> int:
         """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
@@ -140,7 +170,7 @@ class Watch:
                     self.array.h, n - done, laws, self.ratio, self._places, self._rows, self._count
                 )
             finally:
-                full = self._hand_on() == ROWS
+                full = self.hand_on() == ROWS
             done += int(completed)
         return done
 
@@ -155,8 +185,10 @@ class Watch:
                 series.lost = True
                 self.lost.append(series)
 
-    def _hand_on(self) -> int:
-        """Let the series have the rows that are filled; returns their number."""
+    def hand_on(self) -> int:
+        """Let the series have the rows that are filled, if they have not; returns the number of rows."""
+        if self._count[0] == 0:
+            return 0
         rows = self._rows[: self._count[0]].copy()
         for i, series in enumerate(self.series):
             due = rows[:, 0] % series.every == 0

@@ -66,13 +66,14 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.kernels.lists import is_corner
 from udec_ia.kernels.masses import share_mass
+from udec_ia.kernels.motion import carry_corners
 from udec_ia.kernels.shape import crad
 from udec_ia.kernels.split import corner_on_edge
-from udec_ia.ops.change import change_types, renew_corners
+from udec_ia.ops.change import change_types
 from udec_ia.ops.forces import renew_forces
 from udec_ia.ops.lists import chain, items
 from udec_ia.ops.memory import all_or_nothing, require
-from udec_ia.ops.ranges import Range, blocks_in
+from udec_ia.ops.ranges import Range, blocks_in, why_no_block
 from udec_ia.ops.rounding import update_flagged
 from udec_ia.ops.straighten import flag_around
 
@@ -106,6 +107,12 @@ class Outline:
     def area(self) -> float:
         """Area of the block."""
         return float((self.end[:, 0] * self.start[:, 1] - self.start[:, 0] * self.end[:, 1]).sum() / 2)
+
+    @property
+    def where(self) -> str:
+        """Between which coordinates the block lies, in words."""
+        (ax, ay), (bx, by) = self.end.min(axis=0), self.end.max(axis=0)
+        return f"x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
 
     def place(self, x: float, y: float, near: float) -> Place:
         """Where the point (x, y) goes: to a corner or an edge within the distance `near`, or where it is."""
@@ -193,7 +200,7 @@ def block_to_zone(array: MainArray, where: Range) -> int:
     """The first block in the range that has no zones. Errors 24 if none is there, 28 if all have zones."""
     blocks = blocks_in(array, where)
     if not blocks:
-        raise UdecError(24, "x {:g} to {:g}, y {:g} to {:g}".format(*where), parameter="x1")
+        raise UdecError(24, why_no_block(array, where), parameter="x1")
     h = array.h
     for ib in blocks:
         if iget(h, ib, HEAD) != MFDEF or iget(h, iget(h, ib, KBEX), KFG) == 0:
@@ -213,7 +220,9 @@ def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
         if place.corner:
             on[place.corner].append(row)
         elif not outline.holds(place.x, place.y):
-            raise UdecError(28, f"grid-point {row + 1} ({place.x:g}, {place.y:g}) lies outside the block")
+            detail = f"grid-point {row + 1} ({place.x:g}, {place.y:g}) lies outside the block"
+            advice = f"the first block in the range lies in {outline.where}; the last grid-point is number 1"
+            raise UdecError(28, detail, advice, parameter="gridpoints")
     found: list[int] = []
     for k, ip in enumerate(outline.corners):
         edge = sorted((row for row in on[ip] if places[row].on_edge), key=lambda row: places[row].along)
@@ -348,7 +357,7 @@ def _set_in_motion(h: Memory, ib: int) -> None:
     for ig, rx, ry in points:
         putr(h, ig, KXDG, xd - td * ry)
         putr(h, ig, KYDG, yd + td * rx)
-    renew_corners(h, ib)
+    carry_corners(h, ib)
 
 
 def _gridpoints(h: Memory, ib: int) -> list[int]:

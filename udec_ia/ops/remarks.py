@@ -1,0 +1,79 @@
+"""What is no error and yet hardly meant: said once, before the run, with the cure.
+
+A remark is made of what can be known without running: a number that looks like one of another unit, a
+material that lacks a modulus, a wait for rest that nothing brings about.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+from offsets.generated import (
+    ALPB,
+    ALPHA,
+    BETA,
+    BULK,
+    IBNPNT,
+    IBPNT,
+    KB,
+    KCONS,
+    KMAT,
+    KU,
+    KUCXX,
+    KUCYY,
+    MRIG,
+    NSOFT,
+    SHEAR,
+)
+from udec_ia.heap.accessors import HEAD, getr, integers
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.timestep import addresses
+
+TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
+STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
+
+
+def on_properties(material: int, values: dict[str, float | None]) -> Iterator[str]:
+    """PROPERTY: an angle where a tangent is wanted."""
+    for name in TANGENTS:
+        value = values.get(name)
+        if value is not None and STEEP < value < 90:
+            angle, tangent = math.degrees(math.atan(value)), math.tan(math.radians(value))
+            yield (
+                f"{name.replace('_', ' ')} {value:g} of material {material} is a tangent, of {angle:.3g} "
+                f"degrees: if an angle of {value:g} degrees is meant, give {tangent:.3g}"
+            )
+
+
+def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
+    """CYCLE: one of two moduli in the material of a deformable block that is linearly elastic.
+
+    own_laws: constitutive numbers that stand for block laws of the user's, which may want other properties.
+    """
+    h = array.h
+    blocks = addresses(h, int(h.ci[IBPNT]), KB) if h.ci[NSOFT] else np.zeros(0, np.int64)
+    soft = (integers(h, blocks, HEAD) != MRIG) & ~np.isin(integers(h, blocks, KCONS), [*own_laws])
+    for m in np.unique(integers(h, blocks[soft], KMAT)):
+        bulk, shear = h.cr[BULK + m - 1], h.cr[SHEAR + m - 1]
+        for given, lacking, what, without in (("BULK", "G", bulk, shear), ("G", "BULK", shear, bulk)):
+            if what > 0 and not without > 0:
+                change = "shape" if lacking == "G" else "volume"
+                yield (
+                    f"material {m} of deformable blocks has {given} and no {lacking}: nothing in them "
+                    f"resists a change of {change}; PROPERTY MATERIAL={m} {lacking}=..."
+                )
+
+
+def on_rest(array: MainArray) -> Iterator[str]:
+    """SOLVE: nothing that brings a model to rest."""
+    h = array.h
+    bounds = addresses(h, int(h.ci[IBNPNT]), KU)
+    viscous = any(np.any(getr(h, bounds, k)) for k in (KUCXX, KUCYY)) if len(bounds) else False
+    if not (h.cr[ALPHA] or h.cr[BETA] or h.cr[ALPB] or viscous):
+        yield (
+            "there is no damping, and nothing but friction brings blocks to rest: "
+            "DAMPING 0.5 f MASS, with f near the frequency (Hz) at which they would swing"
+        )
