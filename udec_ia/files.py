@@ -1,29 +1,109 @@
-"""Putting a file in its place in one step: its name stands for the old content or the new, not for a part.
+"""Putting a file in its place in one step, and in the place of nothing but a file of its own kind.
 
-The content goes to a temporary file in the same folder, which is renamed. Whatever becomes of the program,
-the file is whole; what is to outlast a power failure as well is forced to the disk before.
+The content goes to a temporary file in the same folder, which is renamed: the name stands for the old content
+or the new, not for a part. Whatever becomes of the program, the file is whole; what is to outlast a power
+failure as well is forced to the disk before.
+
+What the program did not write it does not replace. Files of one kind begin alike, so what stands there must
+begin as the new file does: no picture goes over a deck, and nothing over a device. A file that was replaced
+keeps its mode, and its owner and group where that is allowed; a link stays, and the file that it leads to is
+replaced.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
 import secrets
+import stat
+from collections.abc import Callable
 from pathlib import Path
 
+from udec_ia.errors import UdecError
 
-def put_in_place(path: Path, content: bytes | memoryview, *, force: bool = True) -> None:
-    """Write `content` as the file `path`; its folder is made if it is not there. Raises OSError.
+FRONT = 512  # bytes that tell what a file is
+SIGNATURE = 6  # bytes in which PNG, SVG, GIF, HDF5 and our tables differ from each other and from a deck
+LEAVE = "a file may replace one of its own kind only: take another name or folder, or move away what is there"
+NO_FILES = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+}
+Content = bytes | memoryview
+Judge = Callable[[bytes, int], str]
 
-    force: wait until it is on the disk, which may take as long as a thousand cycles. A file that stood there
-    before is untouched if anything goes wrong.
+
+def put_in_place(path: Path, content: Content, judge: Judge | None = None, *, force: bool = True) -> None:
+    """Write `content` as the file `path`; its folder is made if it is not there.
+
+    judge: takes the first bytes and the size of a file that stands there, and returns why it may not be
+    replaced, or ""; without it, it must begin as `content` does. force: wait until the file is on the disk,
+    which may take as long as a thousand cycles. Raises UdecError 31; what stood there before is then
+    untouched.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    target = path.resolve()
-    temporary = target.parent / f".udec-{secrets.token_hex(8)}.tmp"
     try:
-        with temporary.open("xb") as file:
+        there = status(path)
+        target = Path(os.path.realpath(path))
+        if there is None:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        else:
+            _check_replaceable(path, target, there, judge or _alike(path, content))
+        _write(target, content, there, force)
+    except OSError as error:
+        raise UdecError(31, f"{path}: {error.strerror or error}") from error
+
+
+def check_name(path: Path, content: Content) -> None:
+    """Error 31 unless there is no file `path`, or one that begins as `content` does and may be replaced."""
+    there = status(path)
+    if there is not None:
+        _check_replaceable(path, Path(os.path.realpath(path)), there, _alike(path, content))
+
+
+def status(path: Path) -> os.stat_result | None:
+    """What stands under the name `path`, or None. Error 31 for what is no name, OSError for endless links."""
+    try:
+        return path.stat()
+    except FileNotFoundError:
+        return None
+    except ValueError as error:  # a NUL, or a character that the file system cannot spell
+        raise UdecError(31, f"{path} is no name for a file: {error}", "take another name") from error
+
+
+def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: Judge) -> None:
+    """Error 31 unless the file may be replaced."""
+    kind = stat.S_IFMT(there.st_mode)
+    if kind != stat.S_IFREG:
+        raise UdecError(31, f"{path} is {NO_FILES.get(kind, 'no file')}", LEAVE)
+    if not (there.st_mode & 0o222 and os.access(target, os.W_OK)):
+        raise UdecError(31, f"{path} is read-only", "take another name, or allow it to be written to")
+    with target.open("rb") as file:
+        reason = judge(file.read(FRONT), there.st_size)
+    if reason:
+        raise UdecError(31, f"{path} {reason}, and stays as it is", LEAVE)
+
+
+def _alike(path: Path, content: Content) -> Judge:
+    """Judges by the first bytes, which must be those of `content`."""
+
+    def judge(front: bytes, _: int) -> str:
+        alike = front[:SIGNATURE] == bytes(content[:SIGNATURE])
+        return "" if alike else f"is there, but is no {path.suffix[1:].upper()} file of this program's"
+
+    return judge
+
+
+def _write(target: Path, content: Content, before: os.stat_result | None, force: bool) -> None:
+    temporary = target.parent / f".udec-{secrets.token_hex(8)}.tmp"
+    mode = 0o666 if before is None else 0o600  # less what the user's mask forbids
+    try:
+        with open(temporary, "xb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
             file.write(content)
+            if before is not None:
+                _keep_rights(temporary, before)
             if force:
                 file.flush()
                 os.fsync(file.fileno())
@@ -34,6 +114,26 @@ def put_in_place(path: Path, content: bytes | memoryview, *, force: bool = True)
     if force:
         with contextlib.suppress(OSError):  # not every file system can do it; the file itself is whole
             _sync_folder(target.parent)
+
+
+def last_number(folder: Path, name: str) -> int:
+    """The greatest n for which there is a file name-n.* in `folder`, or 0."""
+    numbered = re.compile(rf"{re.escape(name)}-(\d+)\.[^.]+")
+    found = (numbered.fullmatch(path.name) for path in (folder.iterdir() if folder.is_dir() else ()))
+    return max((int(one[1]) for one in found if one), default=0)
+
+
+def _keep_rights(file: Path, before: os.stat_result) -> None:
+    """Give `file` the mode of what it replaces, and its owner and group as far as that is allowed.
+
+    A group that cannot be kept loses its rights: they were not meant for the one that comes in its place.
+    """
+    if hasattr(os, "chown"):
+        for owner, group in ((-1, before.st_gid), (before.st_uid, -1)):
+            with contextlib.suppress(PermissionError):
+                os.chown(file, owner, group)
+    same_group = file.stat().st_gid == before.st_gid
+    file.chmod(before.st_mode & (0o777 if same_group else 0o707))
 
 
 def takes_files(folder: Path) -> bool:

@@ -1,12 +1,13 @@
 """The checker: proves that a main array holds a sound map of blocks, or says all that is wrong.
 
     1. every word below MFREE is in exactly one group, in use or junk; nothing points into junk
-    2. every pointer is 0 or the base of a group of its kind; the main lists are linked both ways
+    2. every pointer is 0, where it may be, or the base of a group of its kind; the main lists are linked both
+       ways; codes are in their range
     3. clockwise lists close, contacts in physical order; links back and reverse lists mirror them
     4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close; what
-       hangs on a virtual contact lies in the domain in which it hangs
-    5. blocks - contacts + domains = 2, and the counts of the common block are true
-    6. grid-point and corner links are mutual
+       hangs on a virtual contact lies in the domain in which it hangs; the outer domain lies around them all
+    5. blocks - contacts + domains = 2, and the counts of the common block and of zones are true
+    6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
     7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
@@ -20,10 +21,11 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check_bounds import check_bounds, check_times
+from udec_ia.inspect.check_codes import check_codes
 from udec_ia.inspect.check_complete import check_complete
 from udec_ia.inspect.check_geometry import (
     Outlines,
-    check_codes,
     check_contacts,
     check_numbers,
     check_outlines,
@@ -33,7 +35,9 @@ from udec_ia.inspect.check_geometry import (
 from udec_ia.inspect.check_groups import State, Violation, check_pointers
 from udec_ia.inspect.check_history import check_histories
 from udec_ia.inspect.check_map import check_map
+from udec_ia.inspect.check_members import check_members, check_zone_areas
 from udec_ia.inspect.check_memory import check_memory
+from udec_ia.inspect.check_outer import check_outer
 from udec_ia.inspect.check_pieces import check_pieces
 from udec_ia.inspect.check_place import check_places
 
@@ -75,6 +79,8 @@ def check(array: MainArray) -> list[Violation]:
 def _check_shapes(state: State) -> Outlines | None:
     """Numbers and outlines; the outlines, or None if there are none."""
     check_numbers(state)
+    check_zone_areas(state)
+    check_times(state)
     shapes = outlines(state)
     if shapes is not None:
         check_outlines(state, shapes)
@@ -87,3 +93,6 @@ def _check_links(state: State) -> None:
     check_codes(state)
     check_histories(state)
     check_map(state)
+    check_outer(state)
+    check_members(state)
+    check_bounds(state)

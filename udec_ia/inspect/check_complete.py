@@ -7,69 +7,110 @@ needs a contact of the two blocks nearby; nearer to it than FTOL there is never 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
 A gap as narrow as that needs no contact if the tip of a third block stands in it, for a contact cannot be
-there. Nor can it where a third block's tip lies between the two and is thinner than the overlaps on its two
-sides: it hands on the force of the one to the other.
+there. Nor does an overlap of up to FTOL where a third block's tip lies between the two, thinner than the
+overlaps on its two sides: it hands on the force of the one to the other.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from math import hypot
+from functools import cached_property
+from math import hypot, isqrt
 
 import numpy as np
 
 from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check_groups import HOSTS, Numbers, State
 
-Joined = dict[tuple[int, int], list[tuple[float, float, float]]]  # contact points, overlaps by pair of blocks
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
-CHUNK = 1_000_000  # pairs looked at together
+CHUNK = 20_000  # pairs of blocks looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
+FAR = 3.0  # rounding lengths that a corner is away from an edge at most, where its arc meets the edge
 AWRY_POINT = 0.2  # the same for a point of an edge: a contact is formed up to an angle of 0.25
+
+
+class Joined:
+    """The real contacts by the pair of blocks that they join; a block is its index in `o.block`."""
+
+    def __init__(self, state: State, o: Outlines, touch: Touches) -> None:
+        index = np.full(len(state.address["block"]), -1)
+        index[state.rows("block", o.block)] = np.arange(len(o.block))
+        one, two = (index[state.rows("block", state.column("contact", name)[touch.row])] for name in HOSTS)
+        self.blocks = len(o.block)
+        pair = self._key(one, two)
+        order = np.argsort(pair, kind="stable")
+        self.pair, self.point, self.overlap = pair[order], touch.point[order], touch.overlap[order]
+
+    def _key(self, one: Numbers, two: Numbers) -> Numbers:
+        return np.minimum(one, two) * self.blocks + np.maximum(one, two)
+
+    def joins(self, one: Numbers, two: Numbers) -> Numbers:
+        """True for each pair of blocks with a contact."""
+        key = self._key(one, two)
+        return np.searchsorted(self.pair, key, "left") < np.searchsorted(self.pair, key, "right")
+
+    def near(self, one: Numbers, two: Numbers, point: Numbers, reach: Numbers) -> Numbers:
+        """True for each pair of blocks with a contact within `reach` of `point`."""
+        key = self._key(one, two)
+        first = np.searchsorted(self.pair, key, "left")
+        row, place = ragged(np.searchsorted(self.pair, key, "right") - first)
+        away = np.hypot(*(point[row] - self.point[first[row] + place]).T)
+        return np.bincount(row[away <= reach[row]], minlength=len(key)) > 0
+
+    @cached_property
+    def points(self) -> dict[tuple[int, int], list[tuple[float, float, float]]]:
+        """Contact points and overlaps by the lesser and the greater block of the pair."""
+        found: dict[tuple[int, int], list[tuple[float, float, float]]] = defaultdict(list)
+        for pair, (x, y), depth in zip(
+            self.pair.tolist(), self.point.tolist(), self.overlap.tolist(), strict=True
+        ):
+            found[divmod(pair, self.blocks)].append((x, y, depth))
+        return found
 
 
 def check_complete(state: State, o: Outlines, touch: Touches) -> None:
     """Invariant 8."""
-    joined = _contact_points(state, touch)
+    joined = Joined(state, o, touch)
     for a, b in _close_blocks(o):
         i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
         for found, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
             _check_meetings(state, o, joined, found, what)
-        pairs = zip(o.block[a].tolist(), o.block[b].tolist(), strict=True)
-        apart = np.array([(min(pair), max(pair)) not in joined for pair in pairs], bool)
+        apart = ~joined.joins(a, b)
         for one, two in _crossings(o, a[apart], b[apart]):
             if not _thin_tips(state, o, joined, one, two):
-                state.report(8, f"block@{one} and block@{two} overlap, but there is no contact between them")
+                state.report(
+                    8,
+                    f"block@{o.block[one]} and block@{o.block[two]} overlap, "
+                    "but there is no contact between them",
+                )
 
 
 def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, what: str) -> None:
     """A violation for each meeting of an arc with an edge or an arc that has no contact near it."""
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
-    blocks = [o.block[o.owner[corner]].tolist() for corner in (arc, other)]
-    for k, (one, two, (x, y), overlap) in enumerate(
-        zip(*blocks, point.tolist(), depth.tolist(), strict=True)
-    ):
-        points = joined.get((min(one, two), max(one, two)), [])
-        if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
-            continue
-        points = _thin_tips(state, o, joined, one, two)
+    ones, twos = o.owner[arc], o.owner[other]
+    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth)):
+        one, two = int(ones[k]), int(twos[k])
+        (x, y), overlap = point[k].tolist(), float(depth[k])
+        points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []
         if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
             continue
         reach = -overlap / 2 + o.fine[arc[k]]
         if overlap > 0 or not _tip_at(o, point[k], reach, state.tolerance("BTOL"), (one, two)):
             state.report(
                 8,
-                f"block@{one} and block@{two} overlap by {overlap} at ({x}, {y}), without a contact where "
-                f"the arc of corner@{o.corner[arc[k]]} meets the {what} of corner@{o.corner[other[k]]}",
+                f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y}), without "
+                f"a contact where the arc of corner@{o.corner[arc[k]]} meets the {what} of "
+                f"corner@{o.corner[other[k]]}",
             )
 
 
 def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tuple[int, int]) -> bool:
     """True if a corner of a third block, rounded to less than `width`, comes within `reach` of `point`."""
-    tip = np.flatnonzero((o.r > 0) & (2 * o.r < width) & ~np.isin(o.block[o.owner], hosts))
+    tip = np.flatnonzero((o.r > 0) & (2 * o.r < width) & ~np.isin(o.owner, hosts))
     edge = np.concatenate((tip, o.after[tip]))
     start = o.p[o.before[edge]]
     along = np.clip(dot(point - start, o.t[edge]), o.start[edge], o.end[edge])
@@ -84,25 +125,16 @@ def _thin_tips(
     """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together."""
     found = []
     near = state.tolerance("DTOL")
-    thirds = {block for pair in joined if one in pair for block in pair} - {one, two}
-    for third in thirds & {block for pair in joined if two in pair for block in pair}:
-        tips = np.flatnonzero((o.block[o.owner] == third) & (o.r > 0))
-        for x, y, overlap in joined[min(one, third), max(one, third)]:
-            for u, v, depth in joined[min(two, third), max(two, third)]:
+    thirds = {block for pair in joined.points if one in pair for block in pair} - {one, two}
+    for third in thirds & {block for pair in joined.points if two in pair for block in pair}:
+        tips = np.flatnonzero((o.owner == third) & (o.r > 0))
+        for x, y, overlap in joined.points[min(one, third), max(one, third)]:
+            for u, v, depth in joined.points[min(two, third), max(two, third)]:
                 at = np.hypot(*(o.c[tips] - (x, y)).T) <= near
                 thin = at & (2 * o.r[tips] < overlap + depth)
                 if hypot(x - u, y - v) <= near and thin.any():
                     found.append((x, y, overlap))
     return found
-
-
-def _contact_points(state: State, touch: Touches) -> Joined:
-    """Contact points and overlaps of the real contacts of each pair of blocks."""
-    hosts = [state.column("contact", name)[touch.row].tolist() for name in HOSTS]
-    joined: Joined = defaultdict(list)
-    for one, two, (x, y), depth in zip(*hosts, touch.point.tolist(), touch.overlap.tolist(), strict=True):
-        joined[min(one, two), max(one, two)].append((x, y, depth))
-    return joined
 
 
 def ragged(count: Numbers) -> tuple[Numbers, Numbers]:
@@ -112,39 +144,54 @@ def ragged(count: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _close_blocks(o: Outlines) -> Iterator[tuple[Numbers, Numbers]]:
-    """Pairs of blocks (index, index) whose boxes overlap, in chunks: a sweep along the emptier axis."""
-    low, high = np.minimum.reduceat(o.p, o.first), np.maximum.reduceat(o.p, o.first)
-    sweeps = []
-    for axis in (0, 1):
-        order = np.argsort(low[:, axis], kind="stable")
-        end = np.searchsorted(low[order, axis], high[order, axis], side="right")
-        sweeps.append((int((end - np.arange(len(order)) - 1).sum()), axis, order, end))
-    _, axis, order, end = min(sweeps, key=lambda sweep: sweep[0])
-    count = end - np.arange(len(order)) - 1
+    """Pairs of blocks (index, index) whose boxes overlap, in chunks: a sweep along x in strips of y.
+
+    A box is swept in every strip that it touches, and a pair counts in the first strip that both touch.
+    """
+    n = len(o.block)
+    bounds = np.sort(o.low[:, 1])[:: isqrt(n)]
+    strip, last = (np.searchsorted(bounds, y, side="right") for y in (o.low[:, 1], o.high[:, 1]))
+    box, place = ragged(last - strip + 1)
+    ranked = np.sort(o.low[:, 0])
+    start, end = (np.searchsorted(ranked, x, side="right") for x in (o.low[:, 0], o.high[:, 0]))
+    swept = (strip[box] + place) * (n + 1)
+    key = swept + start[box]
+    order = np.argsort(key, kind="stable")
+    key, box, swept = key[order], box[order], swept[order]
+    count = np.searchsorted(key, swept + end[box], side="right") - np.arange(len(box)) - 1
     total = np.cumsum(count)
     first = 0
-    while first < len(order):
+    while first < len(box):
         done = total[first - 1] if first else 0
-        last = max(int(np.searchsorted(total, done + CHUNK, side="right")), first + 1)
-        owner, place = ragged(count[first:last])
-        i, j = order[first + owner], order[first + owner + 1 + place]
-        other = 1 - axis
-        meet = (low[i, other] <= high[j, other]) & (low[j, other] <= high[i, other])
+        beyond = max(int(np.searchsorted(total, done + CHUNK, side="right")), first + 1)
+        owner, place = ragged(count[first:beyond])
+        i, j = box[first + owner], box[first + owner + 1 + place]
+        once = swept[first + owner] == np.maximum(strip[i], strip[j]) * (n + 1)
+        meet = once & (o.low[i, 1] <= o.high[j, 1]) & (o.low[j, 1] <= o.high[i, 1])
         yield i[meet], j[meet]
-        first = last
+        first = beyond
 
 
 def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
-    """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the box of block b."""
-    low, high = np.minimum.reduceat(o.p, o.first), np.maximum.reduceat(o.p, o.first)
+    """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the edge of j.
+
+    A point of its arc is at most D away from a corner, another D deep under the edge or beside its end, and
+    as much farther along the edge as the arc is awry.
+    """
     pair, place = ragged(o.count[a])
     i, b = o.first[a[pair]] + place, b[pair]
     reach = o.d + o.slack[i]
-    inside = o.arc[i] & (o.p[i] >= low[b] - reach[:, None]).all(axis=1)
-    inside &= (o.p[i] <= high[b] + reach[:, None]).all(axis=1)
+    inside = o.arc[i] & (o.p[i] >= o.low[b] - reach[:, None]).all(axis=1)
+    inside &= (o.p[i] <= o.high[b] + reach[:, None]).all(axis=1)
     i, b = i[inside], b[inside]
     pair, place = ragged(o.count[b])
-    return i[pair], o.first[b[pair]] + place
+    i, j = i[pair], o.first[b[pair]] + place
+    reach = (FAR * o.d + o.slack + AWRY * np.abs(o.r))[i]
+    near = np.ones(len(i), bool)
+    for axis in (0, 1):
+        at = o.p[i, axis]
+        near &= (at >= o.least[j, axis] - reach) & (at <= o.most[j, axis] + reach)
+    return i[near], j[near]
 
 
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
@@ -213,22 +260,34 @@ def _in_rounded(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
 
 
 def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
-    """Pairs of blocks whose straight edges cross, or of which one has a point of its outline in the other."""
-    start = o.p[o.before] + o.start[:, None] * o.t
-    end = o.p[o.before] + o.end[:, None] * o.t
-    outwards = o.p - o.c
-    top = o.c + (np.maximum(o.r, 0) / np.maximum(np.hypot(*outwards.T), o.fine))[:, None] * outwards
-    pair, place = ragged(o.count[a] * o.count[b])
-    i = o.first[a[pair]] + place // o.count[b[pair]]
-    j = o.first[b[pair]] + place % o.count[b[pair]]
+    """Pairs of blocks whose straight edges cross, or of which one has a point of its outline in the other.
+
+    Only what lies in the boxes of both can do so.
+    """
+    edge = o.straight
+    low, high = np.maximum(o.low[a], o.low[b]), np.minimum(o.high[a], o.high[b])  # the box that both share
+
+    def common(block: Numbers, least: Numbers, most: Numbers) -> tuple[Numbers, Numbers]:
+        """Pair and corner for what the corners of `block` have, from `least` to `most`, in that box."""
+        pair, place = ragged(o.count[block])
+        k = o.first[block[pair]] + place
+        meet = (least[k, 0] <= high[pair, 0]) & (most[k, 0] >= low[pair, 0])
+        meet &= (least[k, 1] <= high[pair, 1]) & (most[k, 1] >= low[pair, 1])
+        return pair[meet], k[meet]
+
+    one, two = common(a, o.least, o.most), common(b, o.least, o.most)
+    count, first = (np.bincount(two[0], minlength=len(a)), np.searchsorted(two[0], np.arange(len(a))))
+    row, place = ragged(count[one[0]])
+    pair, i = one[0][row], one[1][row]
+    j = two[1][first[pair] + place]
     slack = o.rounding(i, j)
     cut = np.ones(len(pair), bool)
     for k, m in ((i, j), (j, i)):
-        u, v = (dot(point[k] - o.p[m], o.e[m]) for point in (start, end))
+        u, v = (dot(point[k] - o.p[m], o.e[m]) for point in edge)
         cut &= (np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack)
     bad = [pair[cut]]
     for inner, outer in ((a, b), (b, a)):
-        pair, place = ragged(o.count[inner])
-        k = o.first[inner[pair]] + place
-        bad += [pair[_in_rounded(o, point[k], outer[pair])] for point in (start, end, top)]
-    return [(int(o.block[a[k]]), int(o.block[b[k]])) for k in np.unique(np.concatenate(bad))]
+        for point in o.rounded.transpose(1, 0, 2):
+            pair, k = common(inner, point, point)
+            bad.append(pair[_in_rounded(o, point[k], outer[pair])])
+    return [(int(a[k]), int(b[k])) for k in np.unique(np.concatenate(bad))]

@@ -15,15 +15,14 @@ from functools import cached_property
 
 import numpy as np
 
-from offsets import generated
+from udec_ia.heap.array import variable
+from udec_ia.inspect.check_codes import allowed
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 from udec_ia.inspect.check_map import AHEAD
-from udec_ia.kernels.lawcall import LAST
 from udec_ia.kernels.shape import FLAT
 from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
-NOT_NEGATIVE = ("KBM", "KBI")
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
 
@@ -55,6 +54,16 @@ class Outlines:
     cycles: float
 
     @cached_property
+    def low(self) -> Numbers:
+        """Lower left of the box around the corners, for each block."""
+        return np.asarray(np.minimum.reduceat(self.p, self.first))
+
+    @cached_property
+    def high(self) -> Numbers:
+        """Upper right of it."""
+        return np.asarray(np.maximum.reduceat(self.p, self.first))
+
+    @cached_property
     def z(self) -> Numbers:
         """Length of the edge that ends at the corner."""
         return np.asarray(np.hypot(*(self.p - self.p[self.before]).T))
@@ -78,6 +87,20 @@ class Outlines:
     def out(self) -> Numbers:
         """A vector along the bisector of the corner's two edges, outwards."""
         return np.asarray(self.e + self.e[self.after])
+
+    @cached_property
+    def rounded(self) -> Numbers:
+        """The rounded outline at the corner: start, middle and end of its arc (n x 3 x 2).
+
+        A corner that touches nothing, a concave one above all, is sharp: others meet its two edges.
+        """
+        round_it = (self.r > 0)[:, None]
+        outwards = self.p - self.c
+        far = np.maximum(np.hypot(*outwards.T), self.fine)
+        top = np.where(round_it, self.c + (self.r / far)[:, None] * outwards, self.p)
+        start = self.p - np.where(round_it, self.d * self.t, 0.0)
+        end = self.p + np.where(round_it, self.d * self.t[self.after], 0.0)
+        return np.stack((start, top, end), axis=1)
 
     @cached_property
     def turn(self) -> Numbers:
@@ -118,6 +141,22 @@ class Outlines:
         """Where along the edge that ends at the corner its rounding begins."""
         return self.z - np.where(self.r > 0, self.d, 0.0)
 
+    @cached_property
+    def straight(self) -> tuple[Numbers, Numbers]:
+        """Start and end of the straight part of the edge that ends at the corner."""
+        start = self.p[self.before]
+        return start + self.start[:, None] * self.t, start + self.end[:, None] * self.t
+
+    @cached_property
+    def least(self) -> Numbers:
+        """Lower left of the box around the straight part."""
+        return np.asarray(np.minimum(*self.straight))
+
+    @cached_property
+    def most(self) -> Numbers:
+        """Upper right of it."""
+        return np.asarray(np.maximum(*self.straight))
+
 
 def dot(a: Numbers, b: Numbers) -> Numbers:
     """Scalar products of two arrays of plane vectors."""
@@ -136,27 +175,25 @@ def turned(a: Numbers) -> Numbers:
 
 def outlines(state: State) -> Outlines | None:
     """The outlines of the blocks with closed lists and finite coordinates; None if there are none."""
-    ring_of = {
-        block: [iad for iad in ring if not state.is_contact[iad]] for block, ring in state.rings.items()
-    }
-    corners = np.array([iad for ring in ring_of.values() for iad in ring], np.int64)
+    rings = state.rings
+    corners = rings.item[~rings.contact]
     if not len(corners):
         return None
-    rows = state.rows("corner", corners)
+    rows = rings.row[~rings.contact]
 
     def column(*fields: str) -> Numbers:
         return np.stack([state.column("corner", name)[rows] for name in fields], axis=1)
 
     p, c, r = column("KXP", "KYP"), column("KXCP", "KYCP"), column("KRAD")[:, 0]
     usable = (np.abs(np.column_stack((p, c, r))) < np.sqrt(np.finfo(state.h.cr.dtype).max)).all(axis=1)
-    count = np.array([len(ring) for ring in ring_of.values()])
+    count = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64)
     sound = np.logical_and.reduceat(usable, np.cumsum(count) - count) & (count > 2)
     if not sound.any():
         return None
     kept = np.repeat(sound, count)
     on_edge = np.append(state.column("gridpoint", "KGEDGE"), 0) == 1  # one more, for row -1
     grid_point = state.rows("gridpoint", state.column("corner", "KGP")[rows])
-    block, count = np.array(list(ring_of))[sound], count[sound]
+    block, count = rings.block[sound], count[sound]
     first = np.cumsum(count) - count
     owner = np.repeat(np.arange(len(block)), count)
     here = np.arange(len(owner))
@@ -181,34 +218,22 @@ def outlines(state: State) -> Outlines | None:
 
 
 def check_numbers(state: State) -> None:
-    """Invariants 7 and 9: reals are finite, masses not negative, material numbers those of a material."""
+    """Invariants 7 and 9: reals are finite, and masses and areas not negative."""
     for kind, addresses in state.address.items():
         for field in TABLE.group(kind).fields:
             if not field.real or not len(addresses):
                 continue
             values = state.column(kind, field.name)
-            bad = ~np.isfinite(values) | ((values < 0) if field.name in NOT_NEGATIVE else False)
+            bad = ~(np.isfinite(values) & allowed(field, values))
             for row in np.flatnonzero(bad):
                 number = 9 if field.name in FORCE_SUMS else 7
                 state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
-    for field in TABLE.common if not np.isfinite(state.h.cr).all() else ():
-        if field.real:
-            at = getattr(generated, field.name)
-            for i in np.flatnonzero(~np.isfinite(state.h.cr[at : at + field.count])):
-                element = f"({i + 1})" if field.count > 1 else ""
-                state.report(7, f"{field.name}{element} is {state.h.cr[at + i]}")
-
-
-def check_codes(state: State) -> None:
-    """Invariant 2: material and constitutive numbers and contact codes are those that routines know."""
-    materials = next(field.count for field in TABLE.common if field.name == "AKN")
-    greatest = {"KMAT": materials, "KCM": materials, "KCONS": LAST, "KCC": LAST, "KCCOD": VIRTUAL}
-    for kind, addresses in state.address.items():
-        for name in (field.name for field in TABLE.group(kind).fields if field.name in greatest):
-            most = greatest[name]
-            values = state.column(kind, name)
-            for row in np.flatnonzero((values < 1) | (values > most)):
-                state.report(2, f"{name} of {kind}@{addresses[row]} is {values[row]}, not 1 to {most}")
+    sound = np.isfinite(state.h.cr).all() and np.isfinite(state.h.cd).all()
+    for field in TABLE.common if not sound else ():
+        values = variable(state.h, field)
+        for i in np.flatnonzero(~np.isfinite(values)):
+            element = f"({i + 1})" if field.count > 1 else ""
+            state.report(7, f"{field.name}{element} is {values[i]}")
 
 
 def check_outlines(state: State, o: Outlines) -> None:

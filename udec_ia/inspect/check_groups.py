@@ -8,7 +8,7 @@ is tested before it is used and every walk is bounded, whatever the words say.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from offsets import RATIOS, generated, lay_out, read_table
-from offsets.generated import MFREE
+from offsets.generated import MCON, MCOR, MFREE
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, SOFT
 
@@ -29,6 +29,8 @@ LISTED = [group.name for group in TABLE.groups if group.list_head]
 KIND_OF_HEAD = {code: kind for kind, codes in HEADS.items() for code in codes}
 KIND_CODE = {group.name: code for code, group in enumerate(TABLE.groups, 1)}
 TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
+SHORT = 64  # items of a list that is walked together with others
+OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
 TARGETS |= {"item": ("corner", "contact"), "soft": ("sdef", "fdef"), "any": tuple(KIND_CODE)}
 
 
@@ -45,6 +47,9 @@ HOSTS = names("contact", "host")
 FORWARD = names("contact", "clockwise")
 
 
+LOST = "are in no group"  # what is said of words that no list leads to
+
+
 @dataclass(frozen=True)
 class Violation:
     """One broken relation: the number of the invariant, and a message that names both its ends."""
@@ -55,14 +60,43 @@ class Violation:
     def __str__(self) -> str:
         return f"invariant {self.invariant}: {self.message}"
 
+    @property
+    def misleads(self) -> bool:
+        """False for words that no list leads to: they are lost, and no routine will ever come to them."""
+        return not self.message.endswith(LOST)
+
+
+@dataclass(frozen=True)
+class Rings:
+    """The clockwise lists that close, block after block; arrays with one element for each item of a list.
+
+    block: addresses of the blocks; first, count: where their items stand. item: address; owner: index into
+    `block`; contact: True for a contact; row: row among the contacts or corners in use, -1 for none; side: 0
+    if the block is KB1 of the contact, 1 if it is KB2. before, after: index of the neighbours; corner: index
+    of the first corner at or after the item. at: two rows, the index of each contact in use in the list of
+    its block KB1 and of its block KB2; -1 where it does not stand there.
+    """
+
+    block: Numbers
+    first: Numbers
+    count: Numbers
+    item: Numbers
+    owner: Numbers
+    contact: Numbers
+    row: Numbers
+    side: Numbers
+    before: Numbers
+    after: Numbers
+    corner: Numbers
+    at: Numbers
+
 
 class State:
     """One look at a main array: what is in use there, and the violations found so far.
 
     free: first unused address, as far as it can be believed. address[kind]: addresses of the groups in
-    use, in list order. rings[block]: corners and contacts of the clockwise list of each block whose list
-    closes. is_contact[item]: True for a contact, False for a corner in such a list. reverse[block]: corners
-    along the reverse list.
+    use, in list order. owner[kind]: for corners, grid-points and zones the block that each belongs to, for
+    other groups without a list in the common block the group that points to them. rings: the clockwise lists.
     """
 
     def __init__(self, array: MainArray) -> None:
@@ -74,14 +108,16 @@ class State:
         self.found: list[Violation] = []
         self.free = min(max(int(self.h.ci[MFREE]), 1), len(self.h.ia) + 1)
         self.address: dict[str, Numbers] = {}
-        self.rings: dict[int, list[int]] = {}
-        self.is_contact: dict[int, bool] = {}
-        self.reverse: dict[int, list[int]] = {}
-        self._hosts: dict[int, tuple[int, int]] = {}
+        self.owner: dict[str, Numbers] = {}
         self._columns: dict[str, Numbers] = {}
         self._kind_at = np.zeros(self.free, np.int8)
         self._row_at = np.zeros(self.free, np.int32)
-        self._take_stock()
+        for kind in LISTED:
+            self._enter(kind, self._main_list(kind))
+        self.rings = self._take_rings()
+        for group in TABLE.groups:
+            if group.name not in self.address:
+                self._take_extensions(group.name)
 
     def report(self, invariant: int, message: str) -> None:
         """Add a violation."""
@@ -103,15 +139,18 @@ class State:
         """The integer `name` of the group in use at `iad`."""
         return int(self.words[iad + self.offset[name] - 1])
 
+    def read(self, addresses: Numbers, name: str, i: int = 0) -> Numbers:
+        """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field."""
+        k = self.offset[name] + i
+        if FIELDS[name].real:
+            return np.asarray(self.h.ra[(addresses - 1) // self.ratio + k - 1], np.float64)
+        return np.asarray(self.h.ia[addresses + k - 1], np.int64)
+
     def column(self, kind: str, name: str, i: int = 0) -> Numbers:
-        """Field `name` of all groups of `kind` in use, as 64-bit numbers; `i` counts along an array field."""
+        """The same of all groups of `kind` in use; it is read once and kept."""
         key = f"{name}+{i}"
         if key not in self._columns:
-            at, k = self.address[kind], self.offset[name] + i
-            if FIELDS[name].real:
-                self._columns[key] = self.h.ra[(at - 1) // self.ratio + k - 1].astype(np.float64)
-            else:
-                self._columns[key] = self.h.ia[at + k - 1].astype(np.int64)
+            self._columns[key] = self.read(self.address[kind], name, i)
         return self._columns[key]
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
@@ -120,145 +159,262 @@ class State:
         at = np.where(inside, addresses, 0)
         return np.where(inside & (self._kind_at[at] == KIND_CODE[kind]), self._row_at[at], -1)
 
-    def kind_at(self, iad: int) -> str | None:
+    def _enter(self, kind: str, at: Numbers) -> None:
+        self.address[kind] = at
+        self._kind_at[at] = KIND_CODE[kind]
+        self._row_at[at] = np.arange(len(at))
+
+    def _kind(self, iad: int) -> str | None:
         """Kind of the group at `iad` by head code, if a whole group of that kind can stand there."""
         if not 1 <= iad < self.free or (iad - 1) % self.ratio:
             return None
         kind = KIND_OF_HEAD.get(self.words[iad - 1])
         return kind if kind and iad + self.layout[kind].size <= self.free else None
 
-    def _take_stock(self) -> None:
-        for kind in LISTED:
-            self._enter(kind, self._main_list(kind))
-        corners: dict[int, None] = {}
-        left = self.free  # every step of a sound walk is paid for by at least one word of the heap
-        for block in self.address["block"].tolist():
-            ring = self._ring(block, left)
-            left -= len(ring)
-            reverse = self._reverse(block, left)
-            left -= len(reverse)
-            corners.update((iad, None) for iad in ring if not self.is_contact[iad])
-            corners.update(dict.fromkeys(reverse))
-        self._enter("corner", corners)
-        for group in TABLE.groups:
-            if group.name not in self.address:
-                self._enter(group.name, self._extensions(group.name))
-
-    def _enter(self, kind: str, addresses: Iterable[int]) -> None:
-        at = np.fromiter(addresses, np.int64)
-        self.address[kind] = at
-        self._kind_at[at] = KIND_CODE[kind]
-        self._row_at[at] = np.arange(len(at))
-
-    def _main_list(self, kind: str) -> dict[int, None]:
+    def _main_list(self, kind: str) -> Numbers:
         """Addresses along a main list, and the check of its links back if it has any."""
         head = TABLE.group(kind).list_head
         assert head is not None
         (link,) = names(kind, "next")
-        back = next(iter(names(kind, "back")), None)
-        iad, source, before = self.common(head), head, 0
-        seen: dict[int, None] = {}
-        while iad != 0:
-            if self.kind_at(iad) != kind:
-                self.report(2, f"{source} points to {iad}, which is no {kind}")
+        iad, size, step = self.common(head), self.layout[kind].size, self.offset[link] - 1
+        listed: list[int] = []
+        for _ in range(self.free // size + 1):
+            if not 0 < iad <= self.free - size or (iad - 1) % self.ratio:
                 break
-            if iad in seen:
-                self.report(2, f"{source} leads back to {kind}@{iad}: the {kind} list is a circle")
-                break
-            if back is not None and self.get(iad, back) != before:
-                self.report(
-                    2,
-                    f"{back} of {kind}@{iad} is {self.get(iad, back)}, but {source} leads here from {before}",
-                )
-            seen[iad] = None
-            source, before, iad = f"{link} of {kind}@{iad}", iad, self.get(iad, link)
-        return seen
+            listed.append(iad)
+            iad = self.words[iad + step]
+        at = np.array(listed, np.int64)
+        good = np.isin(self.h.ia[at - 1], HEADS[kind])
+        wrong = int(np.argmin(good)) if not good.all() else len(at)
+        again = _first_repeated(at[:wrong])
+        end = iad if again == len(at) else listed[again]
+        at = at[:again]
 
-    def _ring(self, block: int, steps: int) -> list[int]:
-        """Clockwise list of `block` as far as it can be followed; kept in `rings` if it closes."""
-        first = iad = self.get(block, KP)
-        source = f"{KP} of block@{block}"
-        ring: list[int] = []
-        seen: set[int] = set()
-        for _ in range(steps):
-            kind = self.kind_at(iad)
-            if iad in seen:
-                self.report(
-                    3, f"{source} leads back to {kind}@{iad} and not to {KP} of block@{block}, {first}"
-                )
-                return ring
-            if kind == "corner":
-                link = KL
-            elif kind == "contact" and ring and block in (hosts := self.hosts(iad)):
-                link = FORWARD[hosts.index(block)]
+        def source(row: Any) -> str:
+            return f"{link} of {kind}@{at[row - 1]}" if row else head
+
+        if end != 0 and again < wrong:
+            self.report(2, f"{source(again)} leads back to {kind}@{end}: the {kind} list is a circle")
+        elif end != 0:
+            self.report(2, f"{source(again)} points to {end}, which is no {kind}")
+        for back in names(kind, "back"):
+            before, noted = np.concatenate(([0], at[:-1])), self.read(at, back)
+            for row in np.flatnonzero(noted != before[: len(at)]):
+                text = f"{back} of {kind}@{at[row]} is {noted[row]}"
+                self.report(2, f"{text}, but {source(row)} leads here from {before[row]}")
+        return at
+
+    def _take_rings(self) -> Rings:
+        """The clockwise lists, and the corners in use: those of all lists, reverse lists included."""
+        blocks = self.address["block"]
+        last = (self.free - self.layout[kind].size for kind in ("corner", "contact"))
+        self._steps = (*last, *(self.offset[name] - 1 for name in (KL, *HOSTS, *FORWARD)))
+        row, item = self._short_rings(blocks)
+        left = self.free  # every step of a sound walk is paid for by at least one word of the heap
+        rows, items = [row], [item]
+        broken: list[int] = []
+        for k in np.flatnonzero(np.bincount(row, minlength=len(blocks)) == 0).tolist():
+            ring, closed = self._ring(int(blocks[k]), left)
+            left -= len(ring)
+            if closed:
+                rows.append(np.full(len(ring), k))
+                items.append(np.array(ring, np.int64))
             else:
-                self.report(3, f"{source} leads to {iad}, which is no item of the list of block@{block}")
-                return ring
-            ring.append(iad)
-            seen.add(iad)
-            self.is_contact[iad] = kind == "contact"
-            source, iad = f"{link} of {kind}@{iad}", self.get(iad, link)
-            if iad == first:
-                self.rings[block] = ring
-                return ring
-        self.report(3, f"the clockwise list of block@{block} is longer than the heap")
-        return ring
+                broken.append(int(blocks[k]))
+        row, item = np.concatenate(rows), np.concatenate(items)
+        order = np.argsort(row, kind="stable")
+        count = np.bincount(row, minlength=len(blocks))
+        rings = self._lay_out(blocks[count > 0], count[count > 0], item[order])
+        corners, owners = [rings.item[~rings.contact]], [rings.block[rings.owner[~rings.contact]]]
+        turned = self.read(corners[0], KR) != rings.item[corner_before(rings)]
+        for block in [*broken, *np.unique(owners[0][turned]).tolist()]:
+            found = self._ring_corners(block, left) + self._reverse(block, left)
+            left -= len(found)
+            corners.append(np.array(found, np.int64))
+            owners.append(np.full(len(found), block))
+        at, once = np.unique(np.concatenate(corners), return_index=True)
+        order = np.argsort(once)
+        self._enter("corner", at[order])
+        self.owner["corner"] = np.concatenate(owners)[once[order]]
+        rings.row[~rings.contact] = self.rows("corner", rings.item[~rings.contact])
+        return rings
+
+    def _lay_out(self, block: Numbers, count: Numbers, item: Numbers) -> Rings:
+        """The lists as arrays; the rows of corners are still to come."""
+        end = np.cumsum(count)
+        first = end - count
+        owner = np.repeat(np.arange(len(block)), count)
+        here = np.arange(len(item))
+        contact = self.h.ia[item - 1] == MCON
+        row = np.where(contact, self.rows("contact", item), -1)
+        side = np.zeros(len(item), np.int8)
+        side[contact] = self.read(item[contact], HOSTS[0]) != block[owner[contact]]
+        at = np.full((2, len(self.address["contact"])), -1)
+        listed = contact & (row >= 0)
+        at[side[listed], row[listed]] = here[listed]
+        corner = np.where(contact, len(item), here)
+        corner = np.minimum.accumulate(corner[::-1])[::-1]
+        return Rings(
+            block=block,
+            first=first,
+            count=count,
+            item=item,
+            owner=owner,
+            contact=contact,
+            row=row,
+            side=side,
+            before=np.where(here == first[owner], end[owner] - 1, here - 1),
+            after=np.where(here == end[owner] - 1, first[owner], here + 1),
+            corner=np.where(corner < end[owner], corner, first[owner]),  # a list begins with a corner
+            at=at,
+        )
+
+    def _short_rings(self, blocks: Numbers) -> tuple[Numbers, Numbers]:
+        """Row of the block and item, for the lists that close in a few steps; all are walked at a time.
+
+        The items of a block stand in the order of its list. What does not close is left to `_ring`.
+        """
+        ia, (last_corner, last_contact, along, one, two, over_one, over_two) = self.h.ia, self._steps
+        live = np.arange(len(blocks))
+        first = here = self.read(blocks, KP)
+        closed = np.zeros(len(blocks), bool)
+        rows, items = [], []
+        for k in range(SHORT if last_corner > 0 else 0):
+            at = np.where((here > 0) & (here <= last_corner) & ((here - 1) % self.ratio == 0), here, 0)
+            head = np.where(at > 0, ia[at - 1], 0)
+            contact = (head == MCON) & (at <= last_contact) & (k > 0)
+            at = np.where(contact, at, 1)
+            left = contact & (ia[at + one] == blocks[live])
+            right = contact & ~left & (ia[at + two] == blocks[live])
+            good = (head == MCOR) | left | right
+            step = np.select([left, right], [over_one, over_two], along)[good]
+            here, live = here[good], live[good]
+            rows.append(live)
+            items.append(here)
+            here = ia[here + step].astype(np.int64)
+            back = here == first[live]
+            closed[live[back]] = True
+            here, live = here[~back], live[~back]
+            if not len(live):
+                break
+        row, item = (np.concatenate([np.empty(0, np.int64), *parts]) for parts in (rows, items))
+        kept = closed[row]
+        return row[kept], item[kept]
+
+    def _ring(self, block: int, steps: int) -> tuple[list[int], bool]:
+        """Clockwise list of `block` as far as it can be followed, and whether it closes."""
+        words, ratio = self.words, self.ratio
+        last_corner, last_contact, along, one, two, over_one, over_two = self._steps
+        first = iad = self.get(block, KP)
+        ring: dict[int, None] = {}
+        while iad not in ring and 0 < iad <= last_corner and not (iad - 1) % ratio and len(ring) < steps:
+            head = words[iad - 1]
+            if head == MCOR:
+                step = along
+            elif head != MCON or iad > last_contact or not ring:
+                break
+            elif words[iad + one] == block:
+                step = over_one
+            elif words[iad + two] == block:
+                step = over_two
+            else:
+                break
+            ring[iad] = None
+            iad = words[iad + step]
+        if iad == first and ring:
+            return list(ring), True
+        before = list(ring)[-1:]
+        source = self.link(block, before[0]) if before else f"{KP} of block@{block}"
+        if iad in ring:
+            kind = self._kind(iad)
+            what = f"{source} leads back to {kind}@{iad} and not to {KP} of block@{block}, {first}"
+        elif len(ring) >= steps:
+            what = f"the clockwise list of block@{block} is longer than the heap"
+        else:
+            what = f"{source} leads to {iad}, which is no item of the list of block@{block}"
+        self.report(3, what)
+        return list(ring), False
+
+    def link(self, block: int, iad: int) -> str:
+        """The clockwise link of the item at `iad` on `block`, in words."""
+        if self._kind(iad) == "corner":
+            return f"{KL} of corner@{iad}"
+        return f"{FORWARD[self.hosts(iad).index(block)]} of contact@{iad}"
+
+    def _ring_corners(self, block: int, steps: int) -> list[int]:
+        """Corners of a clockwise list that does not close; nothing is reported again."""
+        known = len(self.found)
+        ring, _ = self._ring(block, steps)
+        del self.found[known:]
+        return [iad for iad in ring if self._kind(iad) == "corner"]
 
     def _reverse(self, block: int, steps: int) -> list[int]:
         """Corners along the reverse list of `block` as far as it can be followed."""
         first = iad = self.get(block, KP)
         corners: dict[int, None] = {}
         for _ in range(steps):
-            if self.kind_at(iad) != "corner" or iad in corners:
+            if self._kind(iad) != "corner" or iad in corners:
                 break
             corners[iad] = None
             iad = self.get(iad, KR)
         if iad != first or not corners:
             self.report(3, f"the reverse list of block@{block} leads to {iad} and not back to {KP}, {first}")
-        else:
-            self.reverse[block] = list(corners)
         return list(corners)
 
     def hosts(self, contact: int) -> tuple[int, int]:
         """The two blocks that the contact names."""
-        if contact not in self._hosts:
-            one, two = HOSTS
-            self._hosts[contact] = self.get(contact, one), self.get(contact, two)
-        return self._hosts[contact]
+        one, two = HOSTS
+        return self.get(contact, one), self.get(contact, two)
 
-    def _extensions(self, kind: str) -> list[int]:
-        """Addresses of the groups of `kind` that stand in no list but hang on a group in use."""
-        pointers = [
-            self._owned(owner, field.name, kind)
-            for owner in self.address
-            for field in TABLE.group(owner).fields
-            if field.role in ("extension", "first") and kind in TARGETS.get(field.target or "", ())
-        ]
-        found: dict[int, None] = {}
+    def _take_extensions(self, kind: str) -> None:
+        """Enter the groups of `kind`, which stand in no list of the common block but hang on another."""
+        last, ratio, words, known = self.free - self.layout[kind].size, self.ratio, self.words, self._kind_at
         link = next(iter(names(kind, "next")), None)
-        for iad in np.concatenate(pointers).tolist() if pointers else ():
-            while self._free_for(iad, kind) and iad not in found:
-                found[iad] = None
-                iad = self.get(iad, link) if link else 0
-            if iad and iad in found and link:
-                self.report(
-                    2, f"{link} leads back to {kind}@{iad}: two lists of the kind meet, or one is a circle"
-                )
-        return list(found)
+        step = self.offset[link] - 1 if link else 0
+        found: dict[int, int] = {}
+        for name, owner, iad in self._owners(kind):
+            source = name
+            while 0 < iad <= last and not (iad - 1) % ratio and not known[iad]:
+                if iad in found:
+                    what = "two lists of the kind meet, or one is a circle" if link else "it has an owner"
+                    self.report(2, f"{source} leads back to {kind}@{iad}: {what}")
+                    break
+                found[iad] = owner
+                source, iad = link or "", words[iad + step] if link else 0
+        self._enter(kind, np.fromiter(found, np.int64))
+        self.owner[kind] = np.fromiter(found.values(), np.int64)
 
-    def _owned(self, owner: str, name: str, kind: str) -> Numbers:
-        """Pointers in field `name` of all groups of `owner` that may lead to `kind`, by their head codes."""
-        values = self.column(owner, name)
-        if FIELDS[name].target != "soft":
-            return values
-        heads = self.h.ia[self.address[owner] - 1]
-        return values[[SOFT.get(int(head)) == kind for head in heads]] if len(values) else values
+    def _owners(self, kind: str) -> Iterator[tuple[str, int, int]]:
+        """Field, owner and value of each pointer to a group of `kind`, or to the first of a list of them."""
+        for group, at in list(self.address.items()):
+            owner = self.owner.get(group, at)
+            for field in TABLE.group(group).fields:
+                if field.role in ("extension", "first") and kind in TARGETS.get(field.target or "", ()):
+                    values = self.column(group, field.name)
+                    if field.target == "soft":  # the head code of the block says what it is
+                        (code,) = (code for code, soft in SOFT.items() if soft == kind)
+                        chosen = np.flatnonzero(self.h.ia[at - 1] == code)
+                    else:
+                        chosen = np.flatnonzero(values)
+                    for host, value in zip(owner[chosen].tolist(), values[chosen].tolist(), strict=True):
+                        yield field.name, host, value
 
-    def _free_for(self, iad: int, kind: str) -> bool:
-        """True if a group of `kind` can stand at `iad`, where none is known yet."""
-        if not 0 < iad <= self.free - self.layout[kind].size or (iad - 1) % self.ratio:
-            return False
-        return bool(self._kind_at[iad] == 0)
+
+def _first_repeated(at: Numbers) -> int:
+    """Where in `at` an address stands for the second time; its length if none does."""
+    order = np.argsort(at, kind="stable")
+    again = order[1:][at[order[1:]] == at[order[:-1]]]
+    return int(again.min()) if len(again) else len(at)
+
+
+def corner_before(rings: Rings) -> Numbers:
+    """For each corner of the lists the index of the corner before it, clockwise."""
+    corner = np.flatnonzero(~rings.contact)
+    number = np.cumsum(~rings.contact) - 1  # of the corner, among all
+    first = number[rings.first][rings.owner[corner]]
+    count = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(corner) else rings.count
+    here = np.arange(len(corner))
+    return corner[np.where(here == first, first + count[rings.owner[corner]] - 1, here - 1)]
 
 
 def check_pointers(state: State) -> None:
@@ -270,7 +426,7 @@ def check_pointers(state: State) -> None:
             targets = TARGETS[field.target]
             for i in range(field.count):
                 values = state.column(kind, field.name, i)
-                good = (values == 0) & ("never 0" not in field.text)
+                good = (values == 0) & (field.allowed == OPTIONAL)
                 for target in targets:
                     good |= state.rows(target, values) >= 0
                 for row in np.flatnonzero(~good):

@@ -4,6 +4,8 @@ Every contact stands in the lists of two blocks, so it can be passed in two ways
 list of KB1 one goes on along KB2, and the other way round. To go on along a block to its next contact and
 to change the block there is a permutation of these passages; its cycles are the faces of the map. Each
 must be the loop of one domain.
+
+All lists are looked at together, as arrays; only what is wrong is looked at by itself.
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import FORWARD, HOSTS, KL, KR, TABLE, State, names
+from offsets.generated import MRIG
+from udec_ia.inspect.check_groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
 from udec_ia.kernels.touch import VIRTUAL
 
 (KNB,) = names("corner", "host")
@@ -22,14 +25,11 @@ SIDES = names("contact", "loop")
 AHEAD = names("contact", "associate")
 (KDLOOP,) = names("domain", "loop")
 
-Passage = tuple[int, int]  # a contact, and the block that is walked after it
-
 
 def check_map(state: State) -> None:
     """Invariants 3, 4 and 5."""
-    for block, ring in state.rings.items():
-        _check_corners(state, block, ring)
-        _check_items(state, block, ring)
+    _check_corners(state)
+    _check_items(state)
     _check_contacts(state)
     _check_virtual(state)
     _check_loops(state)
@@ -37,73 +37,70 @@ def check_map(state: State) -> None:
     _check_connected(state)
 
 
-def _check_corners(state: State, block: int, ring: list[int]) -> None:
+def _check_corners(state: State) -> None:
     """Corners name their block, and the reverse list is the clockwise list read backwards."""
-    corners = [iad for iad in ring if not state.is_contact[iad]]
-    if len(corners) < 3:
-        state.report(3, f"block@{block} has {len(corners)} corners")
-    for corner, before in zip(corners, [corners[-1], *corners[:-1]], strict=True):
-        if state.get(corner, KNB) != block:
-            state.report(
-                3,
-                f"{KNB} of corner@{corner} is {state.get(corner, KNB)}, "
-                f"but the corner stands in the list of block@{block}",
-            )
-        if state.get(corner, KR) != before:
-            state.report(
-                3,
-                f"{KR} of corner@{corner} is {state.get(corner, KR)}, "
-                f"but clockwise corner@{before} precedes it",
-            )
+    rings = state.rings
+    corners = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(rings.item) else rings.count
+    for k in np.flatnonzero(corners < 3):
+        state.report(3, f"block@{rings.block[k]} has {corners[k]} corners")
+    index = np.flatnonzero(~rings.contact)
+    corner, block = rings.item[index], rings.block[rings.owner[index]]
+    host, previous, before = state.read(corner, KNB), state.read(corner, KR), rings.item[corner_before(rings)]
+    for k in np.flatnonzero(host != block):
+        state.report(
+            3,
+            f"{KNB} of corner@{corner[k]} is {host[k]}, "
+            f"but the corner stands in the list of block@{block[k]}",
+        )
+    for k in np.flatnonzero(previous != before):
+        state.report(
+            3,
+            f"{KR} of corner@{corner[k]} is {previous[k]}, but clockwise corner@{before[k]} precedes it",
+        )
 
 
-def _check_items(state: State, block: int, ring: list[int]) -> None:
+def _check_items(state: State) -> None:
     """Links back mirror the list, and each contact knows the first corner after it."""
-    corner = ring[0]
-    for i in range(len(ring) - 1, -1, -1):
-        iad, before = ring[i], ring[i - 1]
-        if not state.is_contact[iad]:
-            corner, back, name = iad, KLB, f"corner@{iad}"
-        else:
-            side = state.hosts(iad).index(block)
-            back, name = BACK[side], f"contact@{iad}"
-            if state.get(iad, AHEAD[side]) != corner:
+    rings = state.rings
+    kinds = [(~rings.contact, "corner", KLB, "")]
+    kinds += [(rings.contact & (rings.side == k), "contact", BACK[k], AHEAD[k]) for k in (0, 1)]
+    for those, kind, back, ahead in kinds:
+        index = np.flatnonzero(those)
+        item, block = rings.item[index], rings.block[rings.owner[index]]
+        if ahead:
+            noted, corner = state.read(item, ahead), rings.item[rings.corner[index]]
+            for k in np.flatnonzero(noted != corner):
                 state.report(
                     3,
-                    f"{AHEAD[side]} of {name} is {state.get(iad, AHEAD[side])}, "
-                    f"but the first corner after it on block@{block} is {corner}",
+                    f"{ahead} of {kind}@{item[k]} is {noted[k]}, "
+                    f"but the first corner after it on block@{block[k]} is {corner[k]}",
                 )
-        if state.get(iad, back) != before:
+        noted, before = state.read(item, back), rings.item[rings.before[index]]
+        for k in np.flatnonzero(noted != before):
             state.report(
                 3,
-                f"{back} of {name} is {state.get(iad, back)}, but {_link(state, block, before)} leads to it, "
-                f"on block@{block}",
+                f"{back} of {kind}@{item[k]} is {noted[k]}, "
+                f"but {state.link(int(block[k]), int(before[k]))} leads to it, on block@{block[k]}",
             )
-
-
-def _link(state: State, block: int, iad: int) -> str:
-    """The clockwise link of the item at `iad` on `block`, in words."""
-    if not state.is_contact[iad]:
-        return f"{KL} of corner@{iad}"
-    return f"{FORWARD[state.hosts(iad).index(block)]} of contact@{iad}"
 
 
 def _check_contacts(state: State) -> None:
     """Invariant 4: each contact stands in the lists of both its blocks and in the contact list."""
-    standing = {(iad, block) for block, ring in state.rings.items() for iad in ring}
-    listed = set(state.address["contact"].tolist())
-    for contact in listed:
-        blocks = state.hosts(contact)
-        if blocks[0] == blocks[1]:
-            state.report(4, f"contact@{contact} names block@{blocks[0]} in {HOSTS[0]} and in {HOSTS[1]}")
-        for name, block in zip(HOSTS, blocks, strict=True):
-            if block in state.rings and (contact, block) not in standing:
-                state.report(
-                    4, f"contact@{contact} names block@{block} in {name}, but stands not in the block's list"
-                )
-    for iad, block in standing:
-        if iad not in listed and state.is_contact[iad]:
-            state.report(4, f"contact@{iad} stands in the list of block@{block}, but not in the contact list")
+    rings, contacts = state.rings, state.address["contact"]
+    one, two = (state.column("contact", name) for name in HOSTS)
+    for k in np.flatnonzero(one == two):
+        state.report(4, f"contact@{contacts[k]} names block@{one[k]} in {HOSTS[0]} and in {HOSTS[1]}")
+    for name, block, at in zip(HOSTS, (one, two), rings.at, strict=True):
+        for k in np.flatnonzero((at < 0) & (one != two) & np.isin(block, rings.block)):
+            state.report(
+                4,
+                f"contact@{contacts[k]} names block@{block[k]} in {name}, but stands not in the block's list",
+            )
+    for i in np.flatnonzero(rings.contact & (rings.row < 0)):
+        block = rings.block[rings.owner[i]]
+        state.report(
+            4, f"contact@{rings.item[i]} stands in the list of block@{block}, but not in the contact list"
+        )
 
 
 def _check_virtual(state: State) -> None:
@@ -124,80 +121,104 @@ def _check_virtual(state: State) -> None:
             state.report(9, f"contact@{contact} is virtual, but {name} is {force[row]}")
 
 
-def _passages(state: State) -> dict[Passage, Passage]:
-    """For each passage the next one around its domain."""
-    following: dict[Passage, Passage] = {}
-    for block, ring in state.rings.items():
-        contacts = [iad for iad in ring if state.is_contact[iad]]
-        for contact, after in zip(contacts, [*contacts[1:], *contacts[:1]], strict=True):
-            one, two = state.hosts(after)
-            following[contact, block] = (after, two if one == block else one)
+def _passages(state: State) -> Numbers:
+    """For each passage the next one around its domain.
+
+    Passage 2 row + side is that of the contact in `row` after which block KB1 (side 0) or KB2 (side 1) is
+    walked. One more at the end stands for all that leads to a block whose list is broken.
+    """
+    rings = state.rings
+    nowhere = 2 * len(state.address["contact"])
+    following = np.full(nowhere + 1, nowhere)
+    index = np.flatnonzero(rings.contact)
+    if len(index):
+        owner = rings.owner[index]
+        number = np.arange(len(index))
+        new = np.concatenate(([True], owner[1:] != owner[:-1]))
+        first = number[new][np.cumsum(new) - 1]  # the first contact of the same block
+        ends = np.concatenate((new[1:], [True]))
+        after = index[np.where(ends, first, np.minimum(number + 1, len(index) - 1))]
+        known = (rings.row[index] >= 0) & (rings.row[after] >= 0)
+        index, after = index[known], after[known]
+        following[2 * rings.row[index] + rings.side[index]] = 2 * rings.row[after] + 1 - rings.side[after]
     return following
 
 
-def _side(state: State, passage: Passage) -> str:
-    """The field that names the domain of a passage: going on along KB2, one came along KB1 and is in KD1."""
-    contact, block = passage
-    return SIDES[1 - state.hosts(contact).index(block)]
+def cycles(following: Numbers) -> Numbers:
+    """For each place of a permutation the least one in its cycle; -1 if it leads to the last place.
+
+    In each round the least of twice as many steps is known.
+    """
+    least, ahead = np.arange(len(following)), following
+    least[-1] = -1
+    while True:
+        lower = np.minimum(least, least[ahead])
+        if (lower == least).all():
+            return np.asarray(least[:-1])
+        least, ahead = lower, ahead[ahead]
 
 
 def _check_loops(state: State) -> None:
     """Invariant 4: each closed loop is labelled by one domain all around, each domain has one loop."""
     following = _passages(state)
-    whole = len(state.rings) == len(state.address["block"])
-    loops: dict[int, Passage] = {}
-    seen: set[Passage] = set()
-    for start in following:
-        if start in seen:
-            continue
-        loop, here = [], start
-        while here in following and here not in seen:
-            seen.add(here)
-            loop.append(here)
-            here = following[here]
-        if here != start:
-            whole = False  # it leads on to a block whose list is broken
-            continue
-        domain = _label(state, loop)
-        if domain in loops:
-            state.report(
-                4,
-                f"the loop through contact@{start[0]} and the loop through contact@{loops[domain][0]} "
-                f"both name domain@{domain}",
-            )
-        loops[domain] = start
-    _check_domains(state, loops, whole)
+    of_loop = cycles(following)
+    stands = state.rings.at.T.ravel() >= 0
+    closed = stands & (of_loop >= 0)
+    whole = len(state.rings.block) == len(state.address["block"]) and bool((closed == stands).all())
+    label = np.column_stack([state.column("contact", side) for side in SIDES[::-1]]).ravel()
+    starts = np.flatnonzero(of_loop == np.arange(len(of_loop)))
+    for start in np.unique(of_loop[closed][label[closed] != label[of_loop[closed]]]):
+        label[start] = _label(state, following, label, int(start))
+    order = starts[np.argsort(label[starts], kind="stable")]
+    contact = state.address["contact"]
+    for k in np.flatnonzero(label[order[1:]] == label[order[:-1]]):
+        before, start = order[k], order[k + 1]
+        state.report(
+            4,
+            f"the loop through contact@{contact[start // 2]} and the loop through "
+            f"contact@{contact[before // 2]} both name domain@{label[start]}",
+        )
+    _check_domains(state, label[starts], whole)
 
 
-def _label(state: State, loop: list[Passage]) -> int:
-    """The domain that most passages of `loop` name, and a violation for each that does not."""
-    labels = [state.get(passage[0], _side(state, passage)) for passage in loop]
+def _label(state: State, following: Numbers, label: Numbers, start: int) -> int:
+    """The domain that most passages of a loop name, and a violation for each that does not."""
+    loop = [start]
+    while following[loop[-1]] != start:
+        loop.append(int(following[loop[-1]]))
+    labels = label[loop].tolist()
     domain = Counter(labels).most_common(1)[0][0]
-    for passage, label in zip(loop, labels, strict=True):
-        if label != domain:
+    for passage, named in zip(loop, labels, strict=True):
+        if named != domain:
+            contact, side = state.address["contact"][passage // 2], SIDES[1 - passage % 2]
             state.report(
                 4,
-                f"{_side(state, passage)} of contact@{passage[0]} is {label}, "
+                f"{side} of contact@{contact} is {named}, "
                 f"but the contact stands on the loop of domain@{domain}",
             )
-    return domain
+    return int(domain)
 
 
-def _check_domains(state: State, loops: dict[int, Passage], whole: bool) -> None:
-    listed = set(state.address["contact"].tolist())
-    for domain in state.address["domain"].tolist():
-        contact = state.get(domain, KDLOOP)
-        if not listed:
-            if contact != 0:
-                state.report(4, f"{KDLOOP} of domain@{domain} is {contact}, but there are no contacts")
-        elif contact not in listed:
-            state.report(4, f"{KDLOOP} of domain@{domain} is {contact}, which is no contact in use")
-        elif domain not in [state.get(contact, side) for side in SIDES]:
-            state.report(
-                4, f"{KDLOOP} of domain@{domain} is contact@{contact}, which does not stand on its loop"
-            )
-        if listed and whole and domain not in loops:
-            state.report(4, f"no loop of contacts is that of domain@{domain}")
+def _check_domains(state: State, with_loop: Numbers, whole: bool) -> None:
+    """Each domain knows a contact of its loop, and has one."""
+    domains, contact = state.address["domain"], state.column("domain", KDLOOP)
+    if not len(state.address["contact"]):
+        for k in np.flatnonzero(contact != 0):
+            state.report(4, f"{KDLOOP} of domain@{domains[k]} is {contact[k]}, but there are no contacts")
+        return
+    row = state.rows("contact", contact)
+    beside = np.zeros(len(domains), bool)
+    for side in SIDES:
+        beside |= state.column("contact", side)[row] == domains
+    for k in np.flatnonzero((row < 0) | ~beside):
+        what = f"{KDLOOP} of domain@{domains[k]} is"
+        if row[k] < 0:
+            state.report(4, f"{what} {contact[k]}, which is no contact in use")
+        else:
+            state.report(4, f"{what} contact@{contact[k]}, which does not stand on its loop")
+    if whole:
+        for k in np.flatnonzero(~np.isin(domains, with_loop)):
+            state.report(4, f"no loop of contacts is that of domain@{domains[k]}")
 
 
 def _check_counts(state: State) -> None:
@@ -208,7 +229,8 @@ def _check_counts(state: State) -> None:
     if not blocks and contacts + domains:
         state.report(5, f"there are no blocks, but {contacts} contacts and {domains} domains")
     virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == VIRTUAL))
-    counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual}
+    soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != MRIG))
+    counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
     for name, count in counts.items():
         if state.common(name) != count:
             text = next(field.text for field in TABLE.common if field.name == name)
@@ -216,35 +238,37 @@ def _check_counts(state: State) -> None:
 
 
 def _check_connected(state: State) -> None:
-    """Invariant 5: from any block every other one is reached over contacts, real or virtual."""
-    blocks = state.address["block"].tolist()
-    beside: dict[int, list[int]] = {block: [] for block in blocks}
-    for contact in state.address["contact"].tolist():
-        one, two = state.hosts(contact)
-        if one in beside and two in beside:
-            beside[one].append(two)
-            beside[two].append(one)
-    reached = set(blocks[:1])
-    front = blocks[:1]
-    while front:
-        front = [block for here in front for block in beside[here] if block not in reached]
-        front = list(dict.fromkeys(front))
-        reached.update(front)
-    for block in blocks:
-        if block not in reached:
-            state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
+    """Invariant 5: from any block every other one is reached over contacts, real or virtual.
+
+    Each block takes the least row that it hears of from its neighbours, and from the block of that row.
+    """
+    blocks = state.address["block"]
+    one, two = (state.rows("block", state.column("contact", name)) for name in HOSTS)
+    known = (one >= 0) & (two >= 0)
+    one, two = one[known], two[known]
+    least = np.arange(len(blocks))
+    while True:
+        lower = least.copy()
+        heard = np.minimum(least[one], least[two])
+        for hearer in (one, two, least[one], least[two]):
+            np.minimum.at(lower, hearer, heard)
+        lower = lower[lower]
+        if (lower == least).all():
+            break
+        least = lower
+    for block in blocks[least != 0]:
+        state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 
-def neighbours(state: State, skipped: set[int]) -> list[tuple[int, int, int]]:
-    """(block, contact, next contact) for contacts with no corner between them, `skipped` ones left out."""
-    close = []
-    for block, ring in state.rings.items():
-        before = 0
-        for iad in ring:
-            if not state.is_contact[iad]:
-                before = 0
-            elif iad not in skipped:
-                if before:
-                    close.append((block, before, iad))
-                before = iad
-    return close
+def neighbours(state: State, skipped: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """Block, row of a contact and of the next, for contacts with no corner between them.
+
+    skipped: rows of contacts that are left out.
+    """
+    rings = state.rings
+    out = rings.contact & ((rings.row < 0) | np.isin(rings.row, skipped))
+    index = np.flatnonzero(~out)
+    one, two = index[:-1], index[1:]
+    close = rings.contact[one] & rings.contact[two] & (rings.owner[one] == rings.owner[two])
+    one, two = one[close], two[close]
+    return rings.block[rings.owner[one]], rings.row[one], rings.row[two]

@@ -10,7 +10,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.check_groups import TABLE, Numbers, State
+from udec_ia.inspect.check_groups import LOST, TABLE, Numbers, State
 
 
 def check_memory(state: State) -> None:
@@ -86,14 +86,13 @@ def _check_tiling(state: State, junk: dict[int, int]) -> None:
     start, end, kind = start[order], end[order], kind[order]
     before = np.concatenate(([1], end))
     after = np.concatenate((start, [state.free]))
-    labels = [f"{kinds[k]}@{iad}" for k, iad in zip(kind.tolist(), start.tolist(), strict=True)]
     for i in np.flatnonzero(before != after):
-        left = labels[i - 1] if i else "the start of the heap"
-        right = labels[i] if i < len(labels) else "MFREE"
+        left = f"{kinds[kind[i - 1]]}@{start[i - 1]}" if i else "the start of the heap"
+        right = f"{kinds[kind[i]]}@{start[i]}" if i < len(start) else "MFREE"
         if before[i] < after[i]:
             state.report(
                 1,
-                f"words {before[i]} to {after[i] - 1} between {left} and {right} are in no group",
+                f"words {before[i]} to {after[i] - 1} between {left} and {right} {LOST}",
             )
         else:
             state.report(1, f"{left} ends at word {before[i] - 1}, but {right} starts at {after[i]}")

@@ -17,24 +17,23 @@ from udec_ia.inspect.check_groups import Numbers, State
 from udec_ia.inspect.check_map import SIDES
 from udec_ia.kernels.touch import VIRTUAL
 
-Step = tuple[int, int]  # a corner or a real contact, and the block that is walked after it
-
 
 def check_pieces(state: State, o: Outlines) -> None:
     """Invariant 4, for the pieces that virtual contacts tie."""
-    virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
+    virtual = np.flatnonzero(state.column("contact", "KCCOD") == VIRTUAL)
     if not len(virtual) or len(o.block) < len(state.address["block"]):
         return
-    index = {corner: k for k, corner in enumerate(o.corner.tolist())}
-    owner = {block: k for k, block in enumerate(o.block.tolist())}
-    for domain, loops in _loops(state, set(virtual.tolist())).items():
-        hosts = np.array([owner[loop[0][1]] for loop in loops])
+    rings = state.rings
+    corner = np.full(len(rings.item), -1)  # of each item, among those of the outlines
+    corner[~rings.contact] = np.arange(len(o.corner))
+    for domain, loops in _loops(state, virtual).items():
+        hosts = np.array([rings.owner[loop[0]] for loop in loops])
         end = o.first[hosts]
         middle = (o.p[end] + o.p[o.before[end]]) / 2  # of an edge of each piece: no rounding takes it away
         for k, loop in enumerate(loops):
-            wall = _polygon(state, o, index, loop)
-            own = np.flatnonzero(o.owner == hosts[k])
-            outline = _area(wall) < -_area(o.p[own[::-1]]) / 2  # at least once round a block, clockwise
+            wall = _polygon(state, o, corner, loop)
+            own = o.first[hosts[k]] + np.arange(o.count[hosts[k]])
+            outline = _area(wall) < _area(o.rounded[own].reshape(-1, 2)) / 2  # round a block, clockwise
             wrong = _turns(wall, middle) != (0 if outline else 1)
             wrong[k] = False
             for i in np.flatnonzero(wrong):
@@ -45,44 +44,48 @@ def check_pieces(state: State, o: Outlines) -> None:
                 )
 
 
-def _loops(state: State, virtual: set[int]) -> dict[int, list[list[Step]]]:
-    """The loops around each domain with virtual contacts when these are left out."""
-    following: dict[Step, Step] = {}
-    hanging: dict[Step, int] = {}  # the domain of a virtual contact that stands after the step
-    for block, ring in state.rings.items():
-        last = [iad for iad in ring if iad not in virtual][-1]
-        for iad in ring:
-            if iad in virtual:
-                hanging[last, block] = state.get(iad, SIDES[0])
-                continue
-            one, two = state.hosts(iad) if state.is_contact[iad] else (block, block)
-            following[last, block] = (iad, two if one == block else one)
-            last = iad
-    loops: dict[int, list[list[Step]]] = defaultdict(list)
-    seen: set[Step] = set()
-    for start, domain in hanging.items():
+def _loops(state: State, virtual: Numbers) -> dict[int, list[list[int]]]:
+    """The loops around each domain with virtual contacts when these are left out.
+
+    A loop is a list of items of the blocks' lists: a corner, or a contact in the list of the block that is
+    walked after it.
+    """
+    rings = state.rings
+    left_out = rings.contact & np.isin(rings.row, virtual)
+    contact, side, row = (values.data for values in (rings.contact, rings.side, rings.row))
+    after, before, skipped = (values.data for values in (rings.after, rings.before, left_out))
+
+    def following(i: int) -> int:
+        i = after[i]
+        while skipped[i]:
+            i = after[i]
+        return int(rings.at[1 - side[i], row[i]]) if contact[i] else i
+
+    loops: dict[int, list[list[int]]] = defaultdict(list)
+    seen: set[int] = set()
+    for tie in np.flatnonzero(left_out).tolist():
+        start = before[tie]
+        while skipped[start]:
+            start = before[start]
         loop, here = [], start
-        while here in following and here not in seen:
+        while here >= 0 and here not in seen:
             seen.add(here)
             loop.append(here)
-            here = following[here]
+            here = following(here)
         if loop and here == start:
-            loops[domain].append(loop)
+            loops[int(state.column("contact", SIDES[0])[row[tie]])].append(loop)
     return loops
 
 
-def _polygon(state: State, o: Outlines, index: dict[int, int], loop: list[Step]) -> Numbers:
-    """The loop as a polygon through its contacts and both ends of its arcs."""
-    points = []
-    for iad, _ in loop:
-        if state.is_contact[iad]:
-            row = state.rows("contact", np.array([iad]))
-            points.append([state.column("contact", name)[row[0]] for name in ("KXC", "KYC")])
-        else:
-            k = index[iad]
-            reach = o.d if o.r[k] > 0 else 0.0
-            points += [o.p[k] - reach * o.t[k], o.p[k] + reach * o.t[o.after[k]]]
-    return np.array(points)
+def _polygon(state: State, o: Outlines, corner: Numbers, loop: list[int]) -> Numbers:
+    """The loop as a polygon through its contacts and through the ends and middles of its arcs."""
+    index = np.array(loop)
+    points = np.array(o.rounded[corner[index]])  # a contact stands there three times
+    contact = state.rings.contact[index]
+    row = state.rings.row[index[contact]]
+    for k, name in enumerate(("KXC", "KYC")):
+        points[contact, :, k] = state.column("contact", name)[row][:, None]
+    return np.asarray(points.reshape(-1, 2))
 
 
 def _area(polygon: Numbers) -> float:

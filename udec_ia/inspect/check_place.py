@@ -89,7 +89,7 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
     ):
         for k in np.flatnonzero(beyond > slack):
             concave = here.on_edge[k] and o.r[corner[k]] < 0
-            waits = concave or _waits(state, int(block[k]), int(contacts[k]), step)
+            waits = concave or _waits(state, int(touch.row[k]), side, step)
             if beyond[k] > slack[k] + (o.d if waits else 0.0):
                 segment = "edge" if here.on_edge[k] else "arc"
                 state.report(
@@ -99,13 +99,15 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
                 )
 
 
-def _waits(state: State, block: int, contact: int, step: int) -> bool:
+def _waits(state: State, row: int, side: int, step: int) -> bool:
     """True if another contact stands between the contact and the corner, or has passed it just before."""
-    ring = state.rings.get(block, [])
-    if contact not in ring:
+    rings = state.rings
+    here = int(rings.at[side, row])
+    if here < 0:
         return False
-    i = ring.index(contact)
-    return any(state.is_contact[ring[(i + k * step) % len(ring)]] for k in (1, 2))
+    along = rings.after if step > 0 else rings.before
+    one = along[here]
+    return bool(rings.contact[one] or rings.contact[along[one]])
 
 
 def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
@@ -116,14 +118,11 @@ def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
     to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
     an open contact would be given up.
     """
-    virtual = state.address["contact"][state.column("contact", "KCCOD") == VIRTUAL]
-    close = neighbours(state, set(virtual.tolist()))
-    if not close:
-        return
-    index = np.full(len(state.address["contact"]) + 1, -1)
+    virtual = np.flatnonzero(state.column("contact", "KCCOD") == VIRTUAL)
+    block, before, after = neighbours(state, virtual)
+    index = np.full(len(state.address["contact"]), -1)
     index[touch.row] = np.arange(len(touch.row))
-    block, before, after = (np.array(numbers) for numbers in zip(*close, strict=True))
-    one, two = index[state.rows("contact", before)], index[state.rows("contact", after)]
+    one, two = index[before], index[after]
     known = (one >= 0) & (two >= 0)
     block, one, two = block[known], one[known], two[known]
     hosts = [state.column("contact", name)[touch.row] for name in HOSTS]

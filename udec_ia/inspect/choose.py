@@ -8,6 +8,7 @@ contacts, signals and their points are nowhere.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,7 +55,7 @@ def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any
     if not len(at):
         detail = f"{field} of which {kind}?"
         raise UdecError(7, detail, "give its address, or a point that it is nearest to", parameter="field")
-    return [_nearest(array, kind, x, y) for x, y in _points(array, at)]
+    return _nearest(array, kind, _points(array, at))
 
 
 def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
@@ -66,14 +67,15 @@ def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     return list(zip(values[::2], values[1::2], strict=True))
 
 
-def _nearest(array: MainArray, kind: str, x: float, y: float) -> Chosen:
-    """The group of `kind` nearest to (x, y); of several as near the first in the list."""
+def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Chosen]:
+    """The groups of `kind` nearest to the points; of several as near the first in the list."""
     address, place = _places(array, kind)
     if not len(address):
-        advice = "make one first" if not len(table(array, kind)) else "give its address"
-        raise UdecError(26, f"there is no {kind} that is somewhere", advice, parameter="field")
-    i = int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin())
-    return Chosen(int(address[i]), "({:.4g}, {:.4g})".format(*place[i]))
+        if len(table(array, kind)):
+            raise UdecError(26, f"no {kind} has a place to be near to", "give its address", parameter="field")
+        raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
+    nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
+    return [Chosen(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
 
 
 def _places(array: MainArray, kind: str) -> tuple[Any, Any]:

@@ -95,7 +95,7 @@ class Unsound(UdecError):
     """Error 20: the heap contradicts itself; the message names both ends of the broken relation."""
 
     def __init__(self, relation: str) -> None:
-        super().__init__(20, relation, "the main array is damaged: look at the last RSET")
+        super().__init__(20, relation)
 
 
 def kind_of(h: Memory, iad: int) -> str | None:

@@ -6,6 +6,7 @@ anywhere goes on with the numbers that it had.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,24 +16,38 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.ops.history import Definition, definitions
 from udec_ia.ops.watch import Series
+from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
-from udec_ia.restart.reader import attribute, opened
+from udec_ia.restart.reader import opened
 from udec_ia.restart.refusal import RefusedError, refusing
 
 TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in the order of Series.numbers
+CHUNK = 512  # numbers that stand together in a dataset that grows
 RECORDED = "recorded"  # group of the restart file
+ADDRESS = re.compile(r"[0-9]{1,19}")
+PLACE = re.compile(r"|\([-+.0-9a-z]{1,12}, [-+.0-9a-z]{1,12}\)")
 
 
-def store(parent: h5py.Group, series: Sequence[Series]) -> None:
-    """Write one group for each of `series` into `parent`."""
+def store(parent: h5py.Group, series: Sequence[Series], growing: bool = False) -> None:
+    """Write one group for each of `series` into `parent`; growing: so that `extend` can add to them."""
+    layout = {"maxshape": (None,), "chunks": (CHUNK,)} if growing else {}
     for one in series:
         group = parent.create_group(str(one.number))
         for (name, kind), column in zip(TYPES.items(), one.numbers.T, strict=True):
-            group[name] = column.astype(kind)
+            group.create_dataset(name, data=column.astype(kind), **layout)
         for name in ("name", "group", "place", "unit", "text"):
             group.attrs[name] = text(getattr(one, name))
         group.attrs["every"] = np.int64(one.every)
         group.attrs["lost"] = np.int8(one.lost)
+
+
+def extend(parent: h5py.Group, series: Sequence[Series], before: Sequence[int]) -> None:
+    """Add what was recorded after the first `before` numbers of each of `series`, which are there."""
+    for one, n in zip(series, before, strict=True):
+        for (name, kind), column in zip(TYPES.items(), one.since(n).T, strict=True):
+            dataset = parent[f"{one.number}/{name}"]
+            dataset.resize((n + len(column),))
+            dataset[n:] = column.astype(kind)
 
 
 def recall(path: str | Path, array: MainArray) -> list[Series]:
@@ -41,13 +56,19 @@ def recall(path: str | Path, array: MainArray) -> list[Series]:
         return [_recall(file, number, one) for number, one in enumerate(definitions(array), 1)]
 
 
-def _recall(file: h5py.File, number: int, definition: Definition) -> Series:
-    place = f"{RECORDED}/{number}"
+def _recall(file: Contents, number: int, definition: Definition) -> Series:
+    where = f"{RECORDED}/{number}"
     series = Series(number, definition)
-    columns = [np.asarray(file[f"{place}/{name}"]) for name in TYPES]
-    if any(one.dtype != kind or one.ndim != 1 for one, kind in zip(columns, TYPES.values(), strict=True)):
-        raise RefusedError(f"is damaged: /{place} does not hold numbers as a history does")
+    columns = [file.numbers(f"{where}/{name}", kind, None) for name, kind in TYPES.items()]
+    cycles = columns[0]
+    if len({len(one) for one in columns}) > 1 or (np.diff(cycles, prepend=-1) <= 0).any():
+        raise RefusedError(f"is damaged: /{where} does not hold numbers as a history does")
     series.add(np.column_stack(columns))
-    series.group, series.place = (attribute(file, place, name) for name in ("group", "place"))
-    series.lost = bool(file[place].attrs["lost"])
+    group, place = (file.attribute(where, name).decode() for name in ("group", "place"))
+    kind, _, address = group.partition("@")
+    known = not group or (kind == definition.what.group and ADDRESS.fullmatch(address))
+    if not (known and PLACE.fullmatch(place)):
+        raise RefusedError(f"is damaged: /{where} does not say of what it is the history")
+    series.group, series.place = group, place
+    series.lost = bool(file.attribute_numbers(where, "lost", "i1"))
     return series

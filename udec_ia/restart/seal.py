@@ -42,20 +42,20 @@ def read_sealed(file: BinaryIO, file_size: int) -> tuple[bytes, tuple[int, int]]
     with the one inside, since the checksum does not cover it.
     """
     front = file.read(SIZE)
-    version, size = _read_front(front)
-    if file_size < SIZE + size:
-        raise RefusedError(f"is cut short: {file_size} of {SIZE + size} bytes are there")
-    if file_size > SIZE + size:
-        raise RefusedError(f"is damaged: it has {file_size} bytes and should have {SIZE + size}")
+    version = read_front(front, file_size)
     file.seek(0)
-    data = file.read(SIZE + size)
+    data = file.read(file_size)
     if data[:SIZE] != seal(memoryview(data)[SIZE:], version):
         raise RefusedError("is damaged: its checksum (SHA-256) is wrong")
     return data, version
 
 
-def _read_front(front: bytes) -> tuple[tuple[int, int], int]:
-    """Format version and length of the HDF5 part, as the seal gives them."""
+def read_front(front: bytes, file_size: int) -> tuple[int, int]:
+    """The format version, as the seal in the first bytes of a file gives it.
+
+    RefusedError unless they are a seal of a format that this program reads and the file is as long as that
+    says.
+    """
     if not front:
         raise RefusedError("is empty", OTHER_FILE)
     if front.startswith(HDF5_SIGNATURE):
@@ -73,4 +73,8 @@ def _read_front(front: bytes) -> tuple[tuple[int, int], int]:
             f"has format {major}.{minor}, and this program reads format {VERSION[0]}",
             "read it with the version of udec_ia that wrote it",
         )
-    return (major, minor), size
+    if file_size < SIZE + size:
+        raise RefusedError(f"is cut short: {file_size} of {SIZE + size} bytes are there")
+    if file_size > SIZE + size:
+        raise RefusedError(f"is damaged: it has {file_size} bytes and should have {SIZE + size}")
+    return major, minor

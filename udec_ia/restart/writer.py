@@ -20,16 +20,16 @@ import numpy as np
 
 import udec_ia
 from offsets.generated import MFREE
-from offsets.table import TABLE, Table, lay_out, read_table
-from udec_ia.errors import UdecError
+from offsets.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
 from udec_ia.ops.watch import Series
+from udec_ia.restart.contents import CHUNK
 from udec_ia.restart.layout import common_places, field_rows, text
 from udec_ia.restart.recorded import RECORDED, store
-from udec_ia.restart.seal import SIZE, VERSION, seal
+from udec_ia.restart.refusal import RefusedError
+from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
 
-CHUNK = 65536  # words
 HOST_LENGTH = 64
 
 
@@ -48,17 +48,21 @@ def save(
 
     laws: file and SHA-256 of each constitutive law of the user's that the state was calculated with.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
-    checksum of the seal. Raises UdecError 29 if the file cannot be written; a file that stood there
-    before is then untouched.
+    checksum of the seal. Raises UdecError 31 if the file cannot be written, or if something stands there that
+    is no restart file; that is then untouched.
     """
     path = Path(path)
-    image = _image(array, deck, laws, series)
-    try:
-        put_in_place(path, image)
-    except OSError as error:
-        detail = f"{path} cannot be written: {error.strerror or error}"
-        raise UdecError(29, detail, "save under another name or in another folder") from error
+    put_in_place(path, _image(array, deck, laws, series), _judge)
     return path
+
+
+def _judge(front: bytes, size: int) -> str:
+    """Why a file that begins with `front` is no restart file; "" if it is one."""
+    try:
+        read_front(front, size)
+    except RefusedError as error:
+        return error.what
+    return ""
 
 
 def _image(
@@ -66,8 +70,8 @@ def _image(
     deck: Sequence[str],
     laws: Mapping[str, tuple[str, str]],
     series: Sequence[Series],
-) -> memoryview:
-    """The bytes of the whole file."""
+) -> bytes:
+    """The bytes of the whole file: no view of the buffer, which could not be closed before the view is."""
     table = read_table()
     buffer = io.BytesIO()
     with h5py.File(buffer, "w", userblock_size=SIZE, libver=("v108", "v108")) as file:
@@ -84,9 +88,9 @@ def _image(
         _write_provenance(file)
         _write_volatile(file)
         file.attrs["complete"] = np.int8(1)
-    image = buffer.getbuffer()
-    image[:SIZE] = seal(image[SIZE:])
-    return image
+    with buffer.getbuffer() as image, image[SIZE:] as body:
+        image[:SIZE] = seal(body)
+    return buffer.getvalue()
 
 
 def _write_heap(file: h5py.File, array: MainArray) -> None:
@@ -106,14 +110,15 @@ def _write_heap(file: h5py.File, array: MainArray) -> None:
 def _write_common(file: h5py.File, array: MainArray, table: Table) -> None:
     """/common: one dataset for each variable of the common block."""
     group = file.create_group("common")
-    integers = array.h.ci.astype("<i8", copy=False)
-    reals = array.h.cr.astype(array.scheme.real_type.newbyteorder("<"), copy=False)
+    parts = dict(zip(COMMON_TYPES, (array.h.ci, array.h.cr, array.h.cd), strict=True))
+    stored = {kind: part.astype(part.dtype.newbyteorder("<"), copy=False) for kind, part in parts.items()}
     for field, place in common_places(table):
-        values = (reals if field.real else integers)[place]
+        values = stored[field.type][place]
         group[field.name] = values if field.count > 1 else values[0]
         group[field.name].attrs["unit"] = text(field.unit)
         group[field.name].attrs["text"] = text(field.text)
-    group.attrs["sha256"] = text(hashlib.sha256(integers.tobytes() + reals.tobytes()).hexdigest())
+    content = b"".join(part.tobytes() for part in stored.values())
+    group.attrs["sha256"] = text(hashlib.sha256(content).hexdigest())
 
 
 def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:

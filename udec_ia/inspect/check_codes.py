@@ -1,0 +1,45 @@
+"""Invariant 2 for what is no pointer: codes, material numbers and counts are in the table's ranges."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from offsets import generated
+from offsets.table import Field
+from udec_ia.inspect.check_groups import TABLE, Numbers, State
+
+
+def check_codes(state: State) -> None:
+    """Every integer that routines take as it is, in the groups and in the common block."""
+    for kind, addresses in state.address.items():
+        for field in TABLE.group(kind).fields:
+            if field.real or field.target is not None or not field.allowed or not len(addresses):
+                continue
+            values = state.column(kind, field.name)
+            for row in np.flatnonzero(~allowed(field, values)):
+                state.report(
+                    2, f"{field.name} of {kind}@{addresses[row]} is {values[row]}, not {in_words(field)}"
+                )
+    for field in TABLE.common:
+        if field.real or field.target is not None or not field.allowed:
+            continue
+        value = state.h.ci[getattr(generated, field.name)]
+        if not allowed(field, value):
+            state.report(2, f"{field.name} is {value}, not {in_words(field)}")
+
+
+def allowed(field: Field, values: Numbers) -> Numbers:
+    """True for each of `values` that the field may hold."""
+    good = np.zeros(np.shape(values), bool)
+    for low, high in field.allowed or ((-np.inf, None),):
+        good |= (values >= low) & (values <= (np.inf if high is None else high))
+    return good
+
+
+def in_words(field: Field) -> str:
+    """What the field may hold: "0 to 2, 4 or 6"."""
+    parts = [
+        f"{low} or more" if high is None else f"{low} to {high}" if high > low else f"{low}"
+        for low, high in field.allowed
+    ]
+    return " or ".join([", ".join(parts[:-1]), parts[-1]] if parts[:-1] else parts)
