@@ -1,6 +1,8 @@
 """The command `udec`: run a deck, check a restart file, or say what is in one.
 
-Exit status: 0 if all went well, 1 after an error, 2 if the command line itself is wrong, 130 after Ctrl-C.
+Exit status: 0 if all went well, 1 after an error, 2 if the command line itself is wrong, 130 after Ctrl-C and
+143 after SIGTERM. Both may come at any time, also while what the program needs is being loaded: only what
+takes no time is loaded before.
 """
 
 from __future__ import annotations
@@ -8,26 +10,30 @@ from __future__ import annotations
 import argparse
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from threading import current_thread, main_thread
 
 import udec_ia
-from udec_ia.deck.interactive import converse, history, history_file
-from udec_ia.deck.monitor import Monitor, run_deck
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-from udec_ia.model import Model
+from udec_ia.printable import printable
+from udec_ia.signals import Terminated, hold, passing, terminate
 
-ERROR, MISUSE, INTERRUPTED = 1, 2, 130
+ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
+VERBS = ("run", "check", "info")
 
 
 def arguments() -> argparse.ArgumentParser:
     """The command line."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
     parser = argparse.ArgumentParser(
         prog="udec",
-        description="The distinct element program UDEC. Alone, it takes commands from the terminal.",
+        description="The distinct element program UDEC. Alone, it takes commands from the terminal; with the "
+        "name of a deck it runs it.",
     )
     parser.add_argument("--version", action="version", version=f"udec_ia {udec_ia.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -62,6 +68,10 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
         print(f"udec: --out {args.out}: no file can be written there", file=sys.stderr)
         return MISUSE
+    from udec_ia.deck.interactive import converse, history, history_file
+    from udec_ia.deck.monitor import Monitor, run_deck
+    from udec_ia.model import Model
+
     out = args.out or Path()
     try:
         model = Model(build=args.build, mtop=args.mtop, out=out, constitutive=args.constitutive)
@@ -85,10 +95,12 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace) -> int:
-    violations = Model.restore(args.file).check()
+    from udec_ia.model import Model
+
+    violations = Model.check_file(args.file)
     for violation in violations:
         print(violation)
-    print(f"{args.file}: {f'{len(violations)} violations' if violations else 'sound'}")
+    print(f"{printable(str(args.file))}: {f'{len(violations)} violations' if violations else 'sound'}")
     return ERROR if violations else 0
 
 
@@ -99,13 +111,40 @@ def _info(args: argparse.Namespace) -> int:
     return 0
 
 
+def completed(given: Sequence[str]) -> list[str]:
+    """The command line with the `run` that may be left out before the name of a deck."""
+    first = given[0] if given else ""
+    if first in VERBS or first in ("-h", "--help", "--version"):
+        return list(given)
+    if first and not first.startswith("-") and not os.path.exists(first):
+        verbs = ", ".join(f"udec {verb}" for verb in VERBS)
+        arguments().error(f"there is no file {first}, and the commands are {verbs}: udec --help")
+    return ["run", *given]
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv` (by default that of the process); returns the exit status."""
+    former = None
+    try:
+        if current_thread() is main_thread():
+            former = signal.signal(signal.SIGTERM, terminate)
+        with hold(), passing():
+            return _main(sys.argv[1:] if argv is None else argv)
+    except KeyboardInterrupt as interrupt:
+        saved = interrupt.args[0] if interrupt.args else None
+        told = f": what was computed is saved in {saved}" if saved else ""
+        print(f"\ninterrupted{told}", file=sys.stderr)
+        return TERMINATED if isinstance(interrupt, Terminated) else INTERRUPTED
+    finally:
+        if former is not None:
+            signal.signal(signal.SIGTERM, former)
+
+
+def _main(argv: Sequence[str]) -> int:
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
-    given = sys.argv[1:] if argv is None else argv
-    args = arguments().parse_args(given or ["run"])
+    args = arguments().parse_args(completed(argv))
     try:
         status: int = args.action(args)
         sys.stdout.flush()
@@ -118,12 +157,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return ERROR
     except OSError as error:
         sys.stdout.flush()
-        print(f"udec: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"udec: {printable(str(error.filename))}: {error.strerror}", file=sys.stderr)
         return ERROR
-    except KeyboardInterrupt as interrupt:
-        saved = interrupt.args[0] if interrupt.args else None
-        print(
-            "\ninterrupted" + (f": what was computed is saved in {saved}" if saved else ""), file=sys.stderr
-        )
-        return INTERRUPTED
     return status

@@ -6,6 +6,8 @@ where it arose, when it arose in a deck.
 
 from __future__ import annotations
 
+from udec_ia.printable import MESSAGE, printable
+
 MESSAGES = {
     1: "memory overflow",
     2: "unrecognisable command",
@@ -26,7 +28,7 @@ MESSAGES = {
     17: "cannot split fully-deformable block",
     18: "only one block may be created at present: use SPLIT for more",
     19: "cannot delete final contact in problem",
-    20: "internal error, subroutine DELC",
+    20: "internal error, the main array is damaged",
     21: "cannot delete fully-deformable block at present",
     22: 'fifth parameter must be "Manual" or "Automatic"',
     23: "not available yet",
@@ -43,6 +45,7 @@ MESSAGES = {
     34: "constitutive law cannot be used",
     35: "constitutive law returned no finite number",
     36: "place or force beyond the reals",
+    37: "there is more energy than can be",
 }
 
 ADVICE = {
@@ -65,7 +68,7 @@ ADVICE = {
     17: "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
     18: "make the first block large enough, then SPLIT it and DELETE what is not needed",
     19: "leave at least two blocks that touch",
-    20: "the main array is damaged: look at the last RSET, and go back to what was saved before it",
+    20: "look at the last RSET, and go back to what was saved before it",
     21: "delete blocks before they are made fully-deformable",
     22: "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ..., or AUTOMATIC EDGE d",
     23: 'AUTOMATIC zones need one package more: python -m pip install "pythoncdt>=2.0"',
@@ -82,6 +85,7 @@ ADVICE = {
     34: "correct the file that --constitutive names",
     35: "look for what the law divides by or takes a root of, and at the properties of the material",
     36: "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
+    37: "take a smaller FRACTION, or FRACTION f SAFE",
 }
 
 
@@ -112,14 +116,16 @@ class UdecError(Exception):
 
     @property
     def message(self) -> str:
-        """The 1980 text and what exactly is wrong, on one line."""
-        return MESSAGES[self.number] + (f": {self.detail}" if self.detail else "")
+        """The 1980 text and what exactly is wrong, on one line, safe to print."""
+        return printable(MESSAGES[self.number] + (f": {self.detail}" if self.detail else ""), MESSAGE)
 
     def __str__(self) -> str:
-        place = f"{self.file}:{self.line}:{self.column}: " if self.line is not None else ""
+        file = printable(str(self.file), MESSAGE)
+        place = f"{file}:{self.line}:{self.column}: " if self.line is not None else ""
         lines = [f"{place}error {self.number}: {self.message}"]
         if self.source is not None and self.column is not None:
             lines += [f"    {self.source}", "    " + " " * (self.column - 1) + "^"]
-        lines += [self.advice] if self.advice else []
-        lines += [f"what was computed so far is saved in {self.saved}"] if self.saved else []
+        lines += [printable(self.advice, MESSAGE)] if self.advice else []
+        saved = f"what was computed so far is saved in {self.saved}"
+        lines += [printable(saved, MESSAGE)] if self.saved else []
         return "\n".join(lines)

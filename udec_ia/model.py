@@ -5,6 +5,8 @@ numbers that the command takes, and raises UdecError with the number that the co
 
 What a run has to say besides goes to the log "udec_ia", as warnings, which Python shows on standard error
 unless it is told otherwise: that routines are being compiled, that a time-step may be unstable.
+
+Every command is obeyed as a whole or not at all, whatever ends it (transaction.py).
 """
 
 from __future__ import annotations
@@ -12,29 +14,32 @@ from __future__ import annotations
 import io
 import logging
 import operator
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO
+from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
 
 import numba
 import numpy as np
 
-from offsets.generated import BETA, DTOL, IHPNT, MCTOT, NBLK, NCON, TDEL, TIME
+from offsets.generated import DTOL, IHPNT, MCTOT, NBLK, NCON, TIME
 from udec_ia.errors import UdecError
+from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.jit import is_cached, note_cached
+from udec_ia.heap.compiling import compile_seconds
+from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.kernels.rest import force_ratio, unbalanced
+from udec_ia.kernels.energy import liveliest
+from udec_ia.kernels.rest import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.ops import settings
 from udec_ia.ops.arrange import arrange
 from udec_ia.ops.automatic import generate_automatically
 from udec_ia.ops.bounds import ZERO, Triple, boundary, number_of_conditions, set_function
 from udec_ia.ops.change import change
 from udec_ia.ops.create import create
-from udec_ia.ops.cycle import cycle
+from udec_ia.ops.cycle import cycle, finish
 from udec_ia.ops.delete import delete
 from udec_ia.ops.energy import Balance, balance, switch
 from udec_ia.ops.insitu import insitu
@@ -42,22 +47,29 @@ from udec_ia.ops.lawfile import Given
 from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.memory import refit
+from udec_ia.ops.ranges import limits_turned, why_no_block
+from udec_ia.ops.remarks import on_moduli, on_properties, on_rest
 from udec_ia.ops.rounding import round_corners
+from udec_ia.ops.runaway import Runaway
 from udec_ia.ops.soft import soft
 from udec_ia.ops.split import Boxes, split
-from udec_ia.ops.timestep import describe, instability, kind_of
-from udec_ia.ops.watch import Series, Solution, Watch
+from udec_ia.ops.timestep import bound, describe, kind_of
+from udec_ia.ops.uncut import why_uncut
+from udec_ia.ops.watch import Series, Solution, Watch, unsolved
 from udec_ia.ops.zoning import NEAR, block_to_zone, generate
+from udec_ia.printable import printable
 from udec_ia.recorder import Recorder
+from udec_ia.transaction import Undo, beside, command, looking, numbers, once
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
     from udec_ia.output.plot import Plots
 
+R = TypeVar("R")
 log = logging.getLogger("udec_ia")
-announced: set[str] = set()  # word schemes whose compilation this process has announced
 
 RESTART_FILE = "restart.h5"
+NAME = "udec"  # what names of files begin with
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
@@ -71,6 +83,7 @@ class Model:
     made when the first file is written.
     constitutive: laws of constitutive numbers 2 to 5 (udec_ia.laws): a file, the name of a law that comes
     with the program, a mapping from names to functions, or several of these; error 34 if one cannot be used.
+    name: what the names of pictures and histories begin with.
     tell: takes what CYCLE has to warn of. explain_step: CYCLE and SOLVE say before they run what sets the
     time-step, as a deck has them do.
     """
@@ -81,13 +94,14 @@ class Model:
         mtop: int | None = None,
         out: str | Path = ".",
         constitutive: Given | Iterable[Given] | None = None,
+        name: str = NAME,
     ) -> None:
         self.mtop = None if mtop is None else _words(mtop)
         self.scheme = scheme(build)
         self.array = MainArray(self.scheme, self.mtop)
         self.out = out
         self.laws = LawBook(constitutive)
-        self.name = "udec"
+        self.name = name
         self.deck_log: list[str] = []
         self.progress: TextIO | None = None
         self.animate = False
@@ -95,15 +109,20 @@ class Model:
         self.inform: Callable[[str], None] = log.info
         self.explain_step = False
         self.started = False
+        self.undo = Undo()
+        self.writes = Writes()
+        self._lent: tuple[Memory, Memory] | None = None  # memory of IA(), and that which was lent for it
+        self._goes_on = False  # from a restart file: pictures of the run before are left alone
         self._files: list[Path] = []
         self._recorder = Recorder()
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._boxes = Boxes()
-        self._touched = False  # RSET has changed a word since links and outlines were last proved sound
+        self._touched = False  # by RSET or through `h`, since links and outlines were last proved sound
         self._unproved = False  # outlines are those of a restart file, of which the links alone are proved
-        self._judged = (0.0, 0.0)  # BETA and TDEL of the last CYCLE: its warning is not repeated
-        self._clock = perf_counter()
+        self._runaway = Runaway(self._warn)
+        self._said: set[str] = set()  # remarks, which are not repeated
+        self._clock, self._compiled = perf_counter(), compile_seconds()
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
 
     @property
@@ -117,42 +136,72 @@ class Model:
 
     @property
     def h(self) -> Memory:
-        """The memory that the compiled routines work on (changes identity when the array grows)."""
-        return self.array.h
+        """The array itself: IA() as integers and reals, h.ia and h.ra, and the common block, h.ci and h.cr.
+
+        To be read freely. What is assigned to its words, as in h.cr[3] = 1.0, is proved sound before the next
+        command that follows addresses, as after RSET. It is another object after commands that let the
+        array grow: take it anew.
+        """
+        if self._lent is None or self._lent[0] is not self.array.h:
+            self._lent = self.array.h, lend(self.array.h, self.writes)
+        return self._lent[1]
+
+    def parts(self) -> Iterator[object]:
+        """The objects that hold what is not in the main array."""
+        plots = self._plots
+        frame = None if plots is None else plots.frame
+        held = self._recorder, self.laws, self._runaway, plots, frame, self._animation
+        for part in (self, *held, *self._recorder.series):
+            if part is not None:
+                yield part
+
+    def whole(self, action: Callable[[], R]) -> R:
+        """Have all that `action` does with this model done, or nothing of it if it raises."""
+        return self.undo.whole(self, action)
+
+    def note_writes(self) -> None:
+        """Something was written to the words that `h` lends: what follows them proves them first."""
+        self._boxes.forget()
+        self._touched = True
+        self.writes.made = False
 
     # ---- starting, saving, ending
 
+    @beside
     def start(self) -> None:
         """START: a cold start; whatever was there is gone."""
         self.array = MainArray(self.scheme, self.mtop)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
         self.laws.note({})
-        self._recorder.series = []
+        self._recorder.series, self._recorder.solutions = [], []
         self._boxes.forget()
-        self._touched = self._unproved = False
-        self._judged = (0.0, 0.0)
+        self._touched = self._unproved = self._goes_on = False
+        self._runaway, self._said = Runaway(self._warn), set()
         self.started = True
 
+    @beside
     def save(self, path: str | Path | None = None) -> Path:
         """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
 
         Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
+        It may replace a restart file; error 31 if anything else stands there, or if it cannot be written.
         """
         from udec_ia.restart import save
 
         if self._touched:
-            self._prove()
+            self._prove(whole=True)
         target = self.out / RESTART_FILE if path is None else path
         written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
         self._note([written])
         return written
 
+    @beside
     def restart(self, path: str | Path | None = None) -> None:
         """RESTART: go on from the restart file `path`, by default restart.h5 in the folder `out`.
 
         The words are those of the file's scheme; how many there may be is for `mtop` to say, whatever it was
-        when they were saved. Error 29 if the file cannot be used, 1 if it holds more; the model is then as it
-        was.
+        when they were saved. Pictures that are there stay: those to come take the next numbers. Error 29 if
+        the file cannot be used, 1 if it holds more; the model is then as it was.
         """
         from udec_ia.restart import load, recall
 
@@ -165,25 +214,49 @@ class Model:
             self.tell(warning)
         self._boxes.forget()
         self._touched, self._unproved = False, True
-        self.started = True
+        self._runaway = Runaway(self._warn)
+        self.started = self._goes_on = True
+        if self._plots is not None:
+            self._plots.count = max(self._plots.count, self._last_picture("-plot"))
+        ci, name = array.h.ci, array.scheme.name
+        self.inform(
+            f"{printable(str(source))}: {ci[NBLK]} blocks, {ci[NCON]} contacts, {ci[MCTOT]} cycles, "
+            f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
+        )
         if array.scheme != self.scheme:
             self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
 
     @classmethod
-    def restore(cls, path: str | Path, constitutive: Given | Iterable[Given] | None = None) -> Self:
-        """A new model from a restart file, in the word scheme of the file, with laws of the user's."""
-        model = cls(constitutive=constitutive)
+    def restore(
+        cls,
+        path: str | Path,
+        constitutive: Given | Iterable[Given] | None = None,
+        *,
+        mtop: int | None = None,
+        out: str | Path = ".",
+        name: str = NAME,
+    ) -> Self:
+        """A new model from a restart file, in the word scheme of the file, with laws of the user's.
+
+        mtop, out, name: as for a new model. Runs that go on side by side in one folder need different names.
+        """
+        model = cls(mtop=mtop, out=out, constitutive=constitutive, name=name)
         model.restart(path)
         model.scheme = model.array.scheme
         return model
 
+    @looking
     def stop(self) -> str:
         """STOP: write what is still open and return the line that sums up the run."""
         if self._plots is not None:
             self._note(self._plots.close())
         if self._animation is not None:
-            self._note([self._animation.save(self.out / f"{self.name}.gif", self.h)])
+            path = self.out / f"{self.name}.gif"
+            if self._goes_on and path.exists():
+                path = self.out / f"{self.name}-{max(self._last_picture(''), 1) + 1}.gif"
+            self._note([self._animation.save(path, self.array.h)])
             self._animation = None
+        self._recorder.close()
         return self.summary()
 
     def summary(self) -> str:
@@ -196,16 +269,17 @@ class Model:
             forces = table(self.array, "contact")["KCFN"]
         except Unsound:  # RSET has damaged the contact list, and the run ends all the same
             forces = np.zeros(0)
-        h = self.h
+        h = self.array.h
         return summary(
             int(h.ci[MCTOT]),
-            float(h.cr[TIME]),
+            float(h.cd[TIME]),
             int(h.ci[NBLK]),
             int(h.ci[NCON]),
             float(forces.max(initial=0)),
             self._files,
             perf_counter() - self._clock,
-            [one for one in self._recorder.solutions if not one],
+            compile_seconds() - self._compiled,
+            unsolved(self._recorder.solutions),
         )
 
     def end(self) -> str:
@@ -220,33 +294,34 @@ class Model:
         return summary() if command is None else explain(command)
 
     def _ready(self, sound: bool = True, shapes: bool = False) -> None:
-        """Start a model that was not started; with `sound`, prove the heap first if RSET has touched it.
+        """Start a model that was not started; with `sound`, prove the heap first if it has been written to.
 
-        A routine that follows pointers must never meet one that RSET has damaged, nor one that cuts or loads
-        outlines (`shapes`) one of a restart file that crosses itself: error 20. Such routines are compiled,
-        too: the first of a process says so if nobody has compiled them before.
+        A routine that follows pointers must never meet one that RSET or Python has damaged, nor one that cuts
+        or loads outlines (`shapes`) one of a restart file that crosses itself: error 20.
         """
         if not self.started:
             self.start()
-        name = self.array.scheme.name
-        if sound and not (name in announced or is_cached(name) or numba.config.DISABLE_JIT):
-            announced.add(name)
-            log.warning("compiling once for this machine, up to a minute ...")
         if (sound and self._touched) or (shapes and self._unproved):
             self._prove()
 
-    def _prove(self) -> None:
-        """Error 20 with the first violation of links, numbers or outlines in the main array."""
-        from udec_ia.inspect.check import check_shapes
+    def _prove(self, whole: bool = False) -> None:
+        """Error 20 with the first violation of links, numbers or outlines that could mislead a routine.
 
-        broken = check_shapes(self.array)
-        if broken:
-            advice = "the main array is damaged: put back what RSET has changed, or RESTART from a sound file"
-            raise UdecError(20, str(broken[0]), advice)
-        self._touched = self._unproved = False
+        whole: with the first of all; else words that are lost for good are left to SAVE.
+        """
+        from udec_ia.inspect.check import check_shapes
+        from udec_ia.inspect.check_common import check_common
+
+        broken = check_common(self.array) or check_shapes(self.array)
+        for one in broken:
+            if whole or one.misleads:
+                advice = "put back what was changed, or RESTART from a sound file"
+                raise UdecError(20, str(one), advice)
+        self._touched, self._unproved = bool(broken), False
 
     # ---- the block system
 
+    @command
     def block(self, *xy: float, material: int = 1, constitutive: int = 1) -> int:
         """BLOCK: create the block with the corners x1, y1, x2, y2, ..., clockwise. Returns its address."""
         if len(xy) % 2:
@@ -254,27 +329,41 @@ class Model:
         self._ready()
         return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
 
+    @command
     def split(self, x1: float, y1: float, x2: float, y2: float) -> int:
-        """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks."""
+        """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks (0: `why_none`)."""
         self._ready(shapes=True)
         return split(self.array, self._boxes, x1, y1, x2, y2)
 
+    @command
     def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """DELETE: remove the blocks whose centroids lie in the range. Returns their number."""
         self._ready()
         self._boxes.forget()
         return delete(self.array, (x1, x2, y1, y2))
 
+    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
+        """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
+        if command == "split":
+            return why_uncut(self.array, self._boxes, a, b, c, d)
+        if command != "boundary":
+            return why_no_block(self.array, (a, b, c, d))
+        there = "PRINT BOUNDARIES shows where they are" if number_of_conditions(self.h) else "there are none"
+        return limits_turned((a, b, c, d)) or there
+
+    @command
     def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FIX: hold the blocks in the range. Returns their number."""
         self._ready()
         return settings.set_fixity(self.array, (x1, x2, y1, y2), True)
 
+    @command
     def free(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FREE: let the blocks in the range move. Returns their number."""
         self._ready()
         return settings.set_fixity(self.array, (x1, x2, y1, y2), False)
 
+    @command
     def change(
         self,
         x1: float,
@@ -287,7 +376,7 @@ class Model:
     ) -> int:
         """CHANGE: attributes of the blocks in the range. Returns their number."""
         self._ready()
-        conditions = number_of_conditions(self.h)
+        conditions = number_of_conditions(self.array.h)
         kind = None if type is None else str(type).lower()
         changed = change(self.array, (x1, x2, y1, y2), kind, material, constitutive)
         self._tell_lost(conditions)
@@ -295,13 +384,14 @@ class Model:
 
     def _tell_lost(self, conditions: int) -> None:
         """Tell if there are less than `conditions` boundary conditions now."""
-        lost = conditions - number_of_conditions(self.h)
+        lost = conditions - number_of_conditions(self.array.h)
         if lost > 0:
             self.tell(
                 f"{lost} boundary condition{'s' if lost > 1 else ''} went with what "
                 f"{'they' if lost > 1 else 'it'} acted on: give them again with BOUNDARY"
             )
 
+    @command
     def generate(
         self,
         x1: float,
@@ -323,7 +413,7 @@ class Model:
         self._boxes.forget()
         points = rows(2, gridpoints=gridpoints)
         triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
-        conditions = number_of_conditions(self.h)
+        conditions = number_of_conditions(self.array.h)
         ib = block_to_zone(self.array, (x1, x2, y1, y2))
         if mode.lower() == "manual":
             if not points or not triples:
@@ -332,7 +422,7 @@ class Model:
                 )
             if edge is not None:
                 raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
-            near = NEAR * float(self.h.cr[DTOL])
+            near = NEAR * float(self.array.h.cr[DTOL])
             for remark in generate(self.array, ib, [(x, y) for x, y in points], triples, near, mixed):
                 self.tell(remark)
         elif mode.lower() == "automatic":
@@ -349,6 +439,7 @@ class Model:
         self._tell_lost(conditions)
         return ib
 
+    @command
     def boundary(
         self,
         x1: float,
@@ -386,13 +477,15 @@ class Model:
             free=free,
         )
 
+    @command
     def function(self, n: int, *tf: float) -> None:
         """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
         if len(tf) % 2:
             raise UdecError(8, f"{len(tf)} numbers given", "give t1, f1, t2, f2, ...")
-        self._ready(sound=False)
+        self._ready(sound=self._touched)
         set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 
+    @command
     def insitu(
         self,
         x1: float,
@@ -410,11 +503,13 @@ class Model:
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
         return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
 
+    @command
     def round(self, d: float) -> None:
         """ROUND: round every corner with the circle tangent at the distance d from it."""
         self._ready()
         round_corners(self.array, d)
 
+    @command
     def rset(self, v: float, ia: int, ioff: int) -> None:
         """RSET: put the real value v at offset ioff of the group at address ia."""
         self._ready(sound=False)
@@ -424,6 +519,7 @@ class Model:
 
     # ---- numbers
 
+    @numbers
     def property(
         self,
         material: int,
@@ -452,41 +548,44 @@ class Model:
 
         From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
-        self._ready(sound=False)
-        settings.set_property(
-            self.array,
-            material,
-            bulk=bulk,
-            cohesion=cohesion,
-            density=density,
-            kn=kn,
-            friction=friction,
-            ks=ks,
-            g=g,
-            dilation=dilation,
-            residual_friction=residual_friction,
-            residual_cohesion=residual_cohesion,
-            critical_slip=critical_slip,
-            block_friction=block_friction,
-            block_cohesion=block_cohesion,
-            block_tension=block_tension,
-            block_dilation=block_dilation,
-            p1=p1,
-            p2=p2,
-            p3=p3,
-            p4=p4,
-        )
+        self._ready(sound=self._touched)
+        values = {
+            "bulk": bulk,
+            "cohesion": cohesion,
+            "density": density,
+            "kn": kn,
+            "friction": friction,
+            "ks": ks,
+            "g": g,
+            "dilation": dilation,
+            "residual_friction": residual_friction,
+            "residual_cohesion": residual_cohesion,
+            "critical_slip": critical_slip,
+            "block_friction": block_friction,
+            "block_cohesion": block_cohesion,
+            "block_tension": block_tension,
+            "block_dilation": block_dilation,
+            "p1": p1,
+            "p2": p2,
+            "p3": p3,
+            "p4": p4,
+        }
+        settings.set_property(self.array, material, **values)
+        self._remark(on_properties(material, values))
 
+    @numbers
     def gravity(self, gx: float, gy: float) -> None:
         """GRAVITY: accelerations in the x and y directions."""
         self._ready(sound=False)
         settings.set_gravity(self.array, gx, gy)
 
+    @numbers
     def damping(self, fcrit: float, freq: float, only: str | None = None) -> None:
         """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping)."""
         self._ready(sound=False)
         settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
+    @numbers
     def energy(self, state: str = "on") -> None:
         """ENERGY: "on": an account of the energy begins (see `balance`); "off": it ends."""
         self._ready()
@@ -494,18 +593,22 @@ class Model:
             raise UdecError(10, f"ENERGY {state}", "ON or OFF", parameter="state")
         switch(self.array, state.lower() == "on")
 
+    @looking
     def balance(self) -> Balance:
         """The account of the energy that PRINT ENERGY shows, in J per m of thickness.
 
         Error 26 unless energy("on") began one.
         """
-        return balance(self.h)
+        self._ready(sound=self._touched)
+        return balance(self.array.h)
 
+    @numbers
     def fraction(self, f: float, safe: bool = False) -> None:
         """FRACTION: fraction of the critical time-step to be used; safe: of a bound on all modes."""
         self._ready(sound=False)
         settings.set_fraction(self.array, f, safe)
 
+    @numbers
     def scale(self, s: float) -> None:
         """SCALE: plot scale."""
         self._ready(sound=False)
@@ -513,26 +616,33 @@ class Model:
 
     # ---- running
 
+    @beside
     def cycle(self, n: int) -> int:
         """CYCLE: n calculation cycles. Returns how many were completed."""
         self._ready()
         not_negative(self.array, n=whole(n=n))
         return self._cycle(n, self._recorder.watch(self.array))
 
+    @beside
     def solve(self, ratio: float, limit: int = SOLVE_LIMIT) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
         The ratio: greatest unbalanced force over the mean of those that are carried (kernels.rest); it is
-        looked at every 10 cycles. What is returned is true if the ratio was reached.
+        looked at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic
+        over strain energy is not greater than `ratio` either. What is returned is true if that was reached.
         """
         self._ready()
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
+        self._remark(on_rest(self.array))
         watch = Watch(self.array, self._recorder.series, ratio)
         cycles = self._cycle(limit, watch)
-        ends = float(force_ratio(self.h, soft(self.array)))
-        _, worst = unbalanced(self.h, soft(self.array))
-        named = kind_of(self.h, int(worst)) if worst else ""
-        solution = Solution(watch.reached, ratio, ends, cycles, named)
+        h, kinds = self.array.h, soft(self.array)
+        reached = cycles > 0 and bool(at_rest(h, kinds, float(ratio)))
+        ends, motion = float(force_ratio(h, kinds)), float(motion_ratio(h, kinds))
+        worst, lively = (
+            kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
+        )
+        solution = Solution(reached, ratio, ends, cycles, worst, motion, lively)
         self._recorder.solutions.append(solution)
         return solution
 
@@ -541,6 +651,8 @@ class Model:
         from udec_ia.output.report import Report
 
         self._boxes.forget()
+        if self.array.h.ci[MCTOT] == 0:
+            self.undo.keep(self.array)  # to be arranged, rounded and given its masses
         moved = arrange(self.array)
         if moved is not None and self._plots is not None:
             self._plots.renumber(moved)
@@ -548,48 +660,75 @@ class Model:
             from udec_ia.output.animate import Animation
 
             self._animation = Animation(self.name)
-        report = Report(lambda: self.h, n, self.progress, self._animation)
+        report = Report(lambda: self.array.h, n, self.progress, self._animation)
         try:
             every = max(1, n // PICTURES) if self.animate else None
-            done = cycle(self.array, n, report, every, self._judge_step, self.laws, watch)
+            done = cycle(
+                self.array,
+                n,
+                report,
+                every,
+                self._judge,
+                self.laws,
+                watch,
+                lambda: self._settle(watch),
+                self._runaway,
+            )
         except BaseException:
+            finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts
                 self._keep(watch)
             raise
         finally:
             report.close()
-        if done > 0:
-            note_cached(self.array.scheme.name)
+        self.undo.release()
         self._keep(watch)
         return done
 
+    def _settle(self, watch: Watch | None) -> None:
+        """The cycles of a run until now are to stay, whatever ends it."""
+        if numba.config.DISABLE_JIT:
+            finish(self.array, watch)
+        self.undo.settle(self)
+
+    @looking
     def step_limits(self) -> str:
         """One line: the time-step of the last CYCLE, its shares of estimate and bound, what sets these.
 
         Estimate and bound are those of the present state, which the cycles since then have made.
         """
-        return describe(self.array)
+        self._ready(sound=self._touched)
+        return describe(self.array, bound(self.array))
 
-    def _judge_step(self) -> None:
-        """Explain the time-step if that is asked for, in the state in which it was found, and judge it.
-
-        If stiffness damping may make it unstable is told once for each damping and step.
-        """
+    def _judge(self) -> None:
+        """Judge the time-step and the materials of a CYCLE; explain the step if that is asked for."""
+        self._runaway.judge(self.array, self.explain_step)
         if self.explain_step:
-            self.inform(describe(self.array))
-        judged = (float(self.h.cr[BETA]), float(self.h.cr[TDEL]))
-        if judged != self._judged:
-            self._judged = judged
-            if text := instability(self.array):
+            self.inform(describe(self.array, self._runaway.safe))
+        self._remark(on_moduli(self.array, self.laws.block_laws))
+
+    def _warn(self, text: str) -> None:
+        self.tell(text)  # not bound beforehand: a monitor changes it
+
+    def _remark(self, remarks: Iterable[str]) -> None:
+        """Tell `remarks`, each once."""
+        for text in remarks:
+            if text not in self._said:
+                self._said = self._said | {text}
                 self.tell(text)
 
     def _keep(self, watch: Watch | None) -> None:
         self._note(self._recorder.keep(watch, self.out / f"{self.name}-history", self.tell))
 
+    def _last_picture(self, kind: str) -> int:
+        """The last number of a picture to be left alone: of the run that this one goes on from, or 0."""
+        return last_number(self.out, self.name + kind) if self._goes_on else 0
+
     def _note(self, files: Iterable[Path]) -> None:
         """Have STOP name `files`, each once."""
         self._files += [path for path in files if path not in self._files]
 
+    @once
     def history(
         self,
         n: int,
@@ -635,18 +774,31 @@ class Model:
 
         return list(check(self.array))
 
+    @staticmethod
+    def check_file(path: str | Path) -> list[Any]:
+        """All violations in the restart file `path`. Error 29 if RESTART would refuse it."""
+        from udec_ia.inspect.check import check
+        from udec_ia.restart import load
+
+        return list(check(load(path).array))
+
+    @looking
     def print(self, *what: str) -> str:
         """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "energy", "histories"."""
         from udec_ia.output.printout import printout
 
-        return printout(self.h, *(word.lower() for word in what), series=self._recorder.series)
+        if any(word.lower() == "energy" for word in what):
+            self._ready(sound=self._touched)
+        return printout(self.array.h, *(word.lower() for word in what), series=self._recorder.series)
 
+    @looking
     def dump(self, n: int, m: int) -> str:
         """DUMP: the words from address n to address m."""
         from udec_ia.output.dump import dump
 
-        return dump(self.h, whole(n=n), whole(m=m))
+        return dump(self.array.h, whole(n=n), whole(m=m))
 
+    @looking
     def plot(
         self,
         n: int | None = None,
@@ -659,11 +811,12 @@ class Model:
         contour: str = "",
         history: bool = False,
         window: tuple[float, float, float, float] | None = None,
-    ) -> list[Path] | None:
-        """PLOT: start a frame (0, also if n is left off) or draw over the last one (1).
+    ) -> list[Path]:
+        """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
         contour: a key of field.CONTOURS. window: range x1, x2, y1, y2 (m) that is shown, or all blocks. With
-        `history`, which stands alone, what was recorded is drawn instead, and the files are returned.
+        `history`, which stands alone, what was recorded is drawn instead. A frame of more than ten states is
+        written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
         """
         from udec_ia.output.plot import Plots, What
 
@@ -674,16 +827,18 @@ class Model:
             if n is not None or what != What():
                 advice = "give PLOT HISTORY for the one, PLOT 0 for the other"
                 raise UdecError(10, "histories are not plotted with blocks", advice, parameter="history")
-            files = self._recorder.plot(self.name, self.out)
+            files = self._recorder.plot(self.name, self.out, self._last_picture("-history"))
             self._note(files)
             return files
 
         self._ready()
         if self._plots is None:
-            self._plots = Plots(self.out, self.name)
-        self._plots.draw(self.h, n or 0, what)
+            self._plots = Plots(self.out, self.name, self._last_picture("-plot"))
+        files = self._plots.draw(self.array.h, n or 0, what)
+        for remark in self._plots.remarks(self.array.h, what):
+            self.inform(remark)
         self._note(self._plots.files)
-        return None
+        return files
 
 
 def _words(mtop: SupportsIndex) -> int:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.ops.history import define, named
 from udec_ia.ops.watch import Series, Solution, Watch
+
+if TYPE_CHECKING:
+    from udec_ia.output.histories import Files
 
 
 class Recorder:
@@ -19,6 +22,7 @@ class Recorder:
         self.series: list[Series] = []
         self.solutions: list[Solution] = []
         self.pictures = 0
+        self._files: Files | None = None
 
     def add(
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
@@ -43,18 +47,29 @@ class Recorder:
         """Write what was recorded to base.csv and base.h5, and tell which groups have gone."""
         if watch is None or not self.series:
             return []
-        from udec_ia.output.histories import write
+        from udec_ia.output.histories import Files
 
         watch.look()
         for one in watch.lost:
             tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
-        return write(self.series, base)
+        if self._files is None or self._files.place != base.absolute():
+            self.close()
+            self._files = Files(base)
+        return self._files.write(self.series)
 
-    def plot(self, name: str, folder: Path) -> list[Path]:
-        """Draw all histories; returns the files. Error 26 if nothing was recorded yet."""
+    def close(self) -> None:
+        """The files of the histories are done."""
+        if self._files is not None:
+            self._files.close()
+
+    def plot(self, name: str, folder: Path, after: int = 0) -> list[Path]:
+        """Draw all histories, with a number greater than `after`; returns the files.
+
+        Error 26 if nothing was recorded yet.
+        """
         from udec_ia.output.graph import draw
 
         if not any(one.last_cycle >= 0 for one in self.series):
             raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")
-        self.pictures += 1
+        self.pictures = max(self.pictures, after) + 1
         return draw(self.series, name, folder / f"{name}-history-{self.pictures}")

@@ -5,10 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+from udec_ia.deck.language import ALSO_CALLED
 from udec_ia.deck.reader import Token
 from udec_ia.errors import UdecError
 
 SHOWN = 40  # characters of a word that are worth repeating
+SUGGESTED = 3  # keywords that begin with what was typed
+ALIKE = 0.65  # share of two words that must agree for one to be taken for the other
 WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
 
 
@@ -29,6 +32,12 @@ def quoted(text: str) -> str:
 
 
 def hint(typed: str, keywords: Iterable[str], advice: str) -> str:
-    """`advice`, behind `did you mean PROPERTY?` if one of `keywords` comes near to what was typed."""
-    near = difflib.get_close_matches(typed[:SHOWN].upper(), [k.upper() for k in keywords], n=1, cutoff=0.5)
-    return f"did you mean {near[0]}? {advice}" if near else advice
+    """`advice`, behind `did you mean PROPERTY?` if one of `keywords` is, or means, nearly what was typed."""
+    word, known = typed[:SHOWN].upper(), [keyword.upper() for keyword in keywords]
+    meant = ALSO_CALLED.get(word) or ALSO_CALLED.get(word.removesuffix("S"), "")
+    near = [name for name in meant.split() if name in known]
+    near = near or [name for name in known if name.startswith(word)][:SUGGESTED]  # not long enough
+    begun = {name[: len(word)]: name for name in reversed(known)} | {name: name for name in known}
+    alike = difflib.get_close_matches(word, begun, n=SUGGESTED, cutoff=ALIKE)
+    near = near or list(dict.fromkeys(begun[one] for one in alike))[:2]
+    return f"did you mean {' or '.join(near)}? {advice}" if near else advice

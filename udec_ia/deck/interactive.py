@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, TextIO
 
 from udec_ia.deck.language import COMMANDS, Command, match
 from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import COMMENT, CONTINUATION, WORD, Reader, Statement
+from udec_ia.deck.reader import CONTINUATION, WORD, Reader, Statement, obeyed
 from udec_ia.errors import UdecError
+from udec_ia.signals import Terminated
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
@@ -32,7 +33,7 @@ HISTORY_LENGTH = 1000
 def converse(model: Model, out: TextIO, ask: Callable[[str], str] = input) -> None:
     """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
 
-    Raises UdecError if STOP itself fails.
+    Raises UdecError if STOP itself fails, and Terminated, after the state has been saved as in a run.
     """
     monitor, typed = Monitor(model, out, echo=False), Typed()
     complete: list[Statement] = []
@@ -48,6 +49,8 @@ def converse(model: Model, out: TextIO, ask: Callable[[str], str] = input) -> No
             if monitor.ended:
                 raise
             print(error, file=out)
+        except Terminated:
+            raise Terminated(monitor.rescue()) from None
         except KeyboardInterrupt:
             typed.flush()
             complete = []
@@ -77,17 +80,19 @@ class Typed:
 
     def read(self, line: str) -> list[Statement]:
         """The commands that are complete with `line`, in order."""
-        word = WORD.search(line)
-        if word is None or line.lstrip().startswith(COMMENT):
+        word = WORD.search(obeyed(line))
+        if word is None:
             self.reader.feed(line)
-            return self.flush() if word is None else []
+            return [] if WORD.search(line) else self.flush()
         marked = line.lstrip().startswith(CONTINUATION)
         if self.reader.pending is None or not (marked or self.asked or self._continued_by(word.group())):
             self.command = match(COMMANDS, word.group())
         elif not marked:
             line = MORE + line.lstrip()
         self.asked = self._asks(line)
-        before = self.reader.feed(line.rstrip().removesuffix(CONTINUATION).rstrip() if self.asked else line)
+        if self.asked:
+            line = obeyed(line).rstrip().removesuffix(CONTINUATION).rstrip()
+        before = self.reader.feed(line)
         complete = [] if before is None else [before]
         if self.asked or (self.command is not None and self.command.extends):
             return complete
@@ -109,7 +114,7 @@ class Typed:
         """True if `line` ends with a `+` that is not part of a text, such as the name of a file."""
         if self.command is not None and self.command.text:
             return False
-        return line.rstrip().endswith(CONTINUATION) and line.strip() != CONTINUATION
+        return obeyed(line).rstrip().endswith(CONTINUATION) and obeyed(line).strip() != CONTINUATION
 
 
 def history_file() -> Path:

@@ -273,11 +273,12 @@ COMMANDS = (
     ),
     Command(
         "PLot",
-        "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. On request also "
-        "contacts with their forces, domains, addresses, principal stresses, velocities, displacements since "
-        "the frame began (so with PLOT 1), and deformable blocks coloured by a stress (11, 12, 22), pressure "
-        "or shear stress. "
-        "WINDOW is the range that the picture shows. HISTORY alone plots what was recorded instead.",
+        "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. The picture is written "
+        "at once, one of more than ten states when it has grown by a quarter and when it ends. On request "
+        "also contacts with their forces, domains, addresses, principal stresses, velocities, displacements "
+        "since the frame began (so with PLOT 1), and deformable blocks coloured by a stress (11, 12, 22), "
+        "pressure or shear stress. WINDOW is the range that the picture shows. HISTORY alone plots what was "
+        "recorded instead.",
         "PLOT 0 CONTACTS",
         optional="n",
         words=(
@@ -374,7 +375,8 @@ COMMANDS = (
     ),
     Command(
         "SAve",
-        "Save the state on the restart file: restart.h5 in the folder for files (--out) if it is not named.",
+        "Save the state on the restart file: restart.h5 in the folder for files (--out) if it is not named. "
+        "It may replace a restart file, and nothing else.",
         "SAVE slope.h5",
         text="path",
         ours="the name of the file",
@@ -399,6 +401,69 @@ COMMANDS = (
     Command("STArt", "Start from nothing.", "START", opens=True),
     Command("Stop", "End the run.", "STOP", opens=True),
 )
+
+# What other programs and other people call these things. The parser does not take the words, but an error
+# that one of them raises names ours.
+ALSO_CALLED = {
+    "?": "HELP",
+    "ANGLE": "FRICTION",
+    "BEGIN": "START",
+    "BYE": "STOP",
+    "CONTINUE": "CYCLE RESTART",
+    "CRACK": "SPLIT",
+    "CUT": "SPLIT",
+    "DEFORMABLE": "SDEF FDEF",
+    "DRAW": "PLOT",
+    "DT": "FRACTION",
+    "E": "BULK G",
+    "ERASE": "DELETE",
+    "EXIT": "STOP",
+    "FORCE": "BOUNDARY CONTACTS KCFN KBFX",
+    "GO": "CYCLE",
+    "INFO": "PRINT HELP",
+    "JFRICTION": "FRICTION",
+    "JKN": "KN",
+    "JKS": "KS",
+    "JOINT": "SPLIT",
+    "JSET": "SPLIT",
+    "KILL": "DELETE",
+    "LIST": "PRINT",
+    "LOAD": "BOUNDARY RESTART",
+    "LOG": "HISTORY",
+    "MAN": "HELP",
+    "MAT": "PROPERTY",
+    "MATERIAL": "PROPERTY",
+    "MESH": "GENERATE",
+    "MU": "FRICTION",
+    "NEW": "START",
+    "NU": "BULK G",
+    "OPEN": "RESTART",
+    "PHI": "FRICTION",
+    "POISSON": "BULK G",
+    "POLYGON": "BLOCK",
+    "QUIT": "STOP",
+    "RECORD": "HISTORY",
+    "REMOVE": "DELETE",
+    "RHO": "DENSITY",
+    "RUN": "CYCLE",
+    "SET": "GRAVITY DAMPING FRACTION",
+    "SHEAR": "G",
+    "SHOW": "PRINT",
+    "STEP": "CYCLE",
+    "STRESS": "BOUNDARY INSITU KZS11 KS111",
+    "SXX": "STRESS",
+    "TENSION": "BTENSION",
+    "TIMESTEP": "FRACTION",
+    "VELOCITY": "BOUNDARY XVEL YVEL KXD KYD",
+    "VIEW": "PLOT",
+    "WRITE": "SAVE",
+    "X": "KX KXG",
+    "XVEL": "KXD KXDG",
+    "Y": "KY KYG",
+    "YOUNG": "BULK G",
+    "YVEL": "KYD KYDG",
+    "ZONE": "GENERATE",
+}
 
 
 def required(keyword: str) -> str:

@@ -7,10 +7,11 @@ in a run the state is then saved, so that nothing that was computed is lost.
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -21,6 +22,8 @@ from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.errors import UdecError
+from udec_ia.printable import printable
+from udec_ia.signals import hold, passing, poll
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
@@ -56,19 +59,26 @@ class Monitor:
     def run(self, lines: Iterable[str], file: str) -> None:
         """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
 
-        Raises UdecError at the first error, and KeyboardInterrupt, after the state has been saved. The
-        restart file is named by UdecError.saved, and by the argument of KeyboardInterrupt.
+        Whatever ends it, the state is saved before: UdecError.saved, the argument of KeyboardInterrupt and
+        a note to any other exception name the restart file.
         """
         try:
-            for statement in statements(lines, file):
-                self.obey(statement)
-                if self.ended:
-                    return
+            with hold():
+                for statement in statements(_awaited(lines), file):
+                    self.obey(statement)
+                    if self.ended:
+                        return
+                    poll()
         except UdecError as error:
-            error.saved = self._rescue(sound=error.number != DAMAGED)
+            error.saved = self.rescue(sound=error.number != DAMAGED)
             raise
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(self._rescue()) from None
+        except KeyboardInterrupt as interrupt:
+            raise type(interrupt)(self.rescue()) from None
+        except BrokenPipeError:
+            raise
+        except Exception as failure:  # of ours, or of a function of the user's
+            failure.add_note(f"what was computed is saved in {self.rescue()}")
+            raise
 
     def obey(self, statement: Statement) -> None:
         """Echo and obey one statement. Raises UdecError with its place."""
@@ -82,7 +92,10 @@ class Monitor:
         if not (call.command.opens or self.model.started):
             raise at(UdecError(3, f"this is {name.upper()}"), call.head)
         try:
-            result = self._carry_out(call)
+            result = self.model.whole(lambda: self._carry_out(call, statement))
+        except MemoryError as error:
+            advice = "take a smaller model, or a machine with more memory; nothing was changed"
+            raise at(UdecError(1, "this machine has no memory left", advice), call.head) from error
         except UdecError as error:
             raise at(error, call.place_of(error)) from error.__cause__
         except BrokenPipeError:
@@ -91,11 +104,8 @@ class Monitor:
             refused = UdecError(31, f"{error.strerror or error}: {error.filename or name}")
             raise at(refused, call.place_of(refused)) from error
         if name in COUNTED and isinstance(result, int):
-            self._write(counted(name, result, self.model))
+            self._write(counted(call, result, self.model))
         self._show(result)
-        self.model.deck_log += [
-            line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
-        ]
 
     def stop(self) -> None:
         """End the run, as STOP does, if a run was started and has not been ended.
@@ -113,8 +123,15 @@ class Monitor:
             raise
         self._show(last)
 
-    def _carry_out(self, call: Call) -> object:
-        """Obey `call`; what is returned is to be shown."""
+    def _carry_out(self, call: Call, statement: Statement) -> object:
+        """Obey `call` and log its lines; what is returned is to be shown."""
+        result = self._call(call)
+        self.model.deck_log += [
+            line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
+        ]
+        return result
+
+    def _call(self, call: Call) -> object:
         name = call.command.name
         if name in ("stop", "end"):
             self.ended = True
@@ -136,7 +153,7 @@ class Monitor:
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
         if isinstance(result, Path):
-            self._write(f"written: {result}")
+            self._write(f"written: {printable(str(result))}")
         elif isinstance(result, list):
             for one in result:
                 self._show(one)
@@ -147,22 +164,40 @@ class Monitor:
         self.out.write(text + "\n")
         self.out.flush()
 
-    def _rescue(self, *, sound: bool = True) -> str | None:
+    def rescue(self, *, sound: bool = True) -> str | None:
         """Save the state if it is sound, and end the run. Returns the name of the restart file.
 
-        A failure here must not hide what has gone wrong before.
+        The file is read again and proved before it is named. A failure here must not hide what has gone wrong
+        before; Ctrl-C waits for the file, and then only has the pictures left out.
         """
         if not self.model.started:
             return None
         saved = None
-        if sound:
-            try:
-                saved = str(self.model.save((self.model.out / RESCUE).absolute()))
-            except Exception as failure:
-                self._write(f"the state could not be saved: {failure}")
-        with suppress(Exception):  # stop has told it
-            self.stop()
+        with suppress(Exception, KeyboardInterrupt), hold():
+            if sound:
+                try:
+                    saved = self._proved(self.model.save((self.model.out / RESCUE).absolute()))
+                except Exception as failure:
+                    self._write(f"the state could not be saved: {failure}")
+            self.stop()  # which tells what it cannot write
         return saved
+
+    def _proved(self, path: Path) -> str:
+        """The name of the restart file `path`, which RESTART takes; says what else is wrong in it."""
+        for violation in self.model.check_file(path)[:1]:
+            self._write(f"the state that is saved is there to be looked at: {violation}")
+        return str(path)
+
+
+def _awaited(lines: Iterable[str]) -> Iterator[str]:
+    """`lines`, for which it may take long to come: they can be interrupted."""
+    source = iter(lines)
+    while True:
+        with passing():
+            line = next(source, None)
+        if line is None:
+            return
+        yield line
 
 
 def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
@@ -173,11 +208,19 @@ def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
     """
     monitor = Monitor(model, out)
     if isinstance(deck, Path) or os.path.isfile(deck) or _names_a_file(deck):
-        with open(deck, encoding="utf-8-sig", errors="replace") as lines:
+        with _opened(deck) as lines:
             monitor.run(lines, str(deck))
     else:
         monitor.run(io.StringIO(deck, newline=None), "text")
     return monitor
+
+
+def _opened(deck: str | Path) -> TextIO:
+    """The file `deck`. A name that no file can have, with a NUL in it, is that of no file."""
+    try:
+        return open(deck, encoding="utf-8-sig", errors="replace")
+    except ValueError as error:
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(deck)) from error
 
 
 def _names_a_file(text: str) -> bool:
@@ -187,10 +230,12 @@ def _names_a_file(text: str) -> bool:
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def counted(name: str, n: int, model: Model) -> str:
-    """One line on what the command `name`, which returned `n`, has done."""
+def counted(call: Call, n: int, model: Model) -> str:
+    """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
+    name = call.command.name
     if n == 0:
-        return f" {name.upper()}: {NONE.get(name, 'no block in range')}"
+        reason = model.why_none(name, *call.positional)
+        return f" {name.upper()}: {NONE.get(name, 'no block in range')}: {reason}"
     now = f", {model.h.ci[NBLK]} blocks now" if name in ("split", "delete") else ""
     what, _, done = COUNTED[name].partition(" ")
     return f" {name.upper()}: {n} {what}{'s' if n > 1 else ''} {done}{now}"

@@ -14,14 +14,18 @@ from typing import Any
 
 from udec_ia.deck.advice import at, hint, quoted
 from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word, match
-from udec_ia.deck.reader import CONTINUATION, Line, Statement, Token
+from udec_ia.deck.reader import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token
 from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
+QUOTED = re.compile(rf"""((['"]).*?\2)\s*({REMARK.pattern}.*)?$""")
+APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
 ALONE = "no command to continue stands before this line; at a terminal, end the line of the command with +"
+NO_COMMENT = "a comment behind a command begins with ; # or !, with * only on a line of its own"
+NO_WORD = "a line begins with a command, or with + if it continues the one before"
 CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
 
 
@@ -46,16 +50,18 @@ def parse(statement: Statement) -> Call:
     command = match(COMMANDS, head.text)
     if command is None and head.text.startswith(CONTINUATION):
         raise at(UdecError(2, quoted(head.text), ALONE), head)
+    if command is None and NUMBER.fullmatch(head.text):
+        raise at(UdecError(2, quoted(head.text), NO_WORD), head)
     if command is None:
         advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
         raise at(UdecError(2, quoted(head.text), advice), head)
     return _Parser(command, statement.tokens).parse()
 
 
-def number(token: Token, name: str) -> int | float:
+def number(token: Token, name: str, advice: str) -> int | float:
     """The value of the number `name` that is spelt by `token`. Raises UdecError 10 or 28 there."""
     if not NUMBER.fullmatch(token.text):
-        raise at(UdecError(10, f"{quoted(token.text)} is not a number"), token)
+        raise at(UdecError(10, f"{quoted(token.text)} is not a number", advice), token)
     if name[0] in INTEGER_NAMES:
         if not INTEGER.fullmatch(token.text):
             raise at(
@@ -86,6 +92,9 @@ class _Parser:
         if command.text:
             self._text()
             return self.call
+        for given in self.tokens[1:]:
+            if given.text.startswith(COMMENTS[0]):
+                raise at(UdecError(10, quoted(given.text), NO_COMMENT), given)
         for name in command.numbers.split():
             self._positional(name)
         for name in command.optional.split():
@@ -127,23 +136,25 @@ class _Parser:
     def _text(self) -> None:
         """Take the rest of the line as it stands: names of files may hold separators."""
         line, end = self.tokens[0].line, self.tokens[0].end - 1
-        text = line.text[end:].lstrip(" \t=")
-        place = Token(text.rstrip(), line, len(line.text) - len(text) + 1)
+        rest = line.text[end:].lstrip(" \t=")
+        whole = QUOTED.match(rest)
+        text = whole.group(1) if whole else APART.split(rest, maxsplit=1)[0]
+        place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
         if place.text:
             self.call.named[self.command.text] = place.text.strip("\"'")
             self.call.places[self.command.text] = place
 
-    def _number(self, name: str, missing: int = 7, line: Line | None = None) -> int | float:
-        """Read the number `name`; error `missing` if there is none, or if it is not on `line`."""
+    def _number(self, name: str, missing: int = 7, line: Line | None = None, advice: str = "") -> int | float:
+        """Read the number `name`; error `missing` if there is none, and with `advice` on the same `line`."""
         token = self._next()
         if token is None or match(self.command.words, token.text) or line not in (None, token.line):
             last = self.tokens[self.read - 1].text
             detail = f"number {name} is missing after {quoted(last)}"
-            raise at(UdecError(missing, detail, "" if line else self._advice()), self._gap())
+            raise at(UdecError(missing, detail, advice if line else self._advice()), self._gap())
         self.read += 1
-        return number(token, name)
+        return number(token, name, self._advice())
 
     def _positional(self, name: str) -> None:
         self.call.positional.append(self._number(name))
@@ -165,7 +176,9 @@ class _Parser:
         while not found or self._at_number():
             values = [self._number(first)]
             line = self.tokens[self.read - 1].line
-            values += [self._number(name, CUT_SHORT[len(names.split())], line) for name in others]
+            missing = CUT_SHORT[len(names.split())]
+            advice = f"{first} and {others[0]} must stand on one line" if missing == 8 else ""
+            values += [self._number(name, missing, line, advice) for name in others]
             found.append(tuple(values))
         return found
 
@@ -178,6 +191,9 @@ class _Parser:
         allowed = [word for word in self.command.words if word.argument == self.command.first]
         if match(allowed, token.text) is not None:
             return
+        if NUMBER.fullmatch(token.text) and allowed[0].values:
+            detail = f"{quoted(token.text)} stands where {allowed[0].form} should"
+            raise at(UdecError(10, detail, self._advice()), token)
         if self.command.first_error == 10 and match(self.command.words, token.text) is not None:
             detail = f"{self.command.first.upper()} is missing before {quoted(token.text)}"
             raise at(UdecError(7, detail, self._advice()), self._gap())

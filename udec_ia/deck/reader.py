@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
-COMMENT = "*"
+COMMENTS = "*;#!"  # a line that begins with one of them is a comment
+REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, being of 1980
 CONTINUATION = "+"
 
 
@@ -55,9 +56,16 @@ class Statement:
     tokens: list[Token] = field(default_factory=list)
 
 
+def obeyed(text: str) -> str:
+    """What there is to obey in a line: all but its comment."""
+    return "" if text.lstrip()[:1] in tuple(COMMENTS) else REMARK.split(text, 1)[0]
+
+
 def tokens(line: Line, start: int = 0) -> list[Token]:
     """The words and numbers of `line` from the character `start` on."""
-    return [Token(found.group(), line, found.start() + 1) for found in WORD.finditer(line.text, start)]
+    return [
+        Token(found.group(), line, found.start() + 1) for found in WORD.finditer(obeyed(line.text), start)
+    ]
 
 
 class Reader:
@@ -77,12 +85,11 @@ class Reader:
         """Read one line. Returns the command before it if the line shows that it is complete."""
         self._number += 1
         line = Line(self.file, self._number, text)
-        first = text.lstrip()[:1]
-        if first == COMMENT or not WORD.search(text):
+        if not WORD.search(obeyed(text)):
             self._held.append(line)
             return None
         complete = None
-        if first == CONTINUATION and self.pending is not None:
+        if text.lstrip().startswith(CONTINUATION) and self.pending is not None:
             self.pending.lines += [*self._held, line]
             self.pending.tokens += tokens(line, text.index(CONTINUATION) + 1)
         else:

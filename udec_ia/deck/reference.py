@@ -26,8 +26,11 @@ A deck is a text file with one command to a line. The language is that of the re
   others are reals, which may be given as integers. `0.5`, `.5`, `5.`, `1.E08` and `1D8` are reals.
 - `[ ]` encloses what may be left off, `|` separates alternatives, `...` means that more of the same follows.
 - Parameters are separated by blanks or any of `= ( ) , /`.
-- A line that begins with `*` is a comment. A line that begins with `+` continues the one before it, but the
-  numbers of a pair or triple must stand on one line.
+- A line that begins with `*`, `;`, `#` or `!` is a comment, and so is what follows a `;`, `#` or `!` in any
+  other line. In the name of a file these three belong to the name, unless a blank stands before them and the
+  name is not in quotes.
+- A line that begins with `+` continues the one before it, but the numbers of a pair or triple must stand on
+  one line.
 - At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
   with `...` in their form ask for more by themselves, until an empty line or the next command. A line that
   continues them with a word that is a command, too, needs a `+` before it: `G` is GRAVITY, `GRID` is not.

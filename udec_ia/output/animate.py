@@ -6,14 +6,16 @@ dropped and from then on only every second one is kept, so the pictures stay eve
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from offsets.generated import MCTOT
+from udec_ia.files import put_in_place
 from udec_ia.heap.accessors import Memory
-from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for
+from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title
 from udec_ia.output.outline import State, snapshot
 
 if TYPE_CHECKING:
@@ -46,13 +48,12 @@ class Animation:
             self.stride *= 2
 
     def save(self, path: Path, h: Memory) -> Path:
-        """Write the GIF, with the present state as its last picture; returns `path`."""
+        """Write the GIF, the present state as its last picture; returns `path`. Error 31 if that fails."""
         from matplotlib import rc_context
         from PIL import Image
 
         if not self.states or self.states[-1].cycle != h.ci[MCTOT]:
             self.states.append(snapshot(h))
-        path.parent.mkdir(parents=True, exist_ok=True)
         box = limits(self.states)
         inches = SHRINK * scale_for(box, 0.0)
         with rc_context({"hatch.linewidth": HATCH_WIDTH}):
@@ -60,14 +61,16 @@ class Animation:
         palette = pictures[-1].quantize(COLOURS, Image.Quantize.FASTOCTREE)
         frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
         times = [TICK] * (len(frames) - 1) + [PAUSE]
-        frames[0].save(path, save_all=True, append_images=frames[1:], duration=times, loop=0)
+        image = io.BytesIO()
+        frames[0].save(image, "GIF", save_all=True, append_images=frames[1:], duration=times, loop=0)
+        put_in_place(path, image.getvalue(), force=False)
         return path
 
     def _picture(self, state: State, box: tuple[float, float, float, float], inches: float) -> Picture:
         from PIL import Image
 
         figure, axes = paper(box, inches)
-        axes.set_title(self.name, loc="left", fontsize=10, color=INK)
+        title(axes, self.name)
         axes.set_title(f"cycle {state.cycle}, t = {state.time:.3f} s", loc="right", fontsize=9, color=INK)
         draw_blocks(axes, [state], inches)
         figure.dpi = DPI

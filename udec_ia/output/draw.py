@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.output.outline import Contacts, Domain, Outlines, State, beside_corners, curves
+from udec_ia.printable import printable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,7 @@ ROCKS = ("#ecdfc4", "#c9d6c5", "#d9c9d3", "#c7d5e0", "#e6cdb8", "#d5d3ae", "#cdc
 TINTS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#a6761d")
 FORCE = "#b3261e"
 PIECE = 2000  # blocks in one compound path
-LEGIBLE = 16.0  # points that a block must measure to be given its address
+LEGIBLE = 16.0  # points that a block or domain must measure to be given its address
 ROOMY = 90.0  # points that it must measure to be given those of its corners
 
 
@@ -78,6 +79,19 @@ def paper(
     for spine in axes.spines.values():
         spine.set(linewidth=0.6, color="#8a857c")
     return figure, axes
+
+
+def title(axes: Axes, name: str) -> None:
+    """Write the name of the run over the picture, as it stands: a $ in it begins no formula."""
+    axes.set_title(drawable(name), loc="left", fontsize=10, color=INK, parse_math=False)
+
+
+def drawable(name: str) -> str:
+    """`name` with a ? for each character that the font of pictures does not have."""
+    from matplotlib.font_manager import FontProperties, findfont, get_font
+
+    font = get_font(findfont(FontProperties()))
+    return "".join(c if font.get_char_index(ord(c)) else "?" for c in printable(name))
 
 
 def draw_blocks(axes: Axes, states: list[State], inches: float) -> None:
@@ -217,9 +231,9 @@ def draw_contacts(
             )
 
 
-def draw_domains(axes: Axes, domains: tuple[Domain, ...]) -> None:
-    """Domains, tinted and named by their addresses; the outer one has no inside that could be tinted."""
-    from matplotlib.patches import Polygon
+def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None:
+    """Domains, tinted, and named by their addresses where there is room; the outer one has no inside."""
+    from matplotlib.collections import PolyCollection
 
     label = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
     style: dict[str, Any] = {
@@ -230,12 +244,14 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...]) -> None:
         "bbox": label,
         "clip_on": True,
     }
-    for i, domain in enumerate(domains):
-        if not domain.outer:
-            tint = TINTS[i % len(TINTS)]
-            axes.add_patch(
-                Polygon(domain.polygon, facecolor=(tint, 0.35), edgecolor=tint, linewidth=1.2, zorder=3)
-            )
+    inner = [(domain, TINTS[i % len(TINTS)]) for i, domain in enumerate(domains) if not domain.outer]
+    faces, edges = [(tint, 0.35) for _, tint in inner], [tint for _, tint in inner]
+    polygons = [domain.polygon for domain, _ in inner]
+    axes.add_collection(
+        PolyCollection(polygons, facecolors=faces, edgecolors=edges, linewidths=1.2, zorder=3)
+    )
+    for domain, tint in inner:
+        if np.ptp(domain.polygon, axis=0).max() * inches / POINT > LEGIBLE:
             axes.text(*_middle(domain.polygon), str(domain.address), color=tint, **style)
 
 

@@ -2,7 +2,7 @@
 
 The words alone do not say what they are: only four of the eight kinds of group carry a head code. But
 every live group can be reached from the list heads, and the field table says which kind of group each
-pointer leads to. So all groups are typed by following all pointers at once, wave by wave; what no pointer
+pointer leads to. So all groups are typed by following all pointers from the list heads; what no pointer
 leads to is either on the junk list, or not linked at all. Nothing is trusted: a pointer that leads nowhere
 is not followed, so a damaged heap is dumped like any other.
 """
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import offsets.generated as g
-from offsets.table import Field, lay_out, read_table
+from offsets.table import Field, Group, lay_out, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
@@ -50,56 +50,57 @@ def dump(h: Memory, n: int, m: int) -> str:
     return "\n".join(lines) + "\n"
 
 
+class Shape(NamedTuple):
+    """What groups of one kind look like in a word scheme: words, head codes, pointers with their targets."""
+
+    size: int
+    heads: tuple[int, ...]
+    pointers: list[tuple[int, str]]
+
+
 def reach(h: Memory) -> dict[str, Any]:
     """Addresses of the groups that pointers lead to, by kind, each an ascending array."""
-    seen = np.zeros(int(h.ci[g.MFREE]) + 1, bool)
-    found: dict[str, list[Any]] = {group.name: [] for group in TABLE.groups}
+    read, top, ratio = h.ia.item, int(h.ci[g.MFREE]), _ratio(h)
+    shapes = {group.name: _shape(group, ratio) for group in TABLE.groups}
+    found: dict[str, list[int]] = {kind: [] for kind in shapes}
+    seen = bytearray(top + 1)
     heads = [field for field in TABLE.common if field.role == "head" and field.target]
-    wave = [(h.ci[[getattr(g, field.name)]], str(field.target)) for field in heads]
-    while wave:
-        ahead: list[tuple[Any, str]] = []
-        for addresses, target in wave:
-            for kind in ("corner", "contact") if target == "item" else (target,):
-                new = _arrivals(h, addresses, kind, seen)
-                if len(new):
-                    found[kind].append(new)
-                    ahead += _pointers(h, new, kind)
-        wave = ahead
-    return {kind: np.sort(np.concatenate([np.zeros(0, np.int64), *parts])) for kind, parts in found.items()}
+    ahead = [(int(h.ci[getattr(g, field.name)]), str(field.target)) for field in heads]
+    while ahead:
+        iad, kind = ahead.pop()
+        if not 1 <= iad < top or seen[iad] or (iad - 1) % ratio:
+            continue
+        head = read(iad - 1)
+        if kind == "item":
+            kind = "corner" if head in HEADS["corner"] else "contact"
+        shape = shapes[kind]
+        if iad + shape.size > top or (shape.heads and head not in shape.heads):
+            continue
+        seen[iad] = True
+        found[kind].append(iad)
+        for offset, target in shape.pointers:
+            to = read(iad + offset - 1)
+            if to and target != "soft":
+                ahead.append((to, target))
+            elif to and head in SOFT:  # the owner's head code says what its extension is
+                ahead.append((to, SOFT[head]))
+    return {kind: np.sort(np.array(addresses, np.int64)) for kind, addresses in found.items()}
 
 
 def _ratio(h: Memory) -> int:
     return int(h.ra.itemsize // h.ia.itemsize)
 
 
-def _arrivals(h: Memory, addresses: Any, kind: str, seen: Any) -> Any:
-    """Those of `addresses` where a group of `kind` lies that was not seen yet; marks them as seen."""
-    size = lay_out(TABLE.group(kind), _ratio(h)).size
-    possible = (addresses >= 1) & (addresses + size <= h.ci[g.MFREE]) & ((addresses - 1) % _ratio(h) == 0)
-    new = np.unique(addresses[possible])
-    new = new[~seen[new]]
-    if kind in HEADS:
-        new = new[np.isin(h.ia[new - 1], HEADS[kind])]
-    seen[new] = True
-    return new
-
-
-def _pointers(h: Memory, addresses: Any, kind: str) -> list[tuple[Any, str]]:
-    """For every pointer field of a kind: the addresses it holds in these groups, and what it leads to."""
-    group = TABLE.group(kind)
-    offset = lay_out(group, _ratio(h)).offset
-    found: list[tuple[Any, str]] = []
-    for field in group.fields:
-        if field.target == "any":
-            continue  # what may be of any kind is reached by its own lists
-        for i in range(field.count if field.target else 0):
-            values = h.ia[addresses + offset[field.name] + i - 1].astype(np.int64)
-            if field.target == "soft":  # the owner's head code says what its extension is
-                heads = h.ia[addresses - 1]
-                found += [(values[heads == code], extension) for code, extension in SOFT.items()]
-            else:
-                found.append((values, str(field.target)))
-    return found
+def _shape(group: Group, ratio: int) -> Shape:
+    """What groups of a kind look like. What may be of any kind is reached by its own lists, not from here."""
+    layout = lay_out(group, ratio)
+    pointers = [
+        (layout.offset[field.name] + i, str(field.target))
+        for field in group.fields
+        if field.target and field.target != "any"
+        for i in range(field.count)
+    ]
+    return Shape(layout.size, HEADS.get(group.name, ()), pointers)
 
 
 def _junk(h: Memory) -> list[Span]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.ops.watch import Series
-from udec_ia.output.draw import INK
+from udec_ia.output.draw import INK, drawable
+from udec_ia.output.picture import write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,20 +28,17 @@ KEY_WIDTH = 2.3  # inches for the keys on the right
 SAID = 10  # curves of a panel that the key names
 MARKED = 60  # numbers below which each is marked by a point
 COLOURS = ("#1f6f8b", "#c8553d", "#588b3c", "#7a5ba6", "#b8860b", "#3a4f7a", "#a23b72", "#5f6b6d")
-DPI = 150
 
 
 def draw(series: Sequence[Series], name: str, base: Path) -> list[Path]:
-    """Draw all of `series` to base.png and base.svg; returns both paths. name: title of the picture."""
+    """Draw all of `series` to base.png and base.svg; returns both paths. name: title of the picture.
+
+    Error 31 if they cannot be written.
+    """
     from matplotlib import rc_context
 
-    base.parent.mkdir(parents=True, exist_ok=True)
-    paths = [base.with_name(f"{base.name}.{kind}") for kind in ("png", "svg")]
     with rc_context({"svg.hashsalt": "udec"}):
-        picture = figure(series, name)
-        for path in paths:
-            picture.savefig(path, dpi=DPI, metadata={"Date": None} if path.suffix == ".svg" else None)
-    return paths
+        return write(figure(series, name), base)
 
 
 def figure(series: Sequence[Series], name: str) -> Figure:
@@ -66,7 +64,7 @@ def figure(series: Sequence[Series], name: str) -> Figure:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("time (s)", fontsize=9, color=INK)
-    picture.text(left / size[0], 1 - 0.3 / size[1], name, fontsize=10, color=INK)
+    picture.text(left / size[0], 1 - 0.3 / size[1], drawable(name), fontsize=10, color=INK, parse_math=False)
     return picture
 
 

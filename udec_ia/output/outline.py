@@ -97,7 +97,7 @@ def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: b
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     return State(
         int(h.ci[g.MCTOT]),
-        float(h.cr[g.TIME]),
+        float(h.cd[g.TIME]),
         outlines(h),
         contact_forces(h) if contacts else None,
         tuple(domain_polygons(h)) if domains else (),

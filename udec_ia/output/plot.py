@@ -1,9 +1,10 @@
 """PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
 
-PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for; a
-frame is written when the next one starts or the run ends. A block is drawn again only when it has moved
-visibly: what stands still has the colour of its material, what moves gets a shade for each state, the darker
-the later.
+PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
+picture is written at once, PLOT 1 writes it anew. A frame of many states is written whenever it has grown by
+a quarter, and when it ends: so that a frame of n states takes a time in proportion to n. A block is drawn
+again only when it has moved visibly: what stands still has the colour of its material, what moves gets a
+shade for each state, the darker the later.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from udec_ia.output.draw import (
     limits,
     paper,
     scale_for,
+    title,
 )
 from udec_ia.output.draw_field import (
     LONGEST,
@@ -37,6 +39,7 @@ from udec_ia.output.draw_field import (
     draw_zones,
 )
 from udec_ia.output.outline import State, snapshot
+from udec_ia.output.picture import write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +47,9 @@ if TYPE_CHECKING:
 
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
 KEY_WIDTH = 1.55  # inches for the key on the right
-DPI = 150
+AT_ONCE = 10  # states up to which each one is drawn at once
+RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
+GROWTH = 1.25  # of a frame that has more
 
 
 @dataclass(frozen=True)
@@ -91,17 +96,24 @@ def _check_window(window: tuple[float, float, float, float] | None) -> None:
 
 
 class Plots:
-    """The frames of a run: files NAME-plot-1.png, NAME-plot-1.svg, NAME-plot-2.png ... in `folder`."""
+    """The frames of a run: files NAME-plot-1.png, NAME-plot-1.svg, NAME-plot-2.png ... in `folder`.
 
-    def __init__(self, folder: Path, name: str) -> None:
+    files: those that are written, each once. frame: the one that is open, number `count`. after: the last
+    number that is taken.
+    """
+
+    def __init__(self, folder: Path, name: str, after: int = 0) -> None:
         self.folder = folder
         self.name = name
         self.files: list[Path] = []
-        self.count = 0
+        self.count = after
         self.frame: Frame | None = None
 
-    def draw(self, h: Memory, n: int = 0, what: What = BARE) -> None:
-        """PLOT n: start a frame with the present state (0), or draw it over the last one (1)."""
+    def draw(self, h: Memory, n: int = 0, what: What = BARE) -> list[Path]:
+        """PLOT n: start a frame with the present state (0), or draw it over the last one (1).
+
+        Returns the files that were written; none if the frame has many states and waits for more.
+        """
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
@@ -109,9 +121,21 @@ class Plots:
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
-        shown = self.frame.what.with_more(what)
-        inside = bool(h.ci[g.NSOFT]) or shown.velocities or shown.displacements
-        self.frame.add(snapshot(h, what.contacts, what.domains, inside), what, float(h.cr[g.PSCALE]))
+            self.count += 1
+        state = snapshot(h, what.contacts, what.domains, inside=True)  # PLOT 1 may ask for displacements
+        self.frame.add(state, what, float(h.cr[g.PSCALE]))
+        return self._write(self.frame) if self.frame.due else []
+
+    def remarks(self, h: Memory, what: What) -> list[str]:
+        """What is to be said of the last PLOT, which asked for `what`: why something is not to be seen."""
+        said = []
+        if self.frame is not None and self.frame.written < len(self.frame.states):
+            said.append(f"{len(self.frame.states)} states, drawn with the next ones or when the frame ends")
+        if what.displacements and self.frame is not None and len(self.frame.states) == 1:
+            said.append("displacements count from here on: PLOT 1 DISPLACEMENTS draws them")
+        if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
+            said.append(RIGID)
+        return said
 
     def renumber(self, moved: Any) -> None:
         """Groups have moved (heap.relocate): the open frame goes on with their new addresses."""
@@ -119,19 +143,23 @@ class Plots:
             self.frame.states = [state.renumbered(moved) for state in self.frame.states]
 
     def close(self) -> list[Path]:
-        """Write the frame that is open, if any; returns the files written by now."""
-        if self.frame is not None:
-            self.files += self.frame.save(self.folder / f"{self.name}-plot-{self.count + 1}")
-            self.count += 1
-            self.frame = None
+        """End the frame that is open, if any; returns all files written by now."""
+        if self.frame is not None and self.frame.written < len(self.frame.states):
+            self._write(self.frame)
+        self.frame = None
         return self.files
+
+    def _write(self, frame: Frame) -> list[Path]:
+        paths = frame.save(self.folder / f"{self.name}-plot-{self.count}")
+        self.files += [path for path in paths if path not in self.files]
+        return paths
 
 
 class Frame:
     """States of the block system that are drawn over each other.
 
     what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
-    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture.
+    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its files.
     """
 
     def __init__(self, name: str) -> None:
@@ -139,6 +167,12 @@ class Frame:
         self.scale = 0.0
         self.what = BARE
         self.states: list[State] = []
+        self.written = 0
+
+    @property
+    def due(self) -> bool:
+        """True if the frame is to be written before there is more of it."""
+        return len(self.states) <= AT_ONCE or len(self.states) >= GROWTH * self.written
 
     def add(self, state: State, what: What = BARE, scale: float = 0.0) -> None:
         """Draw one more state over those before it, at the plot scale now in force."""
@@ -147,15 +181,12 @@ class Frame:
         self.scale = scale
 
     def save(self, base: Path) -> list[Path]:
-        """Write base.png and base.svg; returns both paths."""
+        """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
         from matplotlib import rc_context
 
-        base.parent.mkdir(parents=True, exist_ok=True)
-        paths = [base.with_name(f"{base.name}.{kind}") for kind in ("png", "svg")]
         with rc_context({"svg.hashsalt": "udec", "hatch.linewidth": HATCH_WIDTH}):
-            figure = self.figure()
-            for path in paths:
-                figure.savefig(path, dpi=DPI, metadata={"Date": None} if path.suffix == ".svg" else None)
+            paths = write(self.figure(), base)
+        self.written = len(self.states)
         return paths
 
     def figure(self) -> Figure:
@@ -166,11 +197,11 @@ class Frame:
         key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour))
         figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
         last = self.states[-1]
-        axes.set_title(self.name, loc="left", fontsize=10, color=INK)
+        title(axes, self.name)
         axes.set_title(f"cycle {last.cycle}, t = {last.time:.4g} s", loc="right", fontsize=9, color=INK)
         draw_blocks(axes, self.states, inches)
         for state in self.states:
-            draw_domains(axes, state.domains)
+            draw_domains(axes, state.domains, inches)
             if state.contacts is not None:
                 draw_contacts(axes, state.contacts, self.what.addresses, box)
         if self.what.addresses:
@@ -185,12 +216,12 @@ class Frame:
         shown = self.states[-1].outlines
         if now is None:
             return []
-        if what.contour:
+        if what.contour and len(now.stress):
             key = KEY_WIDTH if len(self.states) > 1 else 0.0  # to the states, in inches
             draw_contours(axes, now, shown, what.contour, key * axes.figure.dpi / axes.bbox.width)
         draw_zones(axes, now, shown)
         notes = []
-        if what.stresses:
+        if what.stresses and len(now.stress):
             notes.append(draw_principal(axes, now, size))
         if what.velocities:
             notes.append(draw_velocities(axes, now, size))

@@ -10,16 +10,17 @@ A damaged heap is printed as far as it can be walked, with a line that says wher
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 
 import offsets.generated as g
 from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.inspect.walk import (
     HEADS,
     Unsound,
@@ -66,7 +67,7 @@ class Column:
     cells: list[str]
     left: bool = False
 
-    @property
+    @cached_property
     def width(self) -> int:
         return max(map(len, self.lines))
 
@@ -111,7 +112,7 @@ def _state(h: Memory) -> str:
     """One line: where the run stands and how large the map is."""
     virtual = f" ({h.ci[g.NVIRT]} virtual)" if h.ci[g.NVIRT] else ""
     return (
-        f"cycle {h.ci[g.MCTOT]}, time {h.cr[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
+        f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
         f"{h.ci[g.NCON]} contacts{virtual}, {h.ci[g.NDOM]} domains"
     )
 
@@ -225,12 +226,14 @@ def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:
     return [Column(name, "1/s", [f"{rate[i]:.6g}" for rate in rates]) for i, name in enumerate(RATES)]
 
 
-def _field_column(h: Memory, addresses: Iterable[int], field: Field) -> Column:
+def _field_column(h: Memory, addresses: Sequence[int], field: Field) -> Column:
     offset = getattr(g, field.name)
+    at: Any = np.array(addresses, np.int64)
     if field.real:
-        cells = [f"{getr(h, iad, offset):.6g}" for iad in addresses]
+        cells = [f"{value:.6g}" for value in getr(h, at, offset).tolist()]
     else:
-        cells = [" ".join(str(iget(h, iad, offset, i)) for i in range(field.count)) for iad in addresses]
+        numbers = [integers(h, at, offset, i).tolist() for i in range(field.count)]
+        cells = [" ".join(map(str, row)) for row in zip(*numbers, strict=True)]
     return Column(field.name, "" if field.unit == "-" else field.unit, cells)
 
 

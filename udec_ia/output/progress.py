@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from time import monotonic
 from typing import TextIO
 
 from rich.console import Console, Group
@@ -13,10 +12,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from udec_ia.heap.compiling import working_time
 from udec_ia.ops.watch import Solution
+from udec_ia.printable import printable
 
 LINES = 10  # plain lines for one CYCLE command, at most
 QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
+SHOWN = 0.05  # seconds of compiling, from which on the summary tells them
 NAMED_FILES = 4  # files that the summary names; of more, their number
 
 
@@ -25,7 +27,7 @@ class Progress:
 
     stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
     total: cycles of the command. tdel: time-step in s. frac: its share of the critical one.
-    started: reading of the monotonic clock when the command began; None for now.
+    started: reading of `working_time` when the command began; None for now.
     """
 
     def __init__(
@@ -34,11 +36,12 @@ class Progress:
         self.stream = stream
         self.total = total
         self.step = f"dt {tdel:.3g} s ({frac:.3g} of critical)"
-        self.started = monotonic() if started is None else started
+        self.started = working_time() if started is None else started
         self.lines = 0
         self.last = ""  # line on how far the command is
         self.shown = ""  # line that was printed last
-        self.bar = Bar(BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn(), expand=True)
+        columns = BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn()
+        self.bar = Bar(*columns, expand=True, get_time=working_time)
         self.task = self.bar.add_task("cycles", total=total)
         self.live: Live | None = None
         if stream.isatty():
@@ -57,7 +60,7 @@ class Progress:
         time: in s since the first cycle; unbalanced: largest force sum of a free block in N/m; made, broken:
         contacts made and broken so far.
         """
-        elapsed = monotonic() - self.started
+        elapsed = working_time() - self.started
         rate = done / elapsed if elapsed > 0.0 else 0.0
         state = (
             f"{rate:,.0f} cycles/s, t = {time:.4g} s, {self.step}, unbalanced force {unbalanced:.3g} N/m, "
@@ -92,18 +95,20 @@ def summary(
     force: float,
     files: list[Path],
     wall: float,
+    compiling: float = 0.0,
     unsolved: Sequence[Solution] = (),
 ) -> str:
     """The line that ends every run.
 
-    cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s;
-    unsolved: each SOLVE that came to its limit.
+    cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s,
+    `compiling` of it spent on compiling; unsolved: each SOLVE that came to its limit.
     """
-    names = ", ".join(path.name for path in files[:NAMED_FILES])
+    names = ", ".join(printable(path.name) for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
     written = f"wrote {names}{more}" if files else "no file written"
+    compiled = f", {compiling:.1f} s of it compiling" if compiling >= SHOWN else ""
     solve = "".join(f"; SOLVE {one.wanted:g} NOT REACHED ({one.ratio:.3g})" for one in unsolved)
     return (
         f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
-        f"largest normal force {force:.4g} N/m{solve}; {written}; {wall:.1f} s"
+        f"largest normal force {force:.4g} N/m{solve}; {written}; {wall:.1f} s{compiled}"
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 from offsets.generated import FRAC, MCTOT, NBROKE, NMADE, TDEL, TIME
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.rest import unbalanced
 from udec_ia.ops.soft import soft_in
 
@@ -33,7 +33,7 @@ class Report:
         self.progress: Progress | None = None
         self.shown = 0  # cycles done when progress was shown last
         self.before = int(memory().ci[MCTOT])
-        self.started = monotonic()
+        self.started = working_time()
 
     def __call__(self, done: int) -> None:
         if self.animation is not None:
@@ -50,7 +50,7 @@ class Report:
             self.progress = Progress(stream, self.total, tdel, frac, self.started)
         self.shown = done
         made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
-        self.progress.update(done, float(h.cr[TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
+        self.progress.update(done, float(h.cd[TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
 
     def close(self) -> None:
         """Take the progress off the screen; the last line tells how far a command came that was cut short."""

@@ -1,0 +1,283 @@
+"""A command is obeyed as a whole or not at all, whatever ends it.
+
+An interrupt, a want of memory, an exception in a function of the user's or an error of our own may end a
+command at any step. What it has done until then is taken back: the common block and what the model holds in
+Python from copies that cost nothing, the words of IA() from a copy that costs as much as the whole model. So
+that a short command does not pay for that, the copy is kept from one command to the next, with a list of the
+commands obeyed since. To take one back the copy is put back and they are obeyed again, which gives the same
+words bit for bit. The copy is made anew when they have taken as long as a hundred copies. So copying adds one
+or two per cent to the time of many commands, and to take one back takes little more than a hundred copies do.
+
+A command that raises a numbered error has changed no word: ops check before their first change, or go back
+themselves. If groups were made or given back all the same, their words are taken back, too.
+
+CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). Compiled
+passes stop by themselves for want of memory only, at a place from which the next CYCLE goes on (JPHASE).
+Interpreted ones stop at any place: there the words are copied between the pieces of a run, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, TypeVar
+
+import numpy as np
+from numba import config
+
+from offsets.generated import JUNK, MFREE, MTOP, NBLK, NCON, NDOM
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.array import MainArray
+from udec_ia.signals import hold, passing
+
+if TYPE_CHECKING:
+    from udec_ia.model import Model
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Method = Callable[Concatenate[Any, P], R]
+
+REPEATED = 100.0  # a copy is made anew when the commands since then have taken as long as so many copies
+COUNTS = [MFREE, JUNK, NBLK, NCON, NDOM]  # one of them changes when a group is made or given back
+PLAIN = (bool, int, float, str, np.generic, type(None))
+
+
+def command(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that may change any word of IA()."""
+    return _obeyed(method, words=True)
+
+
+def once(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that may change any word and depends on what Python holds: it cannot be repeated."""
+    return _obeyed(method, words=True, repeated=False)
+
+
+def numbers(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that changes numbers of the common block only."""
+    return _obeyed(method)
+
+
+def beside(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that changes what Python holds only, or another array takes the place of this one."""
+    return _obeyed(method, noted=False)
+
+
+def looking(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that shows or draws: it may take long, and interrupts do not wait for its end."""
+
+    @wraps(method)
+    def shown(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        with passing():
+            return method(model, *args, **named)
+
+    return beside(shown)
+
+
+def _obeyed(
+    method: Method[P, R], words: bool = False, noted: bool = True, repeated: bool = True
+) -> Method[P, R]:
+    @wraps(method)
+    def obeyed(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        def obey() -> R:
+            if noted:
+                model.undo.note(Step(method, args, named) if repeated else None)
+            if words:
+                model.undo.keep(model.array)
+            return method(model, *args, **named)
+
+        done: R = model.whole(obey)
+        return done
+
+    return obeyed
+
+
+class Step(NamedTuple):
+    """A command as it can be obeyed again."""
+
+    method: Callable[..., object]
+    args: tuple[Any, ...]
+    named: dict[str, Any]
+
+    @property
+    def lasts(self) -> bool:
+        """True if nobody can change what it was given."""
+        return all(map(_is_plain, (*self.args, *self.named.values())))
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, PLAIN) or (type(value) is tuple and all(map(_is_plain, value)))
+
+
+class Before:
+    """Everything but the words of IA(): what a model holds in Python, and the common block.
+
+    A list of the model is put in place of another, or grows at its end: its length says how it was.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.h: Memory = model.array.h
+        self.numbers = [part.copy() for part in common(self.h)]
+        self.parts = [(one, vars(one).copy()) for one in model.parts()]
+        self.lengths = [
+            (value, len(value)) for _, held in self.parts for value in held.values() if type(value) is list
+        ]
+
+    def put_back(self, model: Model) -> None:
+        """Make the model as it was."""
+        for one, held in self.parts:
+            vars(one).clear()
+            vars(one).update(held)
+        for value, length in self.lengths:
+            del value[length:]
+        put_common(self.h, self.numbers)
+        model.array.h = self.h
+
+    def same_groups(self, h: Memory) -> bool:
+        """True if `h` has as many groups of every kind as there were."""
+        return bool((h.ci[COUNTS] == self.numbers[0][COUNTS]).all())
+
+    def same_common(self, h: Memory) -> bool:
+        """True if `h` is the memory that was there, and its common block as it was, bit for bit."""
+        return h is self.h and image(h) == b"".join(part.tobytes() for part in self.numbers)
+
+
+def common(h: Memory) -> tuple[Any, ...]:
+    """The common block: its integers, reals and doubles."""
+    return h.ci, h.cr, h.cd
+
+
+def put_common(h: Memory, numbers: Sequence[Any]) -> None:
+    """Give the common block other numbers, in the order of `common`."""
+    for part, kept in zip(common(h), numbers, strict=True):
+        part[:] = kept
+
+
+def image(h: Memory) -> bytes:
+    """The bits of the common block."""
+    return b"".join(part.tobytes() for part in common(h))
+
+
+class Undo:
+    """What it takes to take back the command that is being obeyed.
+
+    words, ci, cr: those of `array` at some time. since: the commands obeyed since then, which took `seconds`;
+    `cost` is how long the copy took. left: the common block at the end of the last of them.
+    before: all but the words at the beginning of what is being done; None if that is to stay.
+    doing: the commands of which that consists, None for one that cannot be repeated. covered: the words can
+    be had again as they were then.
+    """
+
+    def __init__(self) -> None:
+        self.array: MainArray | None = None
+        self.words: Any = np.zeros(0, np.int64)
+        self.since: list[Step] = []
+        self.seconds = self.cost = 0.0
+        self.busy = self.covered = False
+        self.before: Before | None = None
+        self.doing: list[Step | None] = []
+
+    def whole(self, model: Model, action: Callable[[], R]) -> R:
+        """Have all that `action` does done or, if it raises, undone, with whatever is done within it."""
+        if self.busy:
+            return action()
+        with hold():
+            try:
+                self._begin(model)
+                result = action()
+                self._end(model)
+            except BaseException as error:
+                with hold(firm=True):
+                    self._take_back(model, error)
+                raise
+            finally:
+                self.busy, self.before = False, None
+        return result
+
+    def note(self, step: Step | None) -> None:
+        """A command begins, `step` if it can be repeated. One that is obeyed within another cannot."""
+        self.doing.append(step if step is not None and step.lasts and not self.doing else None)
+
+    def keep(self, array: MainArray) -> None:
+        """See to it that the words of `array` can be had again as they were before what is being done."""
+        if not self.covered:
+            follows = self.array is array and image(array.h) == self.left
+            if not follows or self.seconds > REPEATED * self.cost:
+                self._copy(array)
+            self.covered = True
+
+    def settle(self, model: Model) -> None:
+        """What was done until now stays: between two cycles."""
+        self.before = None
+        if config.DISABLE_JIT:
+            self._copy(model.array)
+            self.covered, self.before = True, Before(model)
+        else:
+            self.release()
+
+    def release(self) -> None:
+        """Let go of the copy, and of its memory."""
+        self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
+
+    def _begin(self, model: Model) -> None:
+        if model.writes.made:
+            model.note_writes()
+            self.array = None
+        self.doing, self.covered, self._start = [], False, perf_counter()
+        self.before = Before(model)
+        self.busy = True
+
+    def _end(self, model: Model) -> None:
+        """Note what was done, in one step, or that the copy is of no use any more."""
+        if self.array is model.array and None not in self.doing:
+            since = [*self.since, *(step for step in self.doing if step is not None)]
+            seconds = self.seconds + (perf_counter() - self._start if self.doing else 0.0)
+            left = image(model.array.h)
+            self.since, self.seconds, self.left, self.before = since, seconds, left, None
+        else:
+            self.array, self.before = None, None
+
+    def _copy(self, array: MainArray) -> None:
+        self.array, self.since = None, []
+        start, used = perf_counter(), int(array.h.ci[MFREE]) - 1
+        if len(self.words) < used or self.words.dtype != array.h.ia.dtype:
+            self.words = np.empty(2 * used, array.h.ia.dtype)
+        self.words[:used] = array.h.ia[:used]
+        self.numbers, self.left = [part.copy() for part in common(array.h)], image(array.h)
+        self.seconds, self.cost = 0.0, perf_counter() - start
+        self.array = array
+
+    def _take_back(self, model: Model, error: BaseException) -> None:
+        """Make everything as it was before what is being done."""
+        before = self.before
+        if before is None:
+            return
+        changed = self.covered and not (
+            self.doing and isinstance(error, UdecError) and before.same_groups(model.array.h)
+        )
+        before.put_back(model)
+        if changed and not self._repeat(model, before):
+            self._put_words(before.h)
+            model.tell(f"the last {len(self.since)} commands are lost: they could not be obeyed once more")
+            self.array = None
+
+    def _repeat(self, model: Model, before: Before) -> bool:
+        """Put the copy back and obey the commands since then once more; False if that gives another state."""
+        self._put_words(before.h)
+        model.tell = model.inform = lambda _: None
+        try:
+            for step in self.since:
+                step.method(model, *step.args, **step.named)
+            return before.same_common(model.array.h)
+        except Exception:
+            return False
+        finally:
+            before.put_back(model)
+
+    def _put_words(self, h: Memory) -> None:
+        """Put the copy back, into an array that may have grown since."""
+        size, used = int(h.ci[MTOP]), int(self.numbers[0][MFREE]) - 1
+        h.ia[:used] = self.words[:used]
+        put_common(h, self.numbers)
+        h.ci[MTOP] = size
