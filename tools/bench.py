@@ -1,7 +1,7 @@
 """How fast the program is, measured: cycles against a structure of arrays, SPLIT, and the ball.
 
     python tools/bench.py                                     everything
-    python tools/bench.py cycle --blocks 1000 10000 100000    one of: cycle, split, ball
+    python tools/bench.py cycle --blocks 1000 10000 100000    one of: cycle, zones, split, proof, laws, ball
 
 Times are processor time, so that other work on the machine disturbs them little; only the ball is timed
 by the clock on the wall. Program and yardstick take turns, and the ratio is the median over the turns.
@@ -20,6 +20,7 @@ from time import perf_counter, process_time
 
 import numpy as np
 import zones
+from numba import njit
 from soa import EVENTS, Slab, extract, run_soa
 
 from offsets.generated import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
@@ -27,10 +28,13 @@ from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.inspect.table import table
 from udec_ia.kernels.cycle import run_cycles
+from udec_ia.kernels.lawcall import MATERIAL_SIZE, _jump
+from udec_ia.ops.lawfile import read_laws
 
 ROOT = Path(__file__).parent.parent
 TURNS = 15
 TRIES = 5  # slabs cut; the first may pay for memory that the machine hands out for the first time
+PROOFS = 3
 WORK = 2_000_000  # contacts that one turn passes through
 SETTLE = 40  # cycles before a measurement
 OVERLAP = 0.001  # that a slab is squeezed to at every joint, in rounding lengths
@@ -236,6 +240,64 @@ def bench_split(sizes: list[int]) -> None:
         print(f"| {n} | {seconds:.2f} | {seconds / n * 1e6:.1f} |", flush=True)
 
 
+def bench_proof(sizes: list[int]) -> None:
+    """What it takes to check a slab, and to bring it back by RESTART. Target: 100,000 blocks in 5 s each."""
+    print("| blocks | check, s | RESTART, s | us per block |\n|---|---|---|---|")
+    for blocks in sizes:
+        model = slab(blocks)
+        model.fix(-FAR, FAR, 0, 1)
+        model.cycle(SETTLE)
+        with tempfile.TemporaryDirectory() as folder:
+            file = model.save(Path(folder) / "slab.h5")
+            times = []
+            for _ in range(PROOFS):
+                start = process_time()
+                violations = model.check()
+                between = process_time()
+                model.restart(file)
+                times.append((between - start, process_time() - between))
+        check, restart = np.median(times, axis=0)
+        n = int(model.h.ci[NBLK])
+        line = f"{check:.2f} | {restart:.2f} | {(check + restart) / n * 1e6:.1f}"
+        print(f"| {n} | {violations or line} |", flush=True)
+
+
+LAWS = {  # bodies of joint laws that look something up in a table of 100 numbers
+    "interpolates": "x = abs(us); k = int(x); return (T[k] + (x - k) * (T[k + 1] - T[k])) * dun, m.ks * dus",
+    "sums 100 up": "return sum([T[I[k]] for k in range(100)]) * dun, m.ks * dus",
+}
+
+
+@njit
+def call_often(law: int, n: int, material: int) -> float:
+    """Call the law at an address `n` times, as kernels do."""
+    total = 0.0
+    for i in range(n):
+        total += _jump(law, (1e3, 1.0, 1e-9, 1e-9, 0.0, i % 90 + 0.5), material)[0]
+    return total
+
+
+def bench_laws(calls: int = 500_000) -> None:
+    """One call of a law that indexes, with bounds checks and without."""
+    print("| law | checked, ns | not checked, ns | ratio |\n|---|---|---|---|")
+    material = np.ones(MATERIAL_SIZE // 8)
+    for name, body in LAWS.items():
+        plain = f"def clj2(fn, fs, dun, dus, un, us, m):\n    {body}\n"
+        laws, times = [], []
+        for decorator in ("", "@njit(boundscheck=False)\n"):
+            space = {"T": np.linspace(0.0, 1.0, 100), "I": np.arange(100), "njit": njit}
+            exec(decorator + plain, space)
+            laws.append(read_laws({"clj2": space["clj2"]})["clj2"])
+        for _ in range(TURNS + 1):
+            for law in laws:
+                start = process_time()
+                call_often(law.call, calls, material.ctypes.data)
+                times.append((process_time() - start) / calls * 1e9)
+        checked, unchecked = np.array(times[2:]).reshape(TURNS, 2).T
+        ratio = np.median(checked / unchecked)
+        print(f"| {name} | {np.median(checked):.1f} | {np.median(unchecked):.1f} | {ratio:.2f} |", flush=True)
+
+
 def bench_ball() -> None:
     """The ball from the command line: first run with nothing compiled, and the second run."""
     print("| ball-rolling.dat | s of wall time | s of processor time |\n|---|---|---|")
@@ -253,19 +315,25 @@ def bench_ball() -> None:
 def main() -> None:
     """Run what the command line asks for."""
     parser = argparse.ArgumentParser(description="Measure the speed of cycles, of SPLIT and of the ball.")
-    parser.add_argument("what", nargs="*", help="any of: cycle, zones, split, ball; all of them if left off")
+    parser.add_argument(
+        "what", nargs="*", help="any of: cycle, zones, split, proof, laws, ball; all of them if left off"
+    )
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--cut", type=int, nargs="+", default=[30_000, 300_000])
     parser.add_argument("--skew", type=float, default=0.0, help="lean of the second joint set, dx to dy")
     args = parser.parse_args()
-    what = args.what or ["cycle", "zones", "split", "ball"]
+    what = args.what or ["cycle", "zones", "split", "proof", "laws", "ball"]
     if "cycle" in what:
         bench_cycles(args.blocks, args.skew)
     if "zones" in what:
         bench_zones(args.zones)
     if "split" in what:
         bench_split(args.cut)
+    if "proof" in what:
+        bench_proof(args.blocks)
+    if "laws" in what:
+        bench_laws()
     if "ball" in what:
         bench_ball()
 

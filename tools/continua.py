@@ -38,7 +38,7 @@ def mode() -> list[Figure]:
     t, s = [], []
     for _ in range(500):
         m.cycle(1)
-        t.append(float(m.h.cr[g.TIME]))
+        t.append(float(m.h.cd[g.TIME]))
         s.append(float(m.table("sdef")["KS111"][0]))
     got = pi / float(np.diff(crossings(np.array(t), np.array(s))).mean())
     exact = sqrt(12) * sqrt(2 * shear / RHO) / length
@@ -66,11 +66,11 @@ def period() -> list[Figure]:
     m.fraction(0.5)
     m.cycle(0)
     t, v = [], []
-    while m.h.cr[g.TIME] < 2.2 * 4 * height / CP:
+    while m.h.cd[g.TIME] < 2.2 * 4 * height / CP:
         m.cycle(2)
         points = m.table("gridpoint")
         v.append(float(points["KYDG"][points["KYG"].argmax()]))
-        t.append(float(m.h.cr[g.TIME]))
+        t.append(float(m.h.cd[g.TIME]))
     got = 2 * float(np.diff(crossings(np.array(t), np.array(v))).mean())
     return [Figure("period of a confined column (s)", got, 4 * height / CP, 0.02)]
 
@@ -106,14 +106,14 @@ def pulse() -> list[Figure]:
     length = 10.0
     m = pulsed(length, 0.4 * length / CP, -1e4)
     centre, t, s, most = [], [], [], 0.0
-    while m.h.cr[g.TIME] < 2 * length / CP:
+    while m.h.cd[g.TIME] < 2 * length / CP:
         m.cycle(5)
         zones, points = m.table("zone"), m.table("gridpoint")
         if not centre:
             x = dict(zip(points["address"].tolist(), points["KXG"].tolist(), strict=True))
             place = np.array([np.mean([x[i] for i in row]) for row in zones["KZG"].tolist()])
             centre = [abs(place - at).argmin() for at in (2.5, 7.5)]
-        t.append(float(m.h.cr[g.TIME]))
+        t.append(float(m.h.cd[g.TIME]))
         s.append(-zones["KZS11"][centre])
         most = max(most, sum(energies(m)))
     arrival = []

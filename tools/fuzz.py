@@ -350,7 +350,8 @@ def damaged(rng: Rng, path: Path, base: bytes) -> None:
     h, used = array.h, int(array.h.ci[MFREE]) - 1
     for _ in range(int(rng.integers(1, 4))):
         if rng.random() < 0.3:
-            reals = h.cr if rng.random() < 0.3 else h.ra[: used // array.scheme.ratio]
+            parts = h.cr, h.cd, h.ra[: used // array.scheme.ratio], h.ra[: used // array.scheme.ratio]
+            reals = parts[rng.integers(len(parts))]
             reals[int(rng.integers(len(reals)))] = rng.choice(REALS)
         else:
             words = h.ci if rng.random() < 0.2 else h.ia[:used]

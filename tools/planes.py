@@ -62,9 +62,9 @@ def incline() -> list[Figure]:
         m.damping(0, 1)
         m.gravity(GRAVITY * sin(psi), -GRAVITY * cos(psi))
         cycle_for(m, 0.7)
-        before, t0 = standing(m)[0], float(m.h.cr[g.TIME])
+        before, t0 = standing(m)[0], float(m.h.cd[g.TIME])
         cycle_for(m, 2)
-        after, time_ = standing(m)[0], float(m.h.cr[g.TIME]) - t0
+        after, time_ = standing(m)[0], float(m.h.cd[g.TIME]) - t0
         got = float(after["KXD"] - before["KXD"]) / time_
         exact = GRAVITY * (sin(psi) - mu * cos(psi))
         figures.append(Figure(f"slide down an incline, {kind} (m/s2)", got, exact, 0.01))

@@ -179,7 +179,7 @@ def extract(array: MainArray) -> Slab:
     constants = Constants(float(cr[g.DTOL] - cr[g.GTOL]), *(float(cr[i]) for i in names))
     kn, ks, mu, coh = (cr[i : i + 50].copy() for i in (g.AKN, g.AKS, g.AMU, g.COH))
     domains = _domains(array, d, p["address"], k["address"])
-    sums = np.array([cr[g.UPEND], cr[g.WFRIC], 0.0])
+    sums = np.array([cr[g.UPEND], array.h.cd[g.WFRIC], 0.0])
     return Slab(constants, blocks, corners, contacts, domains, kn, ks, mu, coh, sums)
 
 
