@@ -1,4 +1,4 @@
-"""What all tests share: where compiled kernels are kept, how long an example may take, and Ctrl-C.
+"""What all tests share: where compiled kernels are kept, what warnings are errors, and Ctrl-C.
 
 The kernels are compiled once and kept in the checkout, so that a second test run does not compile again.
 The directory is named before anything imports the package, which looks at it once.
@@ -24,6 +24,13 @@ settings.load_profile("udec_ia")
 # A shell that starts the tests in the background has them ignore Ctrl-C, and every process that they start.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Warnings that Python attributes to a module of the checkout, by name or path, are errors."""
+    loose = {path.stem for folder in ("tests", "tools") for path in (ROOT / folder).glob("*.py")}
+    ours = "|".join(sorted({"udec_ia", "offsets", "naive"} | loose))
+    config.addinivalue_line("filterwarnings", rf"error:::(.*[/\\])?({ours})([./\\]|$)")
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -186,7 +186,8 @@ class Scene:
 def replay(model: Model, steps: list[Step], after: Callable[[Model], Model] | None = None) -> Model:
     """Do `steps` on `model`; after each, `after` may put another model in its place. Returns the last one.
 
-    What ended the scene, always in its last step, ends it here too.
+    What ended the scene, always in its last step, ends it here too, and nothing comes after it: an overlap
+    may have become too great then.
     """
     model.start()
     for step in steps:
@@ -195,6 +196,7 @@ def replay(model: Model, steps: list[Step], after: Callable[[Model], Model] | No
         except UdecError as error:
             if error.number not in ENDS or step is not steps[-1]:
                 raise
+            break
         if after is not None:
             model = after(model)
     return model

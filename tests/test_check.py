@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from offsets import generated as g
 from offsets.table import Field, read_table
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
 from udec_ia.inspect.check import Violation, check
@@ -132,7 +132,7 @@ def test_a_real_that_is_no_number_is_named(kind: str, field: Field, value: float
 @pytest.mark.parametrize("field", [f for f in TABLE.common if f.real], ids=lambda field: field.name)
 def test_a_common_real_that_is_no_number_is_named(field: Field) -> None:
     array = two_blocks()
-    array.h.cr[getattr(g, field.name) + field.count - 1] = np.nan
+    variable(array.h, field)[-1] = np.nan
     assert naming(check(array), field.name, f"({field.count})" if field.count > 1 else "") >= {7}
 
 

@@ -107,3 +107,26 @@ def test_a_block_outside_that_is_put_into_a_room_is_named() -> None:
     outside = max(groups(model.h, "block"), key=lambda block: getr(model.h, block, g.KX))
     move(model, outside, -5.0, 2.0)
     assert {violation.invariant for violation in check(model.array)} == {4}
+
+
+TRIANGLE = "BLOCK 0 0 0 4 4 4 4 0\nSPLIT -1 1 5 1\nSPLIT -1 2 5 2\n"
+
+
+@pytest.mark.parametrize("part", [0.3, 0.45, 0.4999])
+@pytest.mark.parametrize("cut", [(3.6, 4.1, 4.1, 3.6), (3.3, 4.2, 4.05, 3.7)])
+def test_a_small_block_that_is_nearly_all_rounding_is_no_wall(
+    part: float, cut: tuple[float, float, float, float]
+) -> None:
+    """A triangle that has parted from the rest, its rounding a part of its shortest edge."""
+    model = Model()
+    model.run(f"START\n{TRIANGLE}SPLIT {' '.join(map(str, cut))}\n")
+    model.delete(1, 3, 2, 4)
+    triangle = min(groups(model.h, "block"), key=lambda block: len(corners(model.h, block)))
+    assert len(corners(model.h, triangle)) == 3
+    places = [complex(getr(model.h, c, g.KXP), getr(model.h, c, g.KYP)) for c in corners(model.h, triangle)]
+    shortest = min(abs(one - two) for one, two in zip(places, places[1:] + places[:1], strict=True))
+    model.round(part * shortest)
+    assert model.h.ci[g.NVIRT] == 1
+    assert check(model.array) == []
+    move(model, triangle, -1.6, -2.35)  # into the slab below, where it cannot hang
+    assert any(f"block@{triangle} " in str(violation) for violation in check(model.array))

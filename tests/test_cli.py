@@ -56,6 +56,41 @@ def test_a_deck_on_standard_input(in_folder: Path) -> None:
     assert "stdin:1:1: error 3" in udec(deck=b"CYCLE 1\n").stderr
 
 
+@pytest.mark.parametrize("line", [["deck.dat"], ["deck.dat", "--out", "new"], ["--out", "new", "deck.dat"]])
+def test_the_name_of_a_deck_is_enough(
+    line: list[str], in_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("deck.dat").write_text(SMALL)
+    assert main(line) == 0
+    assert "> BLOCK" in capsys.readouterr().out
+    assert Path("new" if "new" in line else ".", "restart.h5").exists()
+
+
+def test_a_word_that_is_neither_command_nor_deck(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["chekc", "restart.h5"])
+    assert caught.value.code == 2
+    said = capsys.readouterr().err
+    assert "there is no file chekc, and the commands are udec run, udec check, udec info" in said
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are text elsewhere")
+def test_a_deck_whose_name_is_no_utf8(in_folder: Path) -> None:
+    deck = os.fsencode(in_folder) + b"/d\xe9ck.dat"
+    Path(os.fsdecode(deck)).write_text(SMALL.replace("SAVE", "PLOT\nSAVE\nPLOT 7"))
+    done = subprocess.run(
+        [os.fsencode(sys.executable), b"-m", b"udec_ia", b"run", deck],
+        capture_output=True,
+        timeout=120,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=False,
+    )
+    said = done.stderr.decode()
+    assert (done.returncode, "Traceback" in said) == (1, False)
+    assert ":5:6: error 28: value out of range: PLOT 7" in said
+    assert b"d\xe9ck-plot-1.png" in os.listdir(os.fsencode(in_folder))
+
+
 def test_check_and_info_of_a_saved_run(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("deck.dat").write_text(SMALL.replace("SAVE", "SAVE one.h5"))
     assert main(["run", "deck.dat"]) == 0

@@ -78,7 +78,7 @@ def test_the_wall_settles_and_collapses() -> None:
     assert len(blocks) == 25
     free = blocks["KBM"][blocks["KBFIX"] == 0]
     first = G * float(free.max() * free.sum()) ** 0.5
-    assert unbalanced(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cr[TIME]) / 2)
+    assert unbalanced(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cd[TIME]) / 2)
 
     height = float((blocks["KBM"] * blocks["KY"]).sum())
     inside = [

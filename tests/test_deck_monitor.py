@@ -88,17 +88,17 @@ def test_a_failing_save_does_not_hide_the_error() -> None:
     assert model.names[-1] == "stop"
 
 
-@pytest.mark.parametrize("last", ["BLOK", "STOP"])
-def test_a_run_that_can_write_no_file_ends_with_its_summary(last: str, tmp_path: Path) -> None:
-    """The folder for files is an ordinary file."""
+def test_a_run_that_can_write_no_file_ends_with_its_summary(tmp_path: Path) -> None:
+    """The folder for files is an ordinary file: PLOT says so at once, and is undone."""
     folder, out = tmp_path / "file", io.StringIO()
     folder.touch()
     model = Model(out=folder)
     with pytest.raises(UdecError) as caught:
-        run_deck(model, f"START\nBLOCK 0 0 0 1 1 1 1 0\nPLOT 0\n{last}\n", out)
-    assert (caught.value.number, caught.value.saved) == (2 if last == "BLOK" else 31, None)
+        run_deck(model, "START\nBLOCK 0 0 0 1 1 1 1 0\nPLOT 0\nSTOP\n", out)
+    assert (caught.value.number, caught.value.line, caught.value.saved) == (31, 3, None)
+    assert str(folder) in caught.value.message
     assert out.getvalue().count("could not be saved") == 1
-    assert out.getvalue().count("not all pictures were written") == 1
+    assert "not all pictures were written" not in out.getvalue()
     assert out.getvalue().count("1 blocks, 0 contacts, largest normal force 0 N/m; no file written") == 1
 
 
@@ -152,12 +152,12 @@ def test_a_command_that_takes_blocks_says_how_many() -> None:
     assert [line for line in out.getvalue().split("\n") if not line.startswith(">")] == [
         " SPLIT: 1 block cut off, 2 blocks now",
         " SPLIT: 2 blocks cut off, 4 blocks now",
-        " SPLIT: no block cut",
+        " SPLIT: no block cut: the line passes no block; all blocks lie in x 0 to 2, y 0 to 2",
         " FIX: 2 blocks fixed",
         " FREE: 1 block set free",
         " CHANGE: 4 blocks changed",
         " DELETE: 1 block deleted, 3 blocks now",
-        " DELETE: no block in range",
+        " DELETE: no block in range: no centroid in x 0 to 1, y 0 to 1, the nearest is block@1 at (1.5, 0.5)",
         "",
     ]
 
@@ -273,6 +273,15 @@ def test_words_of_the_command_continue_a_list_and_other_words_do_not() -> None:
     assert model.calls[1] == ("generate", (0.0, 1.0, 0.0, 1.0), named)
     assert model.names == ["start", "generate", "generate", "gravity", "stop"]
     assert printed.count("error") == printed.count("terminal:7:1: error 2: ") == 1
+
+
+def test_comments_at_the_terminal_neither_end_nor_hide_a_line() -> None:
+    model, printed, _ = talk(
+        "START ; go", "BLOCK 0 0 0 1 # left", "; note", "1 1 1 0", "", "CYCLE + ! so many", "1#!"
+    )
+    assert model.calls[1] == SQUARE
+    assert model.calls[2] == ("cycle", (1,), {})
+    assert "error" not in printed
 
 
 def test_a_plus_at_the_end_of_a_line_continues_any_command() -> None:

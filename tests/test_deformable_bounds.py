@@ -40,7 +40,7 @@ def lone(kind: str, ring: list[tuple[float, float]]) -> Model:
 
 def halfway(m: Model, n: int) -> Any:
     """Times in the middle of the next `n` steps."""
-    return float(m.h.cr[g.TIME]) + float(m.h.cr[g.TDEL]) * (np.arange(n) + 0.5)
+    return float(m.h.cd[g.TIME]) + float(m.h.cr[g.TDEL]) * (np.arange(n) + 0.5)
 
 
 POINTS = (0.0, 0.5, 0.002, 2.0, 0.003, -1.0, 0.0045, 0.25)
@@ -375,11 +375,11 @@ def test_a_sine_begins_with_its_command() -> None:
     m.cycle(1)
     dt = float(m.h.cr[g.TDEL])
     m.cycle(int(0.1 / dt))
-    begun = float(m.h.cr[g.TIME])
+    begun = float(m.h.cd[g.TIME])
     m.boundary(*EVERYWHERE, xvel=1.0, sine=(50.0, 0.01))
     lasts = int(0.01 / dt)
     for _ in range(lasts + 3):
-        t = float(m.h.cr[g.TIME]) - begun + dt / 2
+        t = float(m.h.cd[g.TIME]) - begun + dt / 2
         m.cycle(1)
         expected = np.sin(2 * np.pi * 50 * t) if t <= 0.01 else 0.0
         assert m.table("block")["KXD"][0] == pytest.approx(expected, abs=1e-9)

@@ -70,14 +70,14 @@ def limited(m: Model, mtop: int) -> Model:
     other.array = MainArray(m.array.scheme, mtop)
     size = len(other.h.ia)
     other.h.ia[:] = m.h.ia[:size]
-    other.h.ci[:], other.h.cr[:] = m.h.ci, m.h.cr
+    other.h.ci[:], other.h.cr[:], other.h.cd[:] = m.h.ci, m.h.cr, m.h.cd
     other.h.ci[g.MTOP] = size
     return other
 
 
 def words(m: Model) -> tuple[bytes, bytes, bytes]:
     """All words in use."""
-    return m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes()
+    return m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes(), m.h.cd.tobytes()
 
 
 def soft_blocks(m: Model) -> int:

@@ -49,7 +49,7 @@ def test_uniaxial_mode(length: float, height: float) -> None:
     times, values = [], []
     for _ in range(500):
         model.cycle(1)
-        times.append(float(model.h.cr[g.TIME]))
+        times.append(float(model.h.cd[g.TIME]))
         values.append(float(getr(model.h, ie, g.KS111)))
     speed = math.sqrt((2 * shear / 3 + 4 * shear / 3) / RHO)
     assert frequency(times, values) == pytest.approx(math.sqrt(12) * speed / length, rel=5e-3)

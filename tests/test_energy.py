@@ -232,9 +232,9 @@ def test_what_commands_put_in_and_take_out() -> None:
 def test_looking_at_the_balance_changes_nothing() -> None:
     m = stressed()
     m.delete(-1, 1, 2, 3)
-    before = m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes()
+    before = m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes(), m.h.cd.tobytes()
     m.print("energy")
-    assert (m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes()) == before
+    assert (m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes(), m.h.cd.tobytes()) == before
 
 
 def test_the_balance_goes_on_after_a_restart(tmp_path: Path) -> None:
@@ -285,5 +285,5 @@ def test_off_leaves_no_numbers_behind() -> None:
     m.cycle(3)
     m.gravity(0, -1e308)
     m.energy("off")
-    assert not any(m.h.cr[name] for name in (EPUT, ESTOR, EREF, EPOT, WBOUND))
+    assert not any(m.h.cd[name] for name in (EPUT, ESTOR, EREF, EPOT, WBOUND))
     assert m.check() == []

@@ -201,7 +201,7 @@ def test_the_deformable_collapse_closes(damping: str) -> None:
     settled = False
     for line in (EXAMPLES / "collapse.dat").read_text().replace("\n+", " ").splitlines():
         word = line.partition(" ")[0]
-        if word in ("SAVE", "STOP") or m.h.cr[g.TIME] > 3.5:
+        if word in ("SAVE", "STOP") or m.h.cd[g.TIME] > 3.5:
             break
         if word in ("PLOT", "PRINT", "P", "*"):
             continue
@@ -228,11 +228,11 @@ def test_the_account_changes_no_bit_and_costs_nothing_when_it_is_off(tmp_path: P
     sums = ("WBOUND", "WMASS", "WSTIF", "WYIELD", "WSHAPE", "EPUT", "ESTOR", "EPOT", "EREF", "LENER", "WFRIC")
     apart = differences(essence(plain.array), essence(counted.array))
     assert set(apart) <= set(sums)
-    assert [float(plain.h.cr[getattr(g, name)]) for name in sums[:9]] == [0.0] * 9
+    assert [float(plain.h.cd[getattr(g, name)]) for name in sums[:9]] == [0.0] * 9
     counted.energy("off")
-    before = counted.h.cr.tolist()
+    before = counted.h.cd.tolist()
     counted.cycle(10)
-    assert [counted.h.cr[getattr(g, name)] for name in sums[:5]] == [
+    assert [counted.h.cd[getattr(g, name)] for name in sums[:5]] == [
         before[getattr(g, name)] for name in sums[:5]
     ]
     for m in (plain, counted):

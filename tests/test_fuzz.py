@@ -13,7 +13,8 @@ from mechanics import box, model
 from offsets import generated
 from offsets.table import Field, read_table
 from udec_ia import Model
-from udec_ia.errors import MESSAGES, UdecError
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import variable
 from udec_ia.restart import save
 
 FUZZ = Path(__file__).parent.parent / "tools" / "fuzz.py"
@@ -50,6 +51,10 @@ def wall(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return m.save(tmp_path_factory.mktemp("wall") / "wall.h5")
 
 
+UNUSABLE = {29}  # error of RESTART: the file is refused
+# of CYCLE and SPLIT: memory, stiffness, density, damping, overlaps, lines and numbers that will not do; and
+# 20 of the proof before SPLIT, which finds a number that has spread into the groups
+IN_A_RUN = {1, 11, 12, 13, 15, 16, 20, 27, 28, 36}
 MAD = {False: (-1, 0, 7, 2**40), True: (-1.0, 1e300, np.inf, np.nan)}
 
 
@@ -60,19 +65,22 @@ def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Pa
     An array that cannot grow asks for the most of these numbers.
     """
     path = tmp_path / "mad.h5"
-    numbers = set()
+    refused, ended = set(), set()
     for value in MAD[field.real]:
         array = Model.restore(wall).array
         array.fixed = True
-        (array.h.cr if field.real else array.h.ci)[getattr(generated, field.name)] = value
+        variable(array.h, field)[0] = value
+        save(array, path, [])
+        errors = refused
         try:
-            save(array, path, [])
             m = Model.restore(path)
+            errors = ended
             assert m.cycle(3) == 3
             m.split(-1, 3, 7, 3.1)
         except UdecError as error:
-            numbers.add(error.number)
-    assert numbers <= MESSAGES.keys()
+            errors.add(error.number)
+    assert refused <= UNUSABLE
+    assert ended <= IN_A_RUN
 
 
 def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: Path, tmp_path: Path) -> None:
@@ -80,5 +88,5 @@ def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: Path, tmp_path: Path
     array = Model.restore(wall).array
     array.h.ci[generated.JPHASE] = 7
     path = save(array, tmp_path / "mad.h5", [])
-    with pytest.raises(UdecError, match="pass 7 of the cycle"):
+    with pytest.raises(UdecError, match="JPHASE is 7, not 0 to 3"):
         Model.restore(path)

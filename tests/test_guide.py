@@ -127,7 +127,9 @@ def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert [language for language, _ in blocks] == ["deck", "python"]
     monkeypatch.chdir(tmp_path)
     model = Model(out="out")
-    model.run(blocks[0][1])
+    printed = model.run(blocks[0][1])
+    assert printed is not None
+    assert re.findall("^ [A-Z]+: no .*", printed, re.MULTILINE) == []
     moving = model.table("block")[0]
     assert (round(float(moving["KXD"]), 2), round(float(moving["KYD"]), 2)) == (-2.85, -1.48)
     assert (tmp_path / "out" / "restart.h5").exists()

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,7 @@ from numba.core import config
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.kept import KeptCode
 
+ROOT = Path(__file__).parent.parent
 SIGNATURES = [("int32", "float64"), ("int64", "float64")]
 
 
@@ -46,6 +50,32 @@ def test_code_for_other_types_is_not_taken(tmp_path: Path) -> None:
 
 def thrice(x: Any) -> Any:
     return x * 3
+
+
+COPY = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from udec_ia.heap.words import scheme
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.tolerances import tolset
+tolset(MainArray(scheme("i32r64")).h, 0.1)
+assert tolset.__wrapped__.__code__.co_filename.startswith(sys.argv[1])
+print(sum(tolset.whole.stats.cache_hits.values()))
+"""
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_a_copy_of_the_program_in_another_folder_does_not_compile_again(tmp_path: Path) -> None:
+    """The cache is named by what the sources say, not by where they stand."""
+    environment = {**os.environ, "UDEC_CACHE": str(tmp_path / "cache")}
+    for hits, name in enumerate(("one", "two")):
+        for package in ("udec_ia", "offsets"):
+            shutil.copytree(ROOT / package, tmp_path / name / package)
+        command = [sys.executable, "-c", COPY, str(tmp_path / name)]
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=True, timeout=240
+        )
+        assert int(done.stdout) == hits
 
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from numba.core import config
 
 from offsets import generated as g
 from udec_ia import Model
@@ -19,7 +20,7 @@ from udec_ia.heap.words import scheme
 from udec_ia.kernels.lawcall import ARRAYS, Material
 from udec_ia.kernels.laws import stress_increment
 from udec_ia.ops import settings
-from udec_ia.ops.lawfile import read_laws
+from udec_ia.ops.lawfile import _compiled, read_laws
 from udec_ia.ops.laws import LawBook
 from udec_ia.restart import info
 
@@ -131,9 +132,123 @@ def test_kernels_on_disk_serve_every_law_and_uncompiled_ones_agree(tmp_path: Pat
     )
     _, first = probe(twice, tmp_path)
     compiled, second = probe("mohr-coulomb", tmp_path)
-    assert (first, second) == ("0 2", "2 0")
+    assert (first.splitlines(), second) == (
+        ["compiling once for this machine, up to a minute ...", "0 2"],
+        "2 0",
+    )
     assert len(set(compiled.splitlines())) == 40
     assert probe("mohr-coulomb", tmp_path, NUMBA_DISABLE_JIT="1")[0] == compiled
+
+
+# ---- laws that raise exceptions
+
+TABLE = (
+    "import numpy as np\n"
+    "TABLE = np.linspace(0.0, 1.0, 5)\n"
+    "def entry(x):\n"
+    "    return TABLE[int(x)]\n"
+    + JOINT
+    + "    return entry(m.p1) * m.kn * dun, m.ks * dus\n"
+    + BLOCK
+    + "    a, b = m.p2, TABLE[int(m.p2)]\n"
+    "    return b * de11, de12, a * de22\n"
+)
+
+
+def stack(law: Path, p1: float = 0.0, p2: float = 0.0) -> Model:
+    """A block on a fixed one; both are deformable if they follow cl2 with `p2`, else clj2 alone is called."""
+    model = Model(constitutive=law)
+    model.property(1, density=2e3, kn=1e8, ks=1e8, bulk=1e8, g=5e7, p1=p1, p2=p2)
+    model.gravity(0, -10)
+    model.round(0.1)
+    model.block(0, 0, 0, 2, 2, 2, 2, 0, constitutive=2)
+    model.split(-1, 1, 3, 1)
+    model.fix(0, 2, 0, 1)
+    if p2:
+        model.change(0, 2, 1, 2, type="sdef")
+    return model
+
+
+@pytest.mark.parametrize(("index", "shown"), [(5, 5), (-6, -6), (1e15, 10**15)])
+def test_a_law_that_indexes_out_of_bounds_is_error_35_and_the_state_is_sound(
+    index: float, shown: int, tmp_path: Path
+) -> None:
+    law = tmp_path / "law.py"
+    law.write_text(TABLE)
+    out = f"IndexError: index {shown} is out of bounds for axis 0 with size 5"
+    for given, name, line in (({"p1": index}, "clj2, for contact", 4), ({"p2": index}, "cl2, for block", 8)):
+        model = stack(law, **given)
+        with pytest.raises(
+            UdecError, match=f"error 35: .*: {name}@.* in cycle 1: {out}, in line {line} of law"
+        ) as e:
+            model.cycle(3)
+        assert model.check() == []
+        assert model.h.ci[g.MCTOT] == 1
+        names = "fn = 0, fs = 0, dun = " if line == 4 else "s11 = 0, s12 = 0, s22 = 0, de11 = "
+        assert e.value.advice.startswith(f"correct the law; it was called with {names}")
+        model.property(1, p1=-5.0, p2=4.0)  # as in Python, numbers from -5 to 4 are places
+        assert model.cycle(3) == 3
+
+
+INTERPRETED = """
+import sys
+from test_laws import BLOCK, JOINT, Path, UdecError, stack
+law = Path(sys.argv[1])
+for body in ("[][int(m.p1)]", "zip", "1, 2, 3", "1j, 2j", "'a', 1", "1 / 0, 1", "none.x"):
+    law.write_text(JOINT + "    return " + body + "\\n")
+    model = stack(law)
+    try:
+        model.cycle(3)
+    except UdecError as error:
+        print(error.number, error.detail.partition("cycle 1: ")[2], model.check())
+"""
+
+
+def test_whatever_an_uncompiled_law_raises_or_returns_is_error_35(tmp_path: Path) -> None:
+    tests = os.pathsep.join((str(ROOT), str(ROOT / "tests")))
+    done = subprocess.run(
+        [sys.executable, "-c", INTERPRETED, str(tmp_path / "law.py")],
+        env={**os.environ, "PYTHONPATH": tests, "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    assert [line.split(",")[0] for line in done.stdout.splitlines()] == [
+        "35 IndexError: list index out of range",
+        "35 TypeError: 'type' object is not iterable",
+        "35 ValueError: 3 numbers returned instead of 2",
+        "35 TypeError: float() argument must be a string or a real number",
+        "35 ValueError: could not convert string to float: 'a'",
+        "35 ZeroDivisionError: division by zero",
+        "35 NameError: name 'none' is not defined",
+    ]
+    assert done.stdout.count(" in line 2 of law.py []") == 3
+    assert done.stdout.count(" in line 1 of law.py []") == 4
+
+
+def checked(text: str, tmp_path: Path) -> dict[str, Any]:
+    """Whether the functions of a law in `text` are compiled with bounds checks, by name."""
+    path = tmp_path / "law.py"
+    path.write_text(text)
+    space: dict[str, Any] = {"__name__": "law"}
+    exec(compile(text, str(path), "exec"), space)
+    done: dict[Any, Any] = {}
+    _compiled(space["clj2"], done)
+    return {function.__name__: compiled.targetoptions["boundscheck"] for function, compiled in done.items()}
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_bounds_are_checked_unless_the_author_of_a_function_says_otherwise(tmp_path: Path) -> None:
+    decorated = TABLE.replace("def entry", "{}\ndef entry")
+    for decorator, entry in (
+        ("njit", True),
+        ("njit(boundscheck=True)", True),
+        ("njit(boundscheck=False)", False),
+    ):
+        found = checked("from numba import njit\n" + decorated.format("@" + decorator), tmp_path)
+        assert found == {"clj2": True, "entry": entry}
+    assert checked(TABLE, tmp_path) == {"clj2": True, "entry": True}
 
 
 # ---- files and mappings
@@ -163,6 +278,7 @@ def refusal(given: Any) -> UdecError:
         (BLOCK + "    return s11 + z, 0, 0\n", 1, 1, "name 'z' is not defined"),
         ("def f(x):\n    raise ValueError\n" + BLOCK + "    return f(s11), 0, 0\n", 2, 5, "f raises an exc"),
         (BLOCK + "    assert s11 < 0\n    return 0, 0, 0\n", 2, 5, "cl2 raises an exception"),
+        (BLOCK + "    a = m.x\n    return z.flat[0], 0, 0\n", 3, 5, "does not check the indices of flat"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_file_is_shown_where_it_stands(

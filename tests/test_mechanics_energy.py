@@ -20,7 +20,7 @@ from udec_ia import Model
 def cycle_and_energy(m: Model) -> float:
     """One cycle, and the energy (J/m) at the full step before it."""
     cr = m.h.cr
-    before, contacts, friction = m.table("block"), m.table("contact"), float(cr[WFRIC])
+    before, contacts, friction = m.table("block"), m.table("contact"), float(m.h.cd[WFRIC])
     m.cycle(1)
     after = m.table("block")
     free = before["KBFIX"] == 0
@@ -72,7 +72,7 @@ def test_a_sliding_block_pays_its_energy_to_friction() -> None:
     assert np.ptp(energies) < 0.01 * kinetic
     after = at(m, "block", row["address"])
     assert after["KX"] - row["KX"] == pytest.approx(v**2 / (2 * mu * G), rel=0.01)
-    assert m.h.cr[WFRIC] == pytest.approx(kinetic, rel=0.01)
+    assert m.h.cd[WFRIC] == pytest.approx(kinetic, rel=0.01)
     sound(m)
 
 

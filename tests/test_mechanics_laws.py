@@ -121,11 +121,11 @@ def test_energy_of_joints_that_dilate_and_weaken() -> None:
     no_damping(m)
     push(m, block(m, 0, H / 2)["address"], xd=v)
     m.cycle(1)
-    energies, taken = [], float(m.h.cr[WFRIC])
+    energies, taken = [], float(m.h.cd[WFRIC])
     for _ in range(80):
         energies.append(cycle_and_energy(m))
         m.cycle(9)
-    assert m.h.cr[WFRIC] - taken > 0.5 * MASS * v**2 / 2
+    assert m.h.cd[WFRIC] - taken > 0.5 * MASS * v**2 / 2
     assert np.ptp(energies) < 0.01 * MASS * gravity * dilation * critical
 
 

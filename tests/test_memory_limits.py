@@ -43,7 +43,8 @@ COMMANDS: dict[str, Callable[[Model], object]] = {
 def state_of(array: MainArray) -> list[bytes]:
     """The words below MFREE and the common blocks, but for what says how large the array is."""
     common = np.delete(array.h.ci, [MTOP, NSPARE])
-    return [part.tobytes() for part in (array.h.ia[: int(array.h.ci[MFREE]) - 1], common, array.h.cr)]
+    words = array.h.ia[: int(array.h.ci[MFREE]) - 1]
+    return [part.tobytes() for part in (words, common, array.h.cr, array.h.cd)]
 
 
 @pytest.mark.parametrize("build", ["i32r32", "i32r64"])

@@ -14,6 +14,7 @@ from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_wo
 import offsets
 from offsets import RATIOS, Group, TableError, generated, lay_out, read_table
 from offsets.generate import files, stale
+from offsets.table import COMMON_TYPES
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES
@@ -104,11 +105,11 @@ def test_names_are_unique() -> None:
 
 
 def test_common_block_indices_do_not_overlap() -> None:
-    for real, size in ((False, generated.NCOMI), (True, generated.NCOMR)):
+    for kind, size in COMMON_TYPES.items():
         places = [
-            getattr(generated, f.name) + i for f in TABLE.common if f.real == real for i in range(f.count)
+            getattr(generated, f.name) + i for f in TABLE.common if f.type == kind for i in range(f.count)
         ]
-        assert places == list(range(size))
+        assert places == list(range(getattr(generated, size)))
 
 
 def test_pointers_name_a_kind_of_group() -> None:

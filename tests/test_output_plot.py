@@ -8,11 +8,14 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from handmade import ROUNDING, two_blocks
+from matplotlib.figure import Figure
 from matplotlib.path import Path as Curve
+from matplotlib.quiver import Quiver
 from PIL import Image
 
 import offsets.generated as g
@@ -189,12 +192,13 @@ def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
     """PLOT 1 adds to the frame, PLOT 0 starts the next one; each frame gives a PNG and an SVG that open."""
     h = two_blocks(scheme).h
     plots = Plots(tmp_path / "new" / "folder", "deck")
-    plots.draw(h, 1)
+    written = plots.draw(h, 1)
+    assert [path.name for path in written] == ["deck-plot-1.png", "deck-plot-1.svg"]
+    one_state = [path.read_bytes() for path in written]
     shift(h, list(groups(h, "block"))[1], 0.2, 0.1)
-    plots.draw(h, 1)
-    assert plots.files == []
+    assert plots.draw(h, 1) == plots.files == written
+    assert all(path.read_bytes() != before for path, before in zip(written, one_state, strict=True))
     plots.draw(h, 0, What(contacts=True, domains=True, addresses=True))
-    assert [path.name for path in plots.files] == ["deck-plot-1.png", "deck-plot-1.svg"]
     files = plots.close()
     assert [path.name for path in files[2:]] == ["deck-plot-2.png", "deck-plot-2.svg"]
     assert plots.close() == files
@@ -202,6 +206,89 @@ def test_frames_and_their_files(scheme: str, tmp_path: Path) -> None:
         with Image.open(path) as picture:
             assert min(picture.size) > 300
     assert all("</svg>" in path.read_text() for path in files[1::2])
+
+
+def test_a_frame_of_many_states_is_not_drawn_for_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All that is drawn until the frame ends is a small multiple of its states, and no state is left out."""
+    drawn: list[int] = []
+
+    def figure(frame: Frame) -> Figure:
+        drawn.append(len(frame.states))
+        return Figure((1, 1))
+
+    monkeypatch.setattr(Frame, "figure", figure)
+    h, plots = two_blocks().h, Plots(tmp_path, "deck")
+    for n in (20, 80):
+        drawn.clear()
+        for k in range(n):
+            said = plots.draw(h, int(k > 0))
+            assert (said == []) == (drawn[-1] < k + 1)
+            assert (said == []) == any("drawn with the next" in text for text in plots.remarks(h, What()))
+        plots.close()
+        assert drawn[:10] == list(range(1, 11))
+        assert drawn[-1] == n
+        assert sum(drawn) <= 6 * n + 55
+
+
+def test_a_picture_is_there_as_soon_as_it_was_asked_for(tmp_path: Path) -> None:
+    """In Python and in a deck, without the end of the run; STOP names each file once."""
+    m = Model(out=tmp_path)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    files = [tmp_path / f"udec-plot-1.{kind}" for kind in ("png", "svg")]
+    assert m.plot() == m.plot(1) == files
+    assert all(path.stat().st_size > 1000 for path in files)
+    printed = m.run("PLOT 1\nPLOT 0 S11 DISP\n")
+    assert printed is not None
+    assert printed.count("written: ") == 4
+    assert "rigid blocks have no stresses" in printed
+    assert "PLOT 1 DISPLACEMENTS draws them" in printed
+    assert m.stop().count("udec-plot-1.png, udec-plot-1.svg, udec-plot-2.png, udec-plot-2.svg; ") == 1
+
+
+def test_displacements_are_those_since_a_bare_start(tmp_path: Path) -> None:
+    """PLOT 0 does not know yet what PLOT 1 will ask for."""
+    h, plots = two_blocks().h, Plots(tmp_path, "deck")
+    plots.draw(h, 0)
+    shift(h, list(groups(h, "block"))[1], 0.3, 0.4)
+    plots.draw(h, 1, What(displacements=True))
+    assert plots.frame is not None
+    picture = plots.frame.figure()
+    assert "largest displacement: 0.5 m" in "".join(text.get_text() for text in picture.texts)
+    (arrows,) = (one for one in picture.axes[0].collections if isinstance(one, Quiver))
+    at = arrows.XY[:, 1].argmax()
+    assert arrows.XY[at] == pytest.approx([0.8, 1.9])
+    assert arrows.U[at] / arrows.V[at] == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize("name", ["caf\udce9", r"$\frac$", "a\x1b[31m\nb", "日本"])
+def test_any_name_of_a_run_can_be_drawn(name: str, tmp_path: Path) -> None:
+    """Bytes that are no UTF-8, a formula, control characters, what the font does not have."""
+    m = Model(out=tmp_path)
+    m.name = name
+    m.animate = True
+    m.property(1, density=1, kn=1, ks=1)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.split(-1, 0.5, 2, 0.5)
+    m.fix(0, 1, 0, 0.5)
+    m.history(1, "TIME")
+    m.cycle(1)
+    files = [*m.plot(), *m.plot(history=True)]
+    line = m.stop()
+    assert line.isprintable()
+    assert all(path.is_file() and path.name.startswith(name) for path in files)
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [
+        ".csv",
+        ".gif",
+        ".h5",
+        ".png",
+        ".png",
+        ".svg",
+        ".svg",
+    ]
+    for path in files[1::2]:
+        ElementTree.parse(path)
 
 
 def test_words_add_up_over_a_frame(tmp_path: Path) -> None:

@@ -23,11 +23,11 @@ def clock(monkeypatch: pytest.MonkeyPatch, seconds_per_look: float) -> None:
     """A clock that advances by the same time whenever it is looked at."""
     now = [0.0]
 
-    def monotonic() -> float:
+    def tick() -> float:
         now[0] += seconds_per_look
         return now[0]
 
-    monkeypatch.setattr(progress, "monotonic", monotonic)
+    monkeypatch.setattr(progress, "working_time", tick)
 
 
 def run(stream: io.StringIO, total: int = 1000) -> str:

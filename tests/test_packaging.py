@@ -3,7 +3,8 @@
 A wheel is built from the sdist and unpacked into a folder of its own; from a third folder a deck is run
 with nothing but that folder on the path. So whatever the program needs must be in the wheel, and it must
 not write beside its own sources. The dependencies are those of the running Python. Last, tools/start.py
-must get so far on an old Python that it can say what is wrong.
+must get so far on an old Python that it can say what is wrong, and it must install releases that
+pyproject.toml allows.
 """
 
 from __future__ import annotations
@@ -14,11 +15,16 @@ import runpy
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from functools import partial
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
 
 import udec_ia
 from udec_ia.heap.words import ALL_SCHEMES
@@ -102,7 +108,14 @@ def test_what_is_in_the_wheel(built: tuple[Path, Path]) -> None:
 def test_what_is_in_the_sdist(built: tuple[Path, Path]) -> None:
     with tarfile.open(built[0]) as sdist:
         names = {name.partition("/")[2] for name in sdist.getnames()}
-    for name in ("README.md", "LICENSE", "pyproject.toml", "tools/start.py", ".ci/run", "docs/map.md"):
+    for name in (
+        "README.md",
+        "LICENSE",
+        "pyproject.toml",
+        "tools/start.py",
+        "tools/constraints.txt",
+        "docs/map.md",
+    ):
         assert name in names
     for folder in ("tests", "examples", "docs/images"):
         there = {str(path.relative_to(ROOT)) for path in (ROOT / folder).glob("*.*")}
@@ -145,3 +158,47 @@ def test_an_old_python_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "version", "3.9.2 (main)")
     with pytest.raises(SystemExit, match=r"^Python 3\.11 or later is needed, this is 3\.9\.2"):
         runpy.run_path(str(START))
+
+
+def releases(name: str, python: str) -> dict[str, Version]:
+    """The releases that a file in tools/ names for a Python."""
+    lines = (ROOT / "tools" / name).read_text().splitlines()
+    given = [Requirement(line) for line in lines if not line.startswith("#")]
+    taken = [one for one in given if one.marker is None or one.marker.evaluate({"python_version": python})]
+    found = {canonicalize_name(one.name): Version(str(one.specifier).removeprefix("==")) for one in taken}
+    assert len(found) == len(taken)
+    return found
+
+
+@pytest.mark.parametrize("python", ["3.11", "3.12", "3.13"])
+def test_what_start_installs_is_what_the_package_allows(python: str) -> None:
+    """The oldest releases are the lower bounds themselves, where they were built for this Python."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = [
+        Requirement(line) for line in project["dependencies"] + project["optional-dependencies"]["test"]
+    ]
+    pinned, oldest = releases("constraints.txt", python), releases("oldest.txt", python)
+    for one in wanted:
+        name = canonicalize_name(one.name)
+        assert one.specifier.contains(pinned[name])
+        least = [part.version for part in one.specifier if part.operator == ">="]
+        assert (name in oldest) == bool(least)
+        for version in least:
+            assert oldest[name] == Version(version) or (python > "3.11" and oldest[name] > Version(version))
+
+
+def test_whatever_is_installed_is_pinned() -> None:
+    """Also what the packages of this environment ask for in turn."""
+    pinned, seen = releases("constraints.txt", f"{sys.version_info[0]}.{sys.version_info[1]}"), set()
+    if any(Version(metadata.version(name)) != pinned[name] for name in ("numpy", "numba", "pytest")):
+        pytest.skip("these are the newest or the oldest releases")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    left = [*project["dependencies"], *project["optional-dependencies"]["test"]]
+    while left:
+        one = Requirement(left.pop())
+        name = canonicalize_name(one.name)
+        if name in seen or (one.marker is not None and not one.marker.evaluate({"extra": ""})):
+            continue
+        seen.add(name)
+        assert name in pinned
+        left += metadata.requires(name) or []

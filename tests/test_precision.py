@@ -10,6 +10,7 @@ import pytest
 from offsets import generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, putr
+from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import corners, groups
 from udec_ia.kernels.near import arc_on_arc, arc_on_edge
 from udec_ia.kernels.shape import crad
@@ -75,7 +76,7 @@ def test_no_place_between_edge_and_arc_is_lost(build: str, far: float) -> None:
 def memory(model: Model) -> list[bytes]:
     """All words of a model but NSPARE, by which the array is kept ready for the next command."""
     common = np.delete(model.h.ci, g.NSPARE)
-    return [part.tobytes() for part in (model.h.ia, common, model.h.cr)]
+    return [part.tobytes() for part in (model.h.ia, common, model.h.cr, model.h.cd)]
 
 
 def too_fine(model: Model, command: str, *numbers: float) -> UdecError:
@@ -135,15 +136,42 @@ def test_an_edge_must_be_resolved() -> None:
         assert model.check() == []
 
 
-def test_a_cut_must_leave_a_thousandth_of_an_edge() -> None:
-    """While the rounding length is open. With 32-bit reals 10,000 digits are more than that here."""
-    for build, least in (("i32r64", 1e-3 * 10), ("i32r32", EDGE_DIGITS * 20 * 2.0**-23)):
-        for x in (least, 10 - least):
-            inwards = 1e-3 * np.sign(5 - x) * least
-            model = Model(build)
-            model.block(0, 0, 0, 10, 10, 10, 10, 0)
-            assert too_fine(model, "split", x - inwards, -1, x - inwards, 11).number == 27
-            assert model.split(x + inwards, -1, x + inwards, 11) == 1
+@pytest.mark.parametrize("build", ALL_SCHEMES)
+def test_a_cut_leaves_what_the_reals_resolve_of_the_longest_edge(build: str) -> None:
+    """Unit blocks are cut from a slab 1,100 long; so are slivers of 10,000 digits, and those of less are not.
+
+    Around them the model is sound, before and after some cycles in which every sliver falls by its width.
+    """
+    slab = (-550, -5, -550, 5, 550, 5, 550, -5)
+    least = EDGE_DIGITS * last_digit(Model(build).array, 555)
+    for width in (1.0, 1.01 * least):
+        model = Model(build)
+        model.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5)
+        model.block(*slab)
+        for x in (-550 + width, 550 - width):
+            inwards = 0.02 * least if x < 0 else -0.02 * least
+            if width < 1:
+                error = too_fine(model, "split", x - inwards, -6, x - inwards, 6)
+                assert error.number == 27
+                assert f"shorter than {least:g}, the finest for {model.scheme.real_bits}-bit" in error.detail
+            assert model.split(x, -6, x, 6) == 1
+        assert model.check() == []
+        model.fix(-540, 540, -5, 5)
+        model.gravity(0, -10)
+        model.cycle(20)
+        assert model.check() == []
+
+
+def test_a_slab_of_1100_by_900_unit_blocks_can_be_cut_from_one_block() -> None:
+    """One row and one column of it, at either end; the origin stands at a corner."""
+    model = Model()
+    model.block(0, 0, 0, 900, 1100, 900, 1100, 0)
+    assert model.split(1, -1, 1, 901) == 1
+    assert model.split(1099, -1, 1099, 901) == 1
+    assert model.split(-1, 1, 1101, 1) == 3
+    assert model.split(-1, 899, 1101, 899) == 3
+    assert model.check() == []
+    assert model.table("block")["KBRO"].min() == pytest.approx(0.5**0.5)
 
 
 def test_lines_that_end_in_a_sliver() -> None:

@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from offsets import generated as g
-from offsets.table import TABLE
+from offsets.table import COMMON_TYPES, TABLE, read_table
 from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
@@ -175,11 +175,79 @@ def folder(file: h5py.File) -> None:
     file.create_group("common/JUNK")
 
 
+def test_a_table_with_other_words_means_the_same(good: Path) -> None:
+    """Comments, texts, units and pages may change: the words of IA() stand where they stood."""
+    table = TABLE.read_text().replace("m/s2  38 |", "m/s**2  39 | the").replace("# type ", "# Type ")
+    assert table != TABLE.read_text()
+    edit(good, new_table(table + "\n# more\n"))
+    assert load(good).deck == ["START"]
+    assert "layout    that of this program\n" in info(good)
+
+
+def of_table(table: str, **values: Any) -> Edit:
+    """As a program with the common block of another `table` would write it; `values` are what ours lacks."""
+
+    def change(file: h5py.File) -> None:
+        new_table(table)(file)
+        for name, value in values.items():
+            file[f"common/{name}"] = value
+        parts: dict[str, list[bytes]] = {kind: [] for kind in COMMON_TYPES}
+        for field in read_table(table).common:
+            parts[field.type].append(file[f"common/{field.name}"][()].tobytes())
+        digest = hashlib.sha256(b"".join(part for kind in parts.values() for part in kind)).hexdigest()
+        file["common"].attrs["sha256"] = text(digest)
+
+    return change
+
+
+HEAD = next(line for line in TABLE.read_text().splitlines(True) if line.startswith("NCYC "))
+LATER = TABLE.read_text().replace(HEAD, "LNEW  int  -  data  -  ours | of tomorrow\n" + HEAD)
+EARLIER = "".join(line for line in TABLE.read_text().splitlines(True) if not line.startswith("EPOT"))
+
+
+def test_the_common_block_is_read_by_names(good: Path) -> None:
+    """A variable more, a variable less, and another order: each goes to its own place."""
+    ours = load(good).array
+    edit(good, of_table(LATER, LNEW=np.int64(0)))
+    assert parts(load(good).array) == parts(ours)
+    edit(good, of_table(EARLIER))
+    assert parts(load(good).array) == parts(ours)
+    lines = TABLE.read_text().splitlines(True)
+    start = next(i for i, line in enumerate(lines) if line.startswith("COMMON")) + 1
+    edit(good, of_table("".join(lines[:start] + lines[: start - 1 : -1])))
+    assert parts(load(good).array) == parts(ours)
+    assert "2 blocks, 2 contacts" in info(good)
+
+
+def parts(array: MainArray) -> list[bytes]:
+    return [view.tobytes() for view in array.h]
+
+
+def test_what_this_version_cannot_tell_is_no_small_thing(good: Path) -> None:
+    """A variable that has gone may be left out only if it is 0; one of another type or length is refused."""
+    edit(good, of_table(LATER, LNEW=np.int64(7)))
+    assert "the common block has LNEW, which is not 0, in the file only" in refusal(good)
+
+
+def test_a_history_knows_a_variable_by_its_number(tmp_path: Path) -> None:
+    model = Model(out=tmp_path)
+    model.block(0, 0, 0, 10, 10, 10, 10, 0)
+    model.history(1, "TIME")
+    path = model.save()
+    edit(path, of_table(LATER, LNEW=np.int64(0)))
+    assert "histories know NCYC of the common block by another number" in refusal(path)
+
+
 ONE_MORE = "KNEW  real  -   data   m     ours | a field of tomorrow\nKBRO "
+MATERIAL = next(line for line in TABLE.read_text().splitlines(True) if line.startswith("KMAT "))
+CONSTITUTIVE = next(line for line in TABLE.read_text().splitlines(True) if line.startswith("KCONS "))
+FIRST, _, REST = TABLE.read_text().partition("GROUP  corner")
+SECOND, _, THIRD = REST.partition("GROUP  contact")
+REORDERED = FIRST + "GROUP  contact" + THIRD.replace("COMMON  51", "GROUP  corner" + SECOND + "COMMON  51")
 CASES: dict[str, tuple[Edit, str]] = {
     "complete 0": (attr("/", "complete", np.int8(0)), "is not complete"),
     "no complete": (without_attr("/", "complete"), "is not complete"),
-    "no format": (without_attr("/", "format"), "cannot be understood"),
+    "no format": (without_attr("/", "format"), "is damaged: / has no format"),
     "table changed": (put("layout/table", text("# nothing\n")), "the checksum of its field table is wrong"),
     "field more": (
         new_table(TABLE.read_text().replace("KBRO ", ONE_MORE)),
@@ -193,20 +261,38 @@ CASES: dict[str, tuple[Edit, str]] = {
         new_table(TABLE.read_text().replace("KMAT   int ", "KMAT   real")),
         "group block has KMAT as real 4, 3 in the file, as int 3, 3 here",
     ),
-    "wording": (new_table(TABLE.read_text() + "\n# more\n"), "field table: only the wording differs"),
     "gibberish": (new_table("GROUP\n"), "field table: it cannot be read here: groups.table:1"),
     "widths": (attr("heap/IA", "int_bits", np.int32(24)), "words of 24 and 64 bits, 2 to a real"),
+    "order": (
+        new_table(TABLE.read_text().replace(MATERIAL + CONSTITUTIVE, CONSTITUTIVE + MATERIAL)),
+        "group block has KMAT as int 4, 4 in the file, as int 3, 3 here",
+    ),
+    "order of groups": (new_table(REORDERED), "its groups or fields come in another order"),
+    "code": (
+        new_table(TABLE.read_text().replace("HEAD  MCOR   4", "HEAD  MCOR   9")),
+        "the list of head codes has MCOR as 9 of corner in the file, as 4 of corner here",
+    ),
+    "common kind": (
+        new_table(TABLE.read_text().replace("NBLK    int ", "NBLK    real")),
+        "/common/NBLK holds integers of 8 bytes, not little-endian float64",
+    ),
     "ratio": (attr("heap/IA", "ratio", np.int32(4)), "words of 32 and 64 bits, 4 to a real"),
-    "no widths": (without_attr("heap/IA", "real_bits"), "cannot be understood"),
-    "no heap": (without("heap/IA"), "cannot be understood"),
-    "no common": (without("common/AKN"), "cannot be understood"),
-    "common type": (put("common/JUNK", np.int32(0)), "/common/JUNK is int32() instead of int64()"),
-    "common shape": (put("common/AKN", np.zeros(49)), "/common/AKN is float64(49,) instead of float64(50,)"),
+    "no widths": (without_attr("heap/IA", "real_bits"), "/heap/IA has no real_bits"),
+    "no heap": (without("heap/IA"), "/heap/IA is not there"),
+    "no common": (without("common/AKN"), "/common/AKN is not there"),
+    "common type": (
+        put("common/JUNK", np.int32(0)),
+        "/common/JUNK holds integers of 4 bytes, not little-endian int64",
+    ),
+    "common shape": (put("common/AKN", np.zeros(49)), "/common/AKN has the shape (49,) instead of (50,)"),
     "common value": (put("common/NBLK", np.int64(3)), "the checksum of /common is wrong"),
     "common folder": (folder, "/common/JUNK is no dataset"),
-    "big-endian": (put("common/GRAVX", np.array(0.0, ">f8")), "/common/GRAVX is >f8() instead of float64()"),
-    "deck type": (put("deck", 1.0), "/deck is float64() instead of |S8()"),
-    "deck link": (dangling, "cannot be understood"),
+    "big-endian": (
+        put("common/GRAVX", np.array(0.0, ">f8")),
+        "/common/GRAVX holds reals of 8 bytes, not little-endian float64",
+    ),
+    "deck type": (put("deck", 1.0), "/deck is no text of fixed length"),
+    "deck link": (dangling, "/deck is a link that leads elsewhere"),
     "deck text": (put("deck", np.array(b"\xff\xfe\n", "S3")), "cannot be understood"),
 }
 
@@ -219,11 +305,11 @@ def test_parts_that_contradict_each_other(good: Path, case: str) -> None:
 
 
 def test_the_other_table_names_the_version_to_use(good: Path) -> None:
-    edit(good, new_table(TABLE.read_text() + "\n# more\n"))
+    edit(good, new_table(TABLE.read_text().replace("KBRO ", ONE_MORE)))
     with pytest.raises(UdecError) as caught:
         load(good)
     assert caught.value.advice == f"read it with the version that wrote it, udec_ia {__version__}"
-    assert "not that of this program: only the wording differs" in info(good)
+    assert "not that of this program: group block has KNEW in the file only" in info(good)
 
 
 @pytest.mark.parametrize("name", SCHEMES)
@@ -245,7 +331,7 @@ def commons(array: MainArray, **values: int) -> Edit:
         for name, value in values.items():
             ci[getattr(g, name)] = value
             file[f"common/{name}"][()] = value
-        digest = hashlib.sha256(ci.tobytes() + array.h.cr.tobytes()).hexdigest()
+        digest = hashlib.sha256(ci.tobytes() + array.h.cr.tobytes() + array.h.cd.tobytes()).hexdigest()
         file["common"].attrs["sha256"] = text(digest)
 
     return change
@@ -278,7 +364,7 @@ def test_sizes_that_only_exist_on_paper(tmp_path: Path) -> None:
         commons(array, MFREE=words + 1, MTOP=words)(file)
         kept = dict(file["heap/IA"].attrs)
         del file["heap/IA"]
-        file.create_dataset("heap/IA", (words,), "<i8", chunks=(65536,)).attrs.update(kept)
+        file.create_dataset("heap/IA", (words,), "<i8", chunks=(65536,), fletcher32=True).attrs.update(kept)
 
     edit(path, change)
     assert refusal(path) == "is damaged: /heap/IA is said to be larger than the file"

@@ -26,7 +26,7 @@ def pressed() -> tuple[Model, float]:
 def words(m: Model) -> tuple[bytes, bytes, bytes]:
     """All words in use and the common block."""
     h = m.h
-    return h.ia[: int(h.ci[MFREE]) - 1].tobytes(), h.ci.tobytes(), h.cr.tobytes()
+    return h.ia[: int(h.ci[MFREE]) - 1].tobytes(), h.ci.tobytes(), h.cr.tobytes(), h.cd.tobytes()
 
 
 def test_a_rounding_length_of_less_than_twice_an_overlap_is_refused() -> None:

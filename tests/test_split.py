@@ -64,6 +64,20 @@ def test_along_an_edge(
         assert model.check() == []
 
 
+@pytest.mark.parametrize("teeth", [33, 100])
+def test_a_line_through_all_teeth_of_a_comb(teeth: int) -> None:
+    """A block has as many crossings as it has, and is cut at each pair of them."""
+    outline: list[Point] = [(0, 0)]
+    for k in range(teeth):
+        outline += [(2 * k, 3), (2 * k + 1, 3), (2 * k + 1, 1), (2 * k + 2, 1)]
+    model = Model()
+    model.block(*(number for point in [*outline, (2 * teeth, 0)] for number in point))
+    assert model.split(-1, 2, 2 * teeth + 1, 2) == teeth
+    tips = model.table("block")
+    assert sorted(float(tip["KX"]) for tip in tips if tip["KY"] > 2) == [2 * k + 0.5 for k in range(teeth)]
+    sound(model)
+
+
 def test_neighbours_agree_whether_a_line_goes_through_their_corner() -> None:
     """Far from the origin of 32-bit reals, where a corner is 110 last digits from the line: on it, for all.
 

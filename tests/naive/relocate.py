@@ -11,7 +11,7 @@ import numpy as np
 
 from offsets import generated, read_table
 from offsets.table import lay_out
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.array import MainArray, variable
 from udec_ia.inspect.table import table
 
 TABLE = read_table()
@@ -71,13 +71,13 @@ def essence(array: MainArray) -> dict[str, Any]:
                 values = np.array([number[iad] for iad in values.ravel().tolist()], np.int64)
             found[f"{field.name} of {kind}"] = values
     for field in TABLE.common:
-        at = getattr(generated, field.name)
+        values = variable(array.h, field)
         if field.real:
-            found[field.name] = array.h.cr[at : at + field.count].copy()
+            found[field.name] = values.copy()
         elif field.target is not None:
-            found[field.name] = number[int(array.h.ci[at])]
+            found[field.name] = number[int(values[0])]
         elif field.name not in NO_STATE:
-            found[field.name] = int(array.h.ci[at])
+            found[field.name] = int(values[0])
     return found
 
 

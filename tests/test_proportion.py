@@ -1,0 +1,154 @@
+"""Every command takes time in proportion to what it touches: four times as much, about four times the time.
+
+Where it was once the square, sixteen times. Times are processor times, the best of three; tools/commands.py
+measures all commands at greater sizes.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from math import isqrt
+from pathlib import Path
+from time import process_time
+
+import pytest
+
+from udec_ia import Model
+from udec_ia.ops.timestep import bound, describe
+from udec_ia.output import histories
+from udec_ia.output.outline import snapshot
+from udec_ia.output.plot import Frame, What
+
+ALL = (-1.0, 1e6, -1.0, 1e6)
+WORSE = 9  # times the time for four times the size: 4 in proportion, 16 for the square
+
+
+def grid(n: int) -> Model:
+    """n blocks in a square, the lowest row fixed."""
+    model = Model()
+    model.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5)
+    side = isqrt(n)
+    model.block(0, 0, 0, side, side, side, side, 0)
+    for i in range(1, side):
+        model.split(-1, i, side + 1, i)
+    for i in range(1, side):
+        model.split(i, -1, i, side + 1)
+    model.fix(*ALL[:2], 0, 1)
+    return model
+
+
+def times(build: Callable[[int], Model], run: Callable[[Model], object], n: int) -> tuple[float, float]:
+    """Processor time of `run` with models built for n and for 4n."""
+    found = []
+    for size in (n, 4 * n):
+        model = build(size)
+        state, best = model.array, float("inf")
+        for _ in range(3):
+            model.array = state.copy()
+            gc.collect()
+            start = process_time()
+            run(model)
+            best = min(best, process_time() - start)
+        found.append(best)
+    return found[0], found[1]
+
+
+def held(n: int) -> Model:
+    """The same, with two conditions on every block."""
+    model = grid(n)
+    model.boundary(*ALL, xvel=0.0)
+    model.boundary(*ALL, xforce=1.0)
+    return model
+
+
+@pytest.mark.parametrize(
+    ("build", "run", "n"),
+    [
+        (grid, lambda m: m.print("contacts"), 100),
+        (grid, lambda m: m.boundary(*ALL, yvel=0.0), 500),
+        (held, lambda m: m.boundary(*ALL, xvel=1.0), 250),
+        (held, lambda m: m.boundary(*ALL[:2], 1, 1e6, free=True), 500),
+        (held, lambda m: m.free(*ALL), 250),
+        (held, lambda m: m.delete(*ALL[:2], 1, 1e6), 250),
+        (held, lambda m: m.change(*ALL[:2], 1, 1e6, type="fdef"), 150),
+    ],
+    ids=["PRINT", "BOUNDARY", "BOUNDARY again", "BOUNDARY FREE", "FREE", "DELETE", "CHANGE"],
+)
+def test_commands(build: Callable[[int], Model], run: Callable[[Model], object], n: int) -> None:
+    small, large = times(build, run, n)
+    assert large < WORSE * small, (small, large)
+
+
+@pytest.mark.parametrize("upright", [False, True])
+def test_block(upright: bool) -> None:
+    """Saw blades of 250 and 1000 corners."""
+
+    def saw(model: Model, n: int) -> None:
+        teeth = [(float(i), 10.0 + i % 2) for i in range(n - 2)]
+        corners = [(0.0, 0.0), *teeth, (n - 3.0, 0.0)]
+        if upright:
+            corners = [(-y, x) for x, y in corners]
+        model.block(*(number for corner in corners for number in corner))
+
+    found = []
+    for n in (250, 1000):
+        best = float("inf")
+        for _ in range(3):
+            model = Model()
+            model.start()
+            start = process_time()
+            saw(model, n)
+            best = min(best, process_time() - start)
+        found.append(best)
+    assert found[1] < WORSE * found[0], found
+
+
+def test_explaining_the_time_step_is_cheap_beside_cycles() -> None:
+    """What a deck's CYCLE line does more than Python's: it took as long as a hundred cycles."""
+    model = grid(3600)
+    model.cycle(2)
+    explained, cycles = [], []
+    for _ in range(5):
+        start = process_time()
+        describe(model.array, bound(model.array))
+        between = process_time()
+        model.cycle(30)
+        explained.append(between - start)
+        cycles.append(process_time() - between)
+    assert min(explained) < min(cycles)
+
+
+def test_files_of_histories_are_extended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many CYCLEs: the whole is written twice, once for each of the copies that take turns."""
+    whole = {"_csv": 0, "_hdf5": 0}
+
+    def counting(name: str) -> Callable[..., bytes]:
+        write = getattr(histories, name)
+
+        def counted(series: object) -> bytes:
+            whole[name] += 1
+            return bytes(write(series))
+
+        return counted
+
+    for name in whole:
+        monkeypatch.setattr(histories, name, counting(name))
+    model = grid(4)
+    model.out = tmp_path
+    model.gravity(0, -10)
+    model.history(1, "KY", at=(0.5, 1.5))
+    for _ in range(10):
+        model.cycle(1)
+    assert whole == {"_csv": 2, "_hdf5": 2}
+
+
+def test_a_picture_names_the_domains_that_can_be_read() -> None:
+    """Names take a picture's time. Those of the domains between small blocks covered each other."""
+    for n, named in ((9, True), (900, False)):
+        frame = Frame("deck")
+        frame.add(snapshot(grid(n).h, domains=True), What(domains=True))
+        axes = frame.figure().axes[0]
+        inner = {str(domain.address) for domain in frame.states[0].domains if not domain.outer}
+        shown = {text.get_text() for text in axes.texts} & inner
+        assert bool(shown) == named

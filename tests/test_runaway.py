@@ -1,0 +1,206 @@
+"""Energy from nowhere: a step above the safe bound is warned of, and what it throws apart is stopped.
+
+Against false alarms: with every run suspected, whatever its step, none that is sound is blamed.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from kinds import every_kind
+from mechanics import block, on_base, push
+
+from offsets import generated as g
+from udec_ia import Model, UdecError
+from udec_ia.cli import main
+from udec_ia.ops import runaway
+
+STACK = """START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
+BLOCK 0,0 0,3 1,3 1,0
+SPLIT -1,1 2,1
+SPLIT -1,2 2,2
+FIX 0 1 0 1
+GRAVITY 0 -10
+FRAC {}
+"""
+WARNING = re.compile(
+    r"time-step of \S+ s is (\S+) of the safe bound, which (\S+) sets.* FRACTION (\S+) is safe"
+)
+
+
+def stack(fraction: float, out: Path) -> Model:
+    """Three blocks on each other without damping."""
+    m = Model(out=out)
+    m.run(STACK.format(fraction))
+    return m
+
+
+@pytest.mark.parametrize("fraction", [0.45, 0.5])
+def test_a_deck_that_runs_away_is_warned_of_and_stopped(
+    fraction: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck = tmp_path / "stack.dat"
+    deck.write_text(STACK.format(fraction) + "CYCLE 20000\nSTOP\n")
+    assert main(["run", str(deck), "--out", str(tmp_path)]) == 1
+    said = capsys.readouterr()
+    warning = WARNING.search(said.out)
+    assert warning is not None
+    assert said.out.index(warning.group()) < said.out.index("cycle 100 of 20000")
+    assert "error 37: there is more energy than can be" in said.err
+    assert re.search(r"block@\d+ leads with", said.err)
+    assert (tmp_path / "rescue.h5").exists()
+
+
+def test_python_is_warned_once_and_hears_of_the_group(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    m = stack(0.5, tmp_path)
+    with caplog.at_level(logging.WARNING, "udec_ia"), pytest.raises(UdecError) as caught:
+        cycle_by_tens(m)
+    assert caught.value.number == 37
+    assert caught.value.group in m.table("block")["address"]
+    assert len([one for one in caplog.messages if WARNING.search(one)]) == 1
+
+
+def test_the_fraction_that_the_warning_names_is_silent_and_sound(tmp_path: Path) -> None:
+    m = stack(0.5, tmp_path)
+    told: list[str] = []
+    m.tell = told.append
+    m.cycle(0)
+    found = WARNING.search(told[0])
+    assert found is not None
+    m.fraction(float(found[3]))
+    m.cycle(2000)
+    assert len(told) == 1
+    assert float(m.table("block")["KY"].max()) == pytest.approx(2.5, abs=0.01)
+
+
+def test_a_step_that_contacts_yet_to_come_make_unsafe_is_found_on_the_way(tmp_path: Path) -> None:
+    """In the air nothing bounds it; after the fall it is warned of, in the midst of the CYCLE."""
+    m = Model(out=tmp_path)
+    told: list[str] = []
+    m.tell = told.append
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.block(0, 0, 0, 3.4, 1, 3.4, 1, 0)
+    for y in (1, 1.2, 2.2, 2.4):
+        m.split(-1, y, 2, y)
+    m.delete(0, 1, 1, 1.2)
+    m.delete(0, 1, 2.2, 2.4)
+    m.fix(0, 1, 0, 1)
+    m.fraction(0.3)
+    m.damping(0.5, 20, "mass")
+    m.gravity(0, -10)
+    m.cycle(1)
+    assert told == []
+    m.cycle(2000)
+    (warning,) = told
+    assert WARNING.search(warning)
+
+
+def cycle_by_tens(m: Model) -> None:
+    for _ in range(100):
+        m.cycle(10)
+
+
+# ---- no false alarms
+
+
+def impact(m: Model) -> None:
+    """A block is thrown onto its base, again and again, without damping."""
+    push(m, int(block(m, 0, 0.5)["address"]), xd=0.5, yd=2.0)
+    m.cycle(6000)
+
+
+def fall(m: Model) -> None:
+    """The base goes, and the block falls for ever."""
+    m.cycle(500)
+    m.free(-9, 9, -9, 0)
+    m.cycle(3000)
+
+
+def drive(m: Model) -> None:
+    """A base that shakes, and then one that pushes at constant speed."""
+    m.free(-9, 9, -9, 0)
+    m.boundary(-9, 9, -9, 0, xvel=0.3, yvel=0.0, sine=(2.0, 2.0))
+    m.cycle(3000)
+    m.boundary(-9, 9, -9, 0, xvel=0.5, yvel=0.1)
+    m.cycle(2000)
+
+
+def load(m: Model) -> None:
+    """A force that pulls the block away over the base, from one CYCLE to the next."""
+    m.boundary(-1, 1, 0, 1, xforce=4e4)
+    for _ in range(300):
+        m.cycle(7)
+
+
+def strengthen(m: Model) -> None:
+    """What commands put in: a stiffness, a velocity, a block that goes; over a restart."""
+    m.cycle(950)
+    m.property(1, kn=4e8, ks=4e8)
+    m.restart(m.save((m.out / "half.h5").absolute()))
+    m.cycle(950)
+    push(m, int(block(m, 0, 0.5)["address"]), xd=5.0)
+    m.cycle(950)
+
+
+@pytest.mark.parametrize("play", [impact, fall, drive, load, strengthen])
+def test_no_run_at_a_sound_step_is_blamed(
+    play: Callable[[Model], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runaway, "SUSPECT", 0.0)
+    looks = watched(monkeypatch)
+    m = on_base(1.0, 1.0, 0.1, 4.0, friction=0.5, density=2000)
+    m.out = tmp_path
+    play(m)
+    assert len(looks) >= 10
+
+
+def test_blocks_of_all_kinds_under_all_conditions_are_not_blamed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runaway, "SUSPECT", 0.0)
+    looks = watched(monkeypatch)
+    m = every_kind()
+    m.out = tmp_path
+    m.damping(0.1, 30.0, "stiffness")
+    for _ in range(3):
+        m.cycle(400)
+    assert len(looks) >= 10
+
+
+def watched(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The cycles at which the energy of a suspected run is looked at."""
+    looks: list[int] = []
+    look = runaway.Runaway.look
+
+    def counted(self: runaway.Runaway, array: runaway.MainArray) -> None:
+        if self._account is not None and array.h.ci[g.MCTOT] % runaway.LOOK == 0:
+            looks.append(int(array.h.ci[g.MCTOT]))
+        look(self, array)
+
+    monkeypatch.setattr(runaway.Runaway, "look", counted)
+    return looks
+
+
+def test_what_boundary_conditions_put_in_is_summed(tmp_path: Path) -> None:
+    """A force of 100 N/m on 1000 kg/m over its way, and a velocity that is given at once."""
+    m = Model(out=tmp_path)
+    m.property(1, density=1000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.boundary(-1, 2, -1, 2, xforce=100.0)
+    m.cycle(1000)
+    moved = 1000 * float(m.table("block")["KXD"][0]) ** 2 / 2
+    assert float(m.h.cd[g.WDRIVE]) == pytest.approx(moved, rel=0.01)
+    m.boundary(-1, 2, -1, 2, free=True)
+    m.boundary(-1, 2, -1, 2, xvel=3.0, yvel=4.0)
+    before = float(m.h.cd[g.WDRIVE])
+    m.cycle(10)
+    assert float(m.h.cd[g.WDRIVE]) - before == pytest.approx(1000 * 25 / 2 - moved, rel=1e-6)
+    assert not math.isnan(float(m.h.cd[g.WDRIVE]))
