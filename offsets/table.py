@@ -12,6 +12,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 TABLE = Path(__file__).with_name("groups.table")
@@ -98,9 +99,14 @@ class Layout:
     used: int  # words before the size is rounded up
 
 
-def read_table(text: str | None = None) -> Table:
-    """Parse the table (by default the file beside this module). Raises TableError."""
-    text = TABLE.read_text() if text is None else text
+@cache
+def read_table() -> Table:
+    """The table of this program, from the file beside this module; read once. Raises TableError."""
+    return parse(TABLE.read_text())
+
+
+def parse(text: str) -> Table:
+    """Parse a table, which may be that of another version. Raises TableError."""
     groups: list[Group] = []
     heads: list[HeadCode] = []
     common: list[Field] = []

@@ -36,7 +36,11 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture(autouse=True, scope="session")
 def _nothing_is_written_here() -> Iterator[None]:
     """A test that runs a model with pictures or histories gives it a folder of its own."""
-    here = Path.cwd()
-    before = set(here.glob("udec-*"))
+    before = _files_of_runs()
     yield
-    assert set(here.glob("udec-*")) == before
+    assert _files_of_runs() == before
+
+
+def _files_of_runs() -> dict[str, int]:
+    """Files of the names that a run without a folder writes, and when each was written."""
+    return {path.name: path.stat().st_mtime_ns for path in Path.cwd().glob("udec-*")}

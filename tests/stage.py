@@ -8,7 +8,7 @@ as a few lines of Python.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, combinations
 from typing import Any
 
@@ -20,24 +20,16 @@ from offsets.generated import (
     DTOL,
     DTOL2,
     IBPNT,
-    ICPNT,
     KB,
-    KB1,
-    KB2,
-    KC,
-    KCCOD,
-    KCN,
     KP,
     KR,
     KRAD,
     KTD,
     KX,
-    KXC,
     KXD,
     KXDP,
     KXP,
     KY,
-    KYC,
     KYD,
     KYDP,
     KYP,
@@ -187,12 +179,20 @@ class Stage:
 
     def bodies(self) -> dict[int, Body]:
         """The bodies as they are now, by the addresses of their blocks."""
-        h, found = self.model.h, {}
+        corners, plain = self._read(KXP, KYP), self._read(KRAD)[:, 0] == 0
+        return {ib: Body(corners[part], plain[part]) for ib, part in self._parts()}
+
+    def _read(self, *offsets: Any) -> Any:
+        """Reals of all corners, as 64-bit numbers: one row a corner, ring by ring, a column an offset."""
+        h, addresses = self.model.h, np.concatenate(list(self.rings().values()))
+        return np.stack([np.asarray(getr(h, addresses, offset), float) for offset in offsets], axis=1)
+
+    def _parts(self) -> Iterator[tuple[int, slice]]:
+        """Each block and the rows of its corners in what _read gives."""
+        start = 0
         for ib, ring in self.rings().items():
-            x, y = getr(h, ring, KXP), getr(h, ring, KYP)
-            corners = np.stack([x, y], axis=1).astype(float)
-            found[ib] = Body(corners, getr(h, ring, KRAD) == 0)
-        return found
+            yield ib, slice(start, start + len(ring))
+            start += len(ring)
 
     def centroid(self, ib: int) -> Any:
         """Centroid of a block."""
@@ -200,14 +200,13 @@ class Stage:
 
     def contacts(self) -> dict[Pair, Any]:
         """Contacts that are not virtual, by their two blocks: (x, y, overlap), arrays (n, 3)."""
-        h, ic = self.model.h, int(self.model.h.ci[ICPNT])
-        found: dict[Pair, list[tuple[float, float, float]]] = {}
-        while ic:
-            if iget(h, ic, KCCOD) != VIRTUAL:
-                pair = frozenset((iget(h, ic, KB1), iget(h, ic, KB2)))
-                row = (float(getr(h, ic, KXC)), float(getr(h, ic, KYC)), float(getr(h, ic, KCN)))
-                found.setdefault(pair, []).append(row)
-            ic = iget(h, ic, KC)
+        rows = self.model.table("contact")
+        rows = rows[rows["KCCOD"] != VIRTUAL]
+        pairs = np.sort(np.stack([rows["KB1"], rows["KB2"]], axis=1), axis=1)
+        numbers = np.stack([rows["KXC"], rows["KYC"], rows["KCN"]], axis=1).astype(float)
+        found: dict[Pair, list[Any]] = {}
+        for pair, row in zip(map(frozenset, pairs.tolist()), numbers, strict=True):
+            found.setdefault(pair, []).append(row)
         return {pair: np.array(rows) for pair, rows in found.items()}
 
     def _look(self, before: dict[int, Body] | None, after: dict[int, Body]) -> None:
@@ -215,7 +214,8 @@ class Stage:
         d, addresses = self.d, list(after)
         fast = before is not None and self._fast(before, after)
         contacts = self.contacts()
-        pressed = [pair for pair, rows in contacts.items() if rows[:, 2].max() > LIMIT * d + self._noise()]
+        limits = self._limits()
+        pressed = [pair for pair, rows in contacts.items() if rows[:, 2].max() > limits[0]]
         close = [(addresses[i], addresses[j]) for i, j in touching(list(after.values()))]
         outlines = {ib: outline(after[ib], d) for ib in set(chain(*close, *pressed))}
         for pair in pressed:
@@ -224,37 +224,48 @@ class Stage:
                 gap, most = outlines[one].distance(outlines[two]) / d, contacts[pair][:, 2].max() / d
                 where = f"blocks {one} and {two} are {gap:.3f} D apart"
                 raise Wrong("phantom", f"{where}, and a contact of theirs overlaps by {most:.3f} D")
-        for one, two in close:
-            if deeper(outlines[one], outlines[two], LIMIT * d):
-                self._look_at(one, two, outlines[one], outlines[two], contacts)
+        rows = {ib: row for row, ib in enumerate(outlines)}
+        deep = deeper(list(outlines.values()), [(rows[one], rows[two]) for one, two in close], LIMIT * d)
+        for (one, two), is_deep in zip(close, deep, strict=True):
+            if is_deep:
+                self._look_at(one, two, (outlines[one], outlines[two]), contacts, limits)
             elif len(after) == 2 and outlines[one].intersects(outlines[two]):
                 self.touched = self.cycles
         if before is not None and fast:
             for one, two in combinations(addresses, 2):
                 if frozenset((one, two)) not in contacts:
-                    self._crossed(one, two, before, after)
+                    self._crossed(one, two, before, after, limits[1])
 
     def _look_at(
-        self, one: int, two: int, first: Polygon, second: Polygon, contacts: dict[Pair, Any]
+        self,
+        one: int,
+        two: int,
+        shapes: tuple[Polygon, Polygon],
+        contacts: dict[Pair, Any],
+        limits: tuple[float, float],
     ) -> None:
         """Look at two outlines that may lie deep in each other."""
         self.touched = self.cycles
         d, here = self.d, contacts.get(frozenset((one, two)), np.zeros((0, 3)))
-        for part in parts(first, second, d):
-            if part.depth <= LIMIT * d + self._noise():
+        for part in parts(*shapes, d):
+            if part.depth <= limits[0]:
                 break
             where = f"blocks {one} and {two} overlap by {part.depth / d:.3f} D at {part.place}"
             if bare(part, here[:, :2], d):
                 raise Wrong("bare", f"{where} without a contact there ({len(here)} elsewhere)")
-            most = float(self.model.h.cr[DTOL2]) + SLACK * d + self._noise()
-            if part.depth > most:
+            if part.depth > limits[1]:
                 told = ", ".join(f"{overlap / d:.3f}" for overlap in here[:, 2])
                 raise Wrong("deep", f"{where} without error 15; overlaps of its contacts: {told} D")
+
+    def _limits(self) -> tuple[float, float]:
+        """Overlaps above which there must be a contact, and error 15."""
+        noise = self._noise()
+        return LIMIT * self.d + noise, float(self.model.h.cr[DTOL2]) + SLACK * self.d + noise
 
     def _noise(self) -> float:
         """What rounding may add to an overlap."""
         h = self.model.h
-        size = max(float(np.abs(body.corners).max()) for body in self.bodies().values())
+        size = float(np.abs(self._read(KXP, KYP)).max())
         return 16 * size * float(np.finfo(h.cr.dtype).eps) * float(np.sqrt(1.0 + h.ci[MCTOT]))
 
     def _fast(self, before: dict[int, Body], after: dict[int, Body]) -> bool:
@@ -266,7 +277,9 @@ class Stage:
         self.fastest = max(self.fastest, relative)
         return relative > 0.5
 
-    def _crossed(self, one: int, two: int, before: dict[int, Body], after: dict[int, Body]) -> None:
+    def _crossed(
+        self, one: int, two: int, before: dict[int, Body], after: dict[int, Body], most: float
+    ) -> None:
         """Two bodies that did not touch before and do not now have not been deep in each other in between."""
         d = self.d
         start, end = [before[one], before[two]], [after[one], after[two]]
@@ -274,7 +287,6 @@ class Stage:
         first, second = (Polygon(body.corners) for body in start)
         if first.distance(second) > moved:
             return
-        most = float(self.model.h.cr[DTOL2]) + SLACK * d + self._noise()
         for first, second in within(start, end, d):
             if not first.intersects(second):
                 continue
@@ -308,8 +320,5 @@ class Stage:
 
     def _moved(self, bodies: dict[int, Body], t: float) -> dict[int, Body]:
         """The bodies `t` steps away, with the velocities of their corners."""
-        h, found = self.model.h, {}
-        for ib, ring in self.rings().items():
-            speeds = np.stack([getr(h, ring, KXDP), getr(h, ring, KYDP)], axis=1).astype(float)
-            found[ib] = Body(bodies[ib].corners + t * self.step * speeds, bodies[ib].plain)
-        return found
+        moves = t * self.step * self._read(KXDP, KYDP)
+        return {ib: Body(bodies[ib].corners + moves[part], bodies[ib].plain) for ib, part in self._parts()}

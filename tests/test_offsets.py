@@ -14,7 +14,7 @@ from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_wo
 import offsets
 from offsets import RATIOS, Group, TableError, generated, lay_out, read_table
 from offsets.generate import files, stale
-from offsets.table import COMMON_TYPES
+from offsets.table import COMMON_TYPES, parse
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES
@@ -140,13 +140,13 @@ def test_bad_lines_are_named(bad: str) -> None:
     text = offsets.TABLE.read_text()
     line = len(text.splitlines()) + 1
     with pytest.raises(TableError, match=rf"groups\.table:{line}: ") as caught:
-        read_table(text + bad + "\n")
+        parse(text + bad + "\n")
     assert bad.strip() in str(caught.value)
 
 
 def test_a_field_before_the_first_group_is_refused() -> None:
     with pytest.raises(TableError, match="before the first GROUP"):
-        read_table("KB  int  block  next  -  53 | lost\n")
+        parse("KB  int  block  next  -  53 | lost\n")
 
 
 PROBE = """

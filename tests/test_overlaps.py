@@ -59,9 +59,9 @@ def test_squares_side_by_side(by: float) -> None:
     """Displaced by so many roundings, they overlap by that."""
     one, two = outline(at(0, 0), D), outline(at(1 - by * D, 0.3), D)
     assert depth(one, two, D) == pytest.approx(by * D, abs=CLOSE)
-    assert deeper(one, two, by * D - CLOSE)
-    assert deeper(two, one, by * D - CLOSE)
-    assert not deeper(one, two, by * D + CLOSE)
+    assert deeper([one, two], [(0, 1)], by * D - CLOSE)
+    assert deeper([one, two], [(1, 0)], by * D - CLOSE)
+    assert not deeper([one, two], [(0, 1)], by * D + CLOSE)
 
 
 def test_corner_on_corner_and_corner_on_edge() -> None:
@@ -77,7 +77,7 @@ def test_bodies_that_only_come_near() -> None:
     """The unrounded corners overlap, the bodies do not."""
     near = outline(at(1 - 0.3 * D, 1 - 0.25 * D), D)
     assert parts(outline(at(0, 0), D), near, D) == []
-    assert not deeper(outline(at(0, 0), D), near, 0.01 * D)
+    assert not deeper([outline(at(0, 0), D), near], [(0, 1)], 0.01 * D)
     assert touching([at(0, 0), at(1 - 0.3 * D, 1 - 0.25 * D), at(2.5, 0)]) == [(0, 1)]
 
 

@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from offsets import generated as g
-from offsets.table import COMMON_TYPES, TABLE, read_table
+from offsets.table import COMMON_TYPES, TABLE, parse
 from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
@@ -192,7 +192,7 @@ def of_table(table: str, **values: Any) -> Edit:
         for name, value in values.items():
             file[f"common/{name}"] = value
         parts: dict[str, list[bytes]] = {kind: [] for kind in COMMON_TYPES}
-        for field in read_table(table).common:
+        for field in parse(table).common:
             parts[field.type].append(file[f"common/{field.name}"][()].tobytes())
         digest = hashlib.sha256(b"".join(part for kind in parts.values() for part in kind)).hexdigest()
         file["common"].attrs["sha256"] = text(digest)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,9 +30,10 @@ def signal(m: Model) -> int:
 
 
 @pytest.mark.parametrize("build", ["i32r32", "i32r64"])
-def test_the_time_of_a_million_cycles(build: str) -> None:
+def test_the_time_of_a_million_cycles(build: str, tmp_path: Path) -> None:
     """And so the time at which a history is recorded, and TIME as a history."""
     m = lone(build)
+    m.out = tmp_path
     m.fix(0, 1, 0, 1)
     (history,) = m.history(250_000, "TIME")
     m.cycle(1_000_000)

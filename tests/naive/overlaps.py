@@ -100,17 +100,16 @@ def depth(one: Polygon, two: Polygon, d: float) -> float:
     return max((part.depth for part in parts(one, two, d)), default=0.0)
 
 
-def deeper(one: Polygon, two: Polygon, limit: float) -> bool:
-    """Whether two outlines lie deeper than `limit` in each other, quickly: one reaches the other's core.
+def deeper(outlines: Sequence[Polygon], pairs: Sequence[tuple[int, int]], limit: float) -> Array:
+    """Which pairs of outlines lie deeper than `limit` in each other, quickly: one reaches the other's core.
 
-    The core of a body is what is further from its outline than `limit`.
+    The core of a body is what is further from its outline than `limit`. Shape (pairs,), of truth values.
     """
-    return bool(
-        one.intersects(two)
-        and (
-            two.intersects(one.buffer(-limit, quad_segs=2)) or one.intersects(two.buffer(-limit, quad_segs=2))
-        )
-    )
+    whole = np.array(outlines)
+    cores = shapely.buffer(whole, -limit, quad_segs=2)
+    i, j = np.array(pairs, int).reshape(-1, 2).T
+    reach = shapely.intersects(whole[j], cores[i]) | shapely.intersects(whole[i], cores[j])
+    return shapely.intersects(whole[i], whole[j]) & reach
 
 
 def touching(bodies: Sequence[Body]) -> list[tuple[int, int]]:

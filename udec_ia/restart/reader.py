@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from offsets.generated import DTOL
-from offsets.table import Table, TableError, read_table
+from offsets.table import Table, TableError, parse, read_table
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
@@ -105,7 +105,7 @@ def read_their_table(file: Contents) -> Table:
     if len(written) > MOST_TABLE:
         raise RefusedError(f"has a field table of {len(written)} bytes")
     try:
-        return read_table(written.decode())
+        return parse(written.decode())
     except (TableError, UnicodeDecodeError) as error:
         raise _other_table(file, [f"it cannot be read here: {error}"]) from error
 
