@@ -188,3 +188,9 @@ def lay_out(group: Group, ratio: int) -> Layout:
             offset[field.name] = word
             word += field.count
     return Layout(offset, -(-word // ratio) * ratio, word)
+
+
+@cache
+def layouts(ratio: int) -> dict[str, Layout]:
+    """The layout of every group of this program's table, by name, where a real takes `ratio` integers."""
+    return {group.name: lay_out(group, ratio) for group in read_table().groups}

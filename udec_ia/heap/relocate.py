@@ -13,7 +13,7 @@ import numpy as np
 
 from offsets import generated
 from offsets.generated import JUNK, MFREE
-from offsets.table import Group, Layout, lay_out, read_table
+from offsets.table import Group, Layout, layouts, read_table
 from udec_ia.heap.array import MainArray
 
 
@@ -25,7 +25,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     where there was none.
     """
     h, table = array.h, read_table()
-    kinds = {kind: (table.group(kind), lay_out(table.group(kind), array.scheme.ratio)) for kind in order}
+    kinds = {kind: (table.group(kind), layouts(array.scheme.ratio)[kind]) for kind in order}
     moved = np.zeros(int(h.ci[MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
     free = 1
     for kind, (_, layout) in kinds.items():

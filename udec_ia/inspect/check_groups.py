@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from offsets import RATIOS, generated, lay_out, read_table
+from offsets import generated, read_table
 from offsets.generated import MCON, MCOR, MFREE
+from offsets.table import layouts
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, SOFT
 
 Numbers = NDArray[Any]
 
 TABLE = read_table()
-LAYOUTS = {ratio: {group.name: lay_out(group, ratio) for group in TABLE.groups} for ratio in RATIOS}
 FIELDS = {field.name: field for group in TABLE.groups for field in group.fields}
 LISTED = [group.name for group in TABLE.groups if group.list_head]
 KIND_OF_HEAD = {code: kind for kind, codes in HEADS.items() for code in codes}
@@ -102,7 +102,7 @@ class State:
     def __init__(self, array: MainArray) -> None:
         self.h = array.h
         self.ratio = array.scheme.ratio
-        self.layout = LAYOUTS[self.ratio]
+        self.layout = layouts(self.ratio)
         self.offset = {name: at for layout in self.layout.values() for name, at in layout.offset.items()}
         self.words = memoryview(self.h.ia)
         self.found: list[Violation] = []

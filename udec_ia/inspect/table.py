@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from offsets.generated import MFREE
-from offsets.table import Group, Layout, lay_out, read_table
+from offsets.table import Group, layouts, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, groups
 
@@ -39,9 +39,7 @@ class _Reader:
         self.h = array.h
         self.scheme = array.scheme
         self.groups: dict[str, Group] = {group.name: group for group in read_table().groups}
-        self.layouts: dict[str, Layout] = {
-            name: lay_out(group, array.scheme.ratio) for name, group in self.groups.items()
-        }
+        self.layouts = layouts(array.scheme.ratio)
 
     def rows(self, kind: str) -> Any:
         """The table of all groups of `kind`."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import offsets.generated as g
-from offsets.table import Field, Group, lay_out, read_table
+from offsets.table import Field, Group, layouts, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
@@ -93,7 +93,7 @@ def _ratio(h: Memory) -> int:
 
 def _shape(group: Group, ratio: int) -> Shape:
     """What groups of a kind look like. What may be of any kind is reached by its own lists, not from here."""
-    layout = lay_out(group, ratio)
+    layout = layouts(ratio)[group.name]
     pointers = [
         (layout.offset[field.name] + i, str(field.target))
         for field in group.fields
@@ -122,7 +122,7 @@ def _spans(h: Memory, n: int, m: int) -> Iterator[Span]:
     """What the words n to m belong to, in rising order and without gaps."""
     known = _junk(h)
     for kind, addresses in reach(h).items():
-        size = lay_out(TABLE.group(kind), _ratio(h)).size
+        size = layouts(_ratio(h))[kind].size
         near = addresses[(addresses > n - size) & (addresses <= m)]
         known += [Span(int(iad), int(iad) + size - 1, f"{kind}@{iad}", kind) for iad in near]
     free = int(h.ci[g.MFREE])
@@ -162,7 +162,7 @@ def _meanings(h: Memory, span: Span, first: int, last: int) -> Iterator[str]:
     """NAME=value for every field with a word between the addresses first and last."""
     ratio = _ratio(h)
     group = TABLE.group(span.kind)
-    offset = lay_out(group, ratio).offset
+    offset = layouts(ratio)[span.kind].offset
     for field in group.fields:
         for i in range(field.count):
             word = span.first + (
