@@ -10,6 +10,7 @@ import pytest
 
 import udec_ia
 from udec_ia.cli import main
+from udec_ia.model import Model
 
 ROOT = Path(__file__).parent.parent
 SMALL = "START\nBLOCK 0,0 0,1 1,1 1,0\nSAVE\nSTOP\nEND\n"
@@ -89,6 +90,13 @@ def test_a_deck_whose_name_is_no_utf8(in_folder: Path) -> None:
     assert (done.returncode, "Traceback" in said) == (1, False)
     assert ":5:6: error 28: value out of range: PLOT 7" in said
     assert b"d\xe9ck-plot-1.png" in os.listdir(os.fsencode(in_folder))
+
+
+def test_a_restart_file_is_no_deck(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Model().save(in_folder / "run.h5")
+    assert main(["run.h5"]) == 2
+    told = capsys.readouterr().err
+    assert told == "udec: run.h5 is a restart file, no deck: udec info run.h5, or RESTART in a deck\n"
 
 
 def test_check_and_info_of_a_saved_run(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -45,6 +45,31 @@ def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: 
     assert len(said) == 1
 
 
+def test_a_property_that_is_not_named(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    said = told(m)
+    m.property(2)
+    assert said == ["PROPERTY MATERIAL=2 names no property, and none was set"]
+
+
+@pytest.mark.parametrize(("at", "d", "many"), [(0.499, 0.0, 1), (0.4, 0.0, 0), (0.499, 0.0001, 0)])
+def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, tmp_path: Path) -> None:
+    """A cut near a corner leaves an edge of a thousandth; who gives a length by ROUND knows."""
+    m = Model(out=tmp_path)
+    said = told(m)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.split(-1, 0.5, 2, 0.5)
+    m.split(0, at, 1.5, 2)
+    if d:
+        m.round(d)
+    m.cycle(1)
+    m.cycle(1)
+    assert len(said) == many
+    for text in said:
+        assert text.startswith("the edge of 0.000999 m that ends at (0, 0.5)")
+
+
 @pytest.mark.parametrize(("moduli", "lacking"), [({"g": 1e9}, "BULK"), ({"bulk": 1e9}, "G")])
 def test_a_modulus_alone(moduli: dict[str, float], lacking: str, tmp_path: Path) -> None:
     m = soft(tmp_path, **moduli)

@@ -48,7 +48,7 @@ from udec_ia.ops.laws import LawBook
 from udec_ia.ops.limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.memory import refit
 from udec_ia.ops.ranges import limits_turned, why_no_block
-from udec_ia.ops.remarks import on_moduli, on_properties, on_rest
+from udec_ia.ops.remarks import on_moduli, on_properties, on_rest, on_rounding
 from udec_ia.ops.rounding import round_corners
 from udec_ia.ops.runaway import Runaway
 from udec_ia.ops.soft import soft
@@ -706,6 +706,7 @@ class Model:
         if self.explain_step:
             self.inform(describe(self.array, self._runaway.safe))
         self._remark(on_moduli(self.array, self.laws.block_laws))
+        self._remark(on_rounding(self.array))
 
     def _warn(self, text: str) -> None:
         self.tell(text)  # not bound beforehand: a monitor changes it

@@ -16,6 +16,7 @@ from offsets.generated import (
     ALPHA,
     BETA,
     BULK,
+    DTOL,
     IBNPNT,
     IBPNT,
     KB,
@@ -24,6 +25,10 @@ from offsets.generated import (
     KU,
     KUCXX,
     KUCYY,
+    KXP,
+    KYP,
+    LROUND,
+    MCTOT,
     MRIG,
     NSOFT,
     SHEAR,
@@ -31,13 +36,17 @@ from offsets.generated import (
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.timestep import addresses
+from udec_ia.kernels.tolerances import edges
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
+SLIVER = 40  # the mean edge over the shortest, from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
 
 def on_properties(material: int, values: dict[str, float | None]) -> Iterator[str]:
-    """PROPERTY: an angle where a tangent is wanted."""
+    """PROPERTY: nothing to set; an angle where a tangent is wanted."""
+    if all(value is None for value in values.values()):
+        yield f"PROPERTY MATERIAL={material} names no property, and none was set"
     for name in TANGENTS:
         value = values.get(name)
         if value is not None and STEEP < value < 90:
@@ -65,6 +74,24 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
                     f"material {m} of deformable blocks has {given} and no {lacking}: nothing in them "
                     f"resists a change of {change}; PROPERTY MATERIAL={m} {lacking}=..."
                 )
+
+
+def on_rounding(array: MainArray) -> Iterator[str]:
+    """CYCLE, before the first one: a sliver that makes the default rounding length far less than the others need.
+
+    All tolerances follow from that length: impacts that other blocks bear are then error 15.
+    """
+    h = array.h
+    if h.ci[LROUND] or h.ci[MCTOT] or not h.ci[IBPNT]:
+        return
+    mean, least, ip = (float(one) for one in edges(h))
+    if least < mean / SLIVER:
+        x, y = float(getr(h, int(ip), KXP)), float(getr(h, int(ip), KYP))
+        yield (
+            f"the edge of {least:.3g} m that ends at ({x:g}, {y:g}), where the mean edge has {mean:.3g} m, makes "
+            f"the rounding length {h.cr[DTOL]:.3g} m and allows overlaps up to half of that: "
+            "cut elsewhere, or DELETE the sliver"
+        )
 
 
 def on_rest(array: MainArray) -> Iterator[str]:
