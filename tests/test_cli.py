@@ -94,9 +94,11 @@ def test_a_deck_whose_name_is_no_utf8(in_folder: Path) -> None:
 
 def test_a_restart_file_is_no_deck(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Model().save(in_folder / "run.h5")
-    assert main(["run.h5"]) == 2
+    assert main(["run.h5"]) == 1
     told = capsys.readouterr().err
-    assert told == "udec: run.h5 is a restart file, no deck: udec info run.h5, or RESTART in a deck\n"
+    assert told.endswith(
+        "this is a restart file: udec info says what is in it, RESTART in a deck goes on from it\n"
+    )
 
 
 def test_check_and_info_of_a_saved_run(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -23,7 +23,6 @@ from udec_ia.printable import printable
 from udec_ia.signals import Terminated, hold, passing, terminate
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-HDF5 = b"\x89HDF\r\n\x1a\n"  # how restart files begin
 VERBS = ("run", "check", "info")
 
 
@@ -69,13 +68,6 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
         print(f"udec: --out {args.out}: no file can be written there", file=sys.stderr)
         return MISUSE
-    if args.deck is not None and _is_restart_file(args.deck):
-        shown = printable(str(args.deck))
-        print(
-            f"udec: {shown} is a restart file, no deck: udec info {shown}, or RESTART in a deck",
-            file=sys.stderr,
-        )
-        return MISUSE
     from udec_ia.deck.interactive import converse, history, history_file
     from udec_ia.deck.monitor import Monitor, run_deck
     from udec_ia.model import Model
@@ -100,11 +92,6 @@ def _run(args: argparse.Namespace) -> int:
         monitor.run(sys.stdin, "stdin")
         monitor.stop()
     return 0
-
-
-def _is_restart_file(path: Path) -> bool:
-    with path.open("rb") as file:
-        return file.read(len(HDF5)) == HDF5
 
 
 def _check(args: argparse.Namespace) -> int:

@@ -23,6 +23,8 @@ QUOTED = re.compile(rf"""((['"]).*?\2)\s*({REMARK.pattern}.*)?$""")
 APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
+RESTART_FILE = ["udec_ia", "restart", "file"]  # the words that such a file begins with
+NO_DECK = "this is a restart file: udec info says what is in it, RESTART in a deck goes on from it"
 ALONE = "no command to continue stands before this line; at a terminal, end the line of the command with +"
 NO_COMMENT = "a comment behind a command begins with ; # or !, with * only on a line of its own"
 NO_WORD = "a line begins with a command, or with + if it continues the one before"
@@ -52,6 +54,8 @@ def parse(statement: Statement) -> Call:
         raise at(UdecError(2, quoted(head.text), ALONE), head)
     if command is None and NUMBER.fullmatch(head.text):
         raise at(UdecError(2, quoted(head.text), NO_WORD), head)
+    if command is None and [token.text for token in statement.tokens] == RESTART_FILE:
+        raise at(UdecError(2, quoted(head.text), NO_DECK), head)
     if command is None:
         advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
         raise at(UdecError(2, quoted(head.text), advice), head)

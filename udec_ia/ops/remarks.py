@@ -77,7 +77,7 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
 
 
 def on_rounding(array: MainArray) -> Iterator[str]:
-    """CYCLE, before the first one: a sliver that makes the default rounding length far less than the others need.
+    """CYCLE, before the first one: a sliver that makes the default rounding length very small.
 
     All tolerances follow from that length: impacts that other blocks bear are then error 15.
     """
@@ -88,8 +88,8 @@ def on_rounding(array: MainArray) -> Iterator[str]:
     if least < mean / SLIVER:
         x, y = float(getr(h, int(ip), KXP)), float(getr(h, int(ip), KYP))
         yield (
-            f"the edge of {least:.3g} m that ends at ({x:g}, {y:g}), where the mean edge has {mean:.3g} m, makes "
-            f"the rounding length {h.cr[DTOL]:.3g} m and allows overlaps up to half of that: "
+            f"the edge of {least:.3g} m that ends at ({x:g}, {y:g}), where the mean edge has {mean:.3g} m, "
+            f"makes the rounding length {h.cr[DTOL]:.3g} m and allows overlaps up to half of that: "
             "cut elsewhere, or DELETE the sliver"
         )
 
