@@ -13,7 +13,7 @@ from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
-from naive.overlaps import Body, bare, deeper, deepest, depth, outline, parts, steps_of, touching, within
+from naive.overlaps import Body, bare, deeper, deepest, depth, outlines, parts, steps_of, touching, within
 from shapely.geometry import Polygon
 
 from offsets.generated import (
@@ -217,19 +217,20 @@ class Stage:
         limits = self._limits()
         pressed = [pair for pair, rows in contacts.items() if rows[:, 2].max() > limits[0]]
         close = [(addresses[i], addresses[j]) for i, j in touching(list(after.values()))]
-        outlines = {ib: outline(after[ib], d) for ib in set(chain(*close, *pressed))}
+        looked_at = sorted(set(chain(*close, *pressed)))
+        shapes = dict(zip(looked_at, outlines([after[ib] for ib in looked_at], d), strict=True))
         for pair in pressed:
             one, two = pair
-            if not outlines[one].intersects(outlines[two]):
-                gap, most = outlines[one].distance(outlines[two]) / d, contacts[pair][:, 2].max() / d
+            if not shapes[one].intersects(shapes[two]):
+                gap, most = shapes[one].distance(shapes[two]) / d, contacts[pair][:, 2].max() / d
                 where = f"blocks {one} and {two} are {gap:.3f} D apart"
                 raise Wrong("phantom", f"{where}, and a contact of theirs overlaps by {most:.3f} D")
-        rows = {ib: row for row, ib in enumerate(outlines)}
-        deep = deeper(list(outlines.values()), [(rows[one], rows[two]) for one, two in close], LIMIT * d)
+        rows = {ib: row for row, ib in enumerate(looked_at)}
+        deep = deeper(list(shapes.values()), [(rows[one], rows[two]) for one, two in close], LIMIT * d)
         for (one, two), is_deep in zip(close, deep, strict=True):
             if is_deep:
-                self._look_at(one, two, (outlines[one], outlines[two]), contacts, limits)
-            elif len(after) == 2 and outlines[one].intersects(outlines[two]):
+                self._look_at(one, two, (shapes[one], shapes[two]), contacts, limits)
+            elif len(after) == 2 and shapes[one].intersects(shapes[two]):
                 self.touched = self.cycles
         if before is not None and fast:
             for one, two in combinations(addresses, 2):

@@ -55,16 +55,21 @@ class Part:
     shape: Polygon
 
 
-def outline(body: Body, d: float) -> Polygon:
-    """The rounded outline of `body`."""
-    p = body.corners
-    earlier, later = np.arange(-1, len(p) - 1), np.arange(1, len(p) + 1) % len(p)
+def outlines(bodies: Sequence[Body], d: float) -> list[Polygon]:
+    """The rounded outlines of `bodies`."""
+    if not bodies:
+        return []
+    p, plain = np.concatenate([b.corners for b in bodies]), np.concatenate([b.plain for b in bodies])
+    ends = np.cumsum([len(b.corners) for b in bodies])
+    firsts = np.concatenate([[0], ends[:-1]])
+    earlier, later = np.arange(len(p)) - 1, np.arange(len(p)) + 1
+    earlier[firsts], later[ends - 1] = ends - 1, firsts
     before, after = p[earlier] - p, p[later] - p
     lengths = np.hypot(after[:, 0], after[:, 1])
     u, v = before / lengths[earlier, None], after / lengths[:, None]
     cross, dot = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1)
     inner = np.arctan2(np.abs(cross), dot)  # angle between the two edges
-    arc = (cross > 0) & (np.pi - inner > STRAIGHT) & ~body.plain
+    arc = (cross > 0) & (np.pi - inner > STRAIGHT) & ~plain
     inner = np.where(arc, inner, np.pi / 2)
     bisector = np.where(arc[:, None], u + v, 1.0)
     bisector /= np.hypot(bisector[:, 0], bisector[:, 1])[:, None]
@@ -76,8 +81,14 @@ def outline(body: Body, d: float) -> Polygon:
     middle = np.arctan2(-bisector[:, 1], -bisector[:, 0])
     angles = middle[:, None] - (np.pi - inner)[:, None] * ALONG
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    ring = (centre[:, None, :] + radius[:, None, None] * circle).reshape(-1, 2)
-    return shapely.polygons(ring)
+    points = (centre[:, None, :] + radius[:, None, None] * circle).reshape(-1, 2)
+    owner = np.repeat(np.arange(len(bodies)), [len(b.corners) * len(ALONG) for b in bodies])
+    return list(shapely.polygons(shapely.linearrings(points, indices=owner)))
+
+
+def outline(body: Body, d: float) -> Polygon:
+    """The rounded outline of `body`."""
+    return outlines([body], d)[0]
 
 
 def parts(one: Polygon, two: Polygon, d: float) -> list[Part]:
@@ -161,18 +172,19 @@ def within(before: Sequence[Body], after: Sequence[Body], d: float) -> Iterator[
     """Outlines of the bodies in the course of a step, its beginning and its end left out."""
     n = steps_of([body.corners for body in before], [body.corners for body in after], d)
     for k in range(1, n):
-        yield [
-            outline(Body(between(one.corners, two.corners, k / n), two.plain), d)
+        moved = [
+            Body(between(one.corners, two.corners, k / n), two.plain)
             for one, two in zip(before, after, strict=True)
         ]
+        yield outlines(moved, d)
 
 
 def deepest(before: Sequence[Body], after: Sequence[Body], d: float) -> float:
     """The greatest depth to which two bodies come into each other in a step, its ends included."""
-    one, two = (outline(body, d) for body in before)
+    one, two = outlines(before, d)
     reached = depth(one, two, d)
     for one, two in within(before, after, d):
         if one.intersects(two):
             reached = max(reached, depth(one, two, d))
-    one, two = (outline(body, d) for body in after)
+    one, two = outlines(after, d)
     return max(reached, depth(one, two, d))
