@@ -16,26 +16,7 @@ import numpy as np
 from naive.overlaps import Body, bare, deeper, deepest, depth, outlines, parts, steps_of, touching, within
 from shapely.geometry import Polygon
 
-from offsets.generated import (
-    DTOL,
-    DTOL2,
-    IBPNT,
-    KB,
-    KP,
-    KR,
-    KRAD,
-    KTD,
-    KX,
-    KXD,
-    KXDP,
-    KXP,
-    KY,
-    KYD,
-    KYDP,
-    KYP,
-    MCTOT,
-    TDEL,
-)
+import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget
 from udec_ia.model import Model
@@ -100,7 +81,7 @@ class Stage:
     def throw(self, ib: int, vx: float, vy: float, spin: float) -> None:
         """Give a free block velocities, by RSET."""
         which = self.model.array.scheme.ratio >> 1
-        for offset, value in zip((KXD, KYD, KTD), (vx, vy, spin), strict=True):
+        for offset, value in zip((g.KXD, g.KYD, g.KTD), (vx, vy, spin), strict=True):
             self.do("rset", value, ib, offset[which])
 
     def run(self, deck: str) -> None:
@@ -157,29 +138,29 @@ class Stage:
     @property
     def d(self) -> float:
         """The rounding length."""
-        return float(self.model.h.cr[DTOL])
+        return float(self.model.h.cr[g.DTOL])
 
     @property
     def step(self) -> float:
         """The time-step."""
-        return float(self.model.h.cr[TDEL])
+        return float(self.model.h.cr[g.TDEL])
 
     def rings(self) -> dict[int, Any]:
         """Addresses of the corners of every block, clockwise, by the block's address."""
         if not self._rings:
-            h, ib = self.model.h, int(self.model.h.ci[IBPNT])
+            h, ib = self.model.h, int(self.model.h.ci[g.IBPNT])
             while ib:
-                first = here = iget(h, ib, KP)
+                first = here = iget(h, ib, g.KP)
                 ring = [first]
-                while (here := iget(h, here, KR)) != first:
+                while (here := iget(h, here, g.KR)) != first:
                     ring.append(here)
                 self._rings[ib] = np.array(ring[::-1])
-                ib = iget(h, ib, KB)
+                ib = iget(h, ib, g.KB)
         return self._rings
 
     def bodies(self) -> dict[int, Body]:
         """The bodies as they are now, by the addresses of their blocks."""
-        corners, plain = self._read(KXP, KYP), self._read(KRAD)[:, 0] == 0
+        corners, plain = self._read(g.KXP, g.KYP), self._read(g.KRAD)[:, 0] == 0
         return {ib: Body(corners[part], plain[part]) for ib, part in self._parts()}
 
     def _read(self, *offsets: Any) -> Any:
@@ -196,7 +177,7 @@ class Stage:
 
     def centroid(self, ib: int) -> Any:
         """Centroid of a block."""
-        return np.array([getr(self.model.h, ib, KX), getr(self.model.h, ib, KY)], dtype=float)
+        return np.array([getr(self.model.h, ib, g.KX), getr(self.model.h, ib, g.KY)], dtype=float)
 
     def contacts(self) -> dict[Pair, Any]:
         """Contacts that are not virtual, by their two blocks: (x, y, overlap), arrays (n, 3)."""
@@ -261,13 +242,13 @@ class Stage:
     def _limits(self) -> tuple[float, float]:
         """Overlaps above which there must be a contact, and error 15."""
         noise = self._noise()
-        return LIMIT * self.d + noise, float(self.model.h.cr[DTOL2]) + SLACK * self.d + noise
+        return LIMIT * self.d + noise, float(self.model.h.cr[g.DTOL2]) + SLACK * self.d + noise
 
     def _noise(self) -> float:
         """What rounding may add to an overlap."""
         h = self.model.h
-        size = float(np.abs(self._read(KXP, KYP)).max())
-        return 16 * size * float(np.finfo(h.cr.dtype).eps) * float(np.sqrt(1.0 + h.ci[MCTOT]))
+        size = float(np.abs(self._read(g.KXP, g.KYP)).max())
+        return 16 * size * float(np.finfo(h.cr.dtype).eps) * float(np.sqrt(1.0 + h.ci[g.MCTOT]))
 
     def _fast(self, before: dict[int, Body], after: dict[int, Body]) -> bool:
         """Whether two bodies may have moved past each other by more than half a rounding length."""
@@ -321,5 +302,5 @@ class Stage:
 
     def _moved(self, bodies: dict[int, Body], t: float) -> dict[int, Body]:
         """The bodies `t` steps away, with the velocities of their corners."""
-        moves = t * self.step * self._read(KXDP, KYDP)
+        moves = t * self.step * self._read(g.KXDP, g.KYDP)
         return {ib: Body(bodies[ib].corners + moves[part], bodies[ib].plain) for ib, part in self._parts()}

@@ -7,7 +7,7 @@ import pytest
 from offsets import generated as g
 from udec_ia.heap.accessors import getr, puti, putr
 from udec_ia.inspect.walk import corners, groups
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.model import Model
 
 # A funnel that narrows towards a thin slab: circles of its concave corners reach into what lies beside them.

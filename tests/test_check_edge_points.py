@@ -11,7 +11,7 @@ import pytest
 from offsets import generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.kernels.touch import CORNER_EDGE
+from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE
 
 D = 0.1
 POINTS = [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0), (4.0, 2.0), (4.0, 0.0)]  # numbered from the last one

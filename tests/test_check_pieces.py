@@ -8,9 +8,9 @@ from offsets import generated as g
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.inspect.check import check
 from udec_ia.inspect.walk import corners, groups
-from udec_ia.kernels.hook import hook, take_contact_out
-from udec_ia.kernels.lists import idomp
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.kernels.links.lists import idomp
+from udec_ia.kernels.map.virtual import hook, take_contact_out
 from udec_ia.model import Model
 
 # A box with a closed room; of what was in it one block is left, which hangs in the room.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from offsets import generated as g
 from udec_ia.heap.accessors import puti
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.model import Model
 
 # A block sinks by some millimetres into a wedge of 1.4 degrees, whose rounded tip is 1.3 mm thick, on a slab.

@@ -11,7 +11,7 @@ from naive.relocate import differences, essence
 
 from offsets.generated import ALPHA, MCTOT, TIME
 from udec_ia import Model
-from udec_ia.kernels.rest import unbalanced
+from udec_ia.kernels.drive.unbalanced import unbalanced
 
 DECK = Path(__file__).parent.parent / "examples" / "collapse-rigid.dat"
 GAP = (20.0, 40.0, 10.0, 20.0)

@@ -16,7 +16,7 @@ import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
-from udec_ia.ops.timestep import Limit, bound, estimate
+from udec_ia.ops.run.timestep import Limit, bound, estimate
 
 D = 0.05
 JOINTS = (3e8, 1e8)

@@ -12,7 +12,7 @@ from mechanics import G, at, block, box, model, on_base, push, sound, step
 
 from offsets.generated import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND
 from udec_ia import Model
-from udec_ia.ops.energy import Balance
+from udec_ia.ops.commands.energy import Balance
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 CLOSED = 0.01  # residual against throughput that is asked for

@@ -16,7 +16,7 @@ from naive.relocate import differences, essence
 import offsets.generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.ops.energy import Balance
+from udec_ia.ops.commands.energy import Balance
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 BULK, SHEAR = 1e7, 5e6

@@ -24,9 +24,9 @@ from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import getr, iget, puti
 from udec_ia.heap.memory import find, lose
 from udec_ia.inspect.check import check, check_links
-from udec_ia.ops.history import define, definitions, named
-from udec_ia.ops.recordable import recordable
-from udec_ia.ops.watch import ROWS, Watch
+from udec_ia.ops.commands.history import define, definitions, named
+from udec_ia.ops.commands.recordable import recordable
+from udec_ia.ops.run.watch import ROWS, Watch
 from udec_ia.output.graph import figure
 
 KINDS = ("block", "corner", "contact", "domain")

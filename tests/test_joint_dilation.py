@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from udec_ia.kernels.lawcall import Material
+from udec_ia.kernels.body.law_call import Material
 from udec_ia.laws.joint_dilation import clj2
 
 KN, KS = 1e9, 5e8

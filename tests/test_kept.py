@@ -57,7 +57,7 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from udec_ia.heap.words import scheme
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.tolerances import tolset
+from udec_ia.kernels.geometry.tolerances import tolset
 tolset(MainArray(scheme("i32r64")).h, 0.1)
 assert tolset.__wrapped__.__code__.co_filename.startswith(sys.argv[1])
 print(sum(tolset.whole.stats.cache_hits.values()))

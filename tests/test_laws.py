@@ -17,11 +17,11 @@ from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.kernels.lawcall import ARRAYS, Material
-from udec_ia.kernels.laws import stress_increment
-from udec_ia.ops import settings
-from udec_ia.ops.lawfile import _compiled, read_laws
-from udec_ia.ops.laws import LawBook
+from udec_ia.kernels.body.law_call import ARRAYS, Material
+from udec_ia.kernels.body.laws import stress_increment
+from udec_ia.ops.commands import settings
+from udec_ia.ops.laws.law_file import _compiled, read_laws
+from udec_ia.ops.laws.laws import LawBook
 from udec_ia.restart import info
 
 ROOT = Path(__file__).parent.parent
@@ -93,9 +93,9 @@ import sys
 import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.kernels import laws as kernels
-from udec_ia.ops import settings
-from udec_ia.ops.laws import LawBook
+from udec_ia.kernels.body import laws as kernels
+from udec_ia.ops.commands import settings
+from udec_ia.ops.laws.laws import LawBook
 
 states = np.random.default_rng(1).normal(size=(20, 6)) * [1e6, 1e6, 1e6, 1e-3, 1e-3, 1e-3]
 for build in ("i32r64", "i32r32"):

@@ -26,7 +26,7 @@ from naive.dynamics import slide, slide_two
 
 from offsets.generated import AKN
 from udec_ia import Model
-from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER
+from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER
 
 LOWER, UPPER = atan(6 / 20), atan(6 / 15)
 MASSES = 2000 * 138.75, 2000 * 75.0

@@ -15,9 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from udec_ia import UdecError
-from udec_ia.ops.mesh import Mesh, mesh
-from udec_ia.ops.mesh_inside import triangulate
-from udec_ia.ops.mesh_pairs import CUT, match, pair_up
+from udec_ia.ops.mesh.inside import triangulate
+from udec_ia.ops.mesh.pairs import CUT, match, pair_up
+from udec_ia.ops.mesh.triangles import Mesh, mesh
 
 EPS = float(np.finfo(float).eps)
 SQUARE = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]

@@ -12,7 +12,7 @@ from math import cos, hypot, radians, sin, sqrt, tan
 import numpy as np
 import pytest
 
-from udec_ia.kernels.lawcall import Material
+from udec_ia.kernels.body.law_call import Material
 from udec_ia.laws.mohr_coulomb import cl2
 
 BULK, SHEAR = 2e9, 1e9

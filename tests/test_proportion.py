@@ -15,7 +15,7 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
-from udec_ia.ops.timestep import bound, describe
+from udec_ia.ops.run.timestep import bound, describe
 from udec_ia.output import histories
 from udec_ia.output.outline import snapshot
 from udec_ia.output.plot import Frame, What

@@ -18,7 +18,7 @@ from mechanics import block, on_base, push
 from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.ops import runaway
+from udec_ia.ops.run import runaway
 
 STACK = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5

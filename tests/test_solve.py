@@ -15,7 +15,7 @@ from mechanics import block, on_base, push
 from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.kernels.rest import force_ratio
+from udec_ia.kernels.drive.unbalanced import force_ratio
 
 CHECK = 10  # cycles between two looks, as docs/histories.md says
 

@@ -10,8 +10,8 @@ import pytest
 from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
-from udec_ia.kernels.sdef import put_stress
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.body.sdef import put_stress
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 
 D = 0.02
 KN = 1e9

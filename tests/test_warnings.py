@@ -16,7 +16,7 @@ def warn(name: str, category: type[Warning]) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["udec_ia", "udec_ia.ops.cycle", "offsets", "naive.shape", __name__, "bench"]
+    "name", ["udec_ia", "udec_ia.ops.run.cycle", "offsets", "naive.shape", __name__, "bench"]
 )
 def test_a_warning_of_ours_is_an_error(name: str) -> None:
     for category in (DeprecationWarning, UserWarning, RuntimeWarning):
@@ -33,6 +33,6 @@ def test_a_warning_of_others_is_none(name: str) -> None:
 
 def test_a_compiler_that_names_a_file_of_ours_is_heard() -> None:
     with pytest.raises(UserWarning):
-        warnings.warn_explicit("slow", UserWarning, "/home/user/udec_ia/kernels/ford.py", 1)
+        warnings.warn_explicit("slow", UserWarning, "/home/user/udec_ia/kernels/contact/ford.py", 1)
     with pytest.raises(ResourceWarning):
         warn("gc", ResourceWarning)

@@ -27,9 +27,9 @@ from offsets.generated import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.inspect.table import table
-from udec_ia.kernels.cycle import run_cycles
-from udec_ia.kernels.lawcall import MATERIAL_SIZE, _jump
-from udec_ia.ops.lawfile import read_laws
+from udec_ia.kernels.body.law_call import MATERIAL_SIZE, _jump
+from udec_ia.kernels.drive.cycle import run_cycles
+from udec_ia.ops.laws.law_file import read_laws
 
 ROOT = Path(__file__).parent.parent
 TURNS = 15

@@ -35,8 +35,8 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.model import RESTART_FILE, Model
-from udec_ia.ops.rounding import STRAINED
-from udec_ia.ops.watch import Solution
+from udec_ia.ops.commands.rounding import STRAINED
+from udec_ia.ops.run.watch import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal

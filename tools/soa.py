@@ -19,7 +19,7 @@ from offsets import generated as g
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import loop
-from udec_ia.kernels.ford import TURNED
+from udec_ia.kernels.contact.ford import TURNED
 
 # Flags of the program's kernels; no counting of references to arrays, which its kernels do not have either.
 F = TypeVar("F", bound=Callable[..., Any])

@@ -18,7 +18,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import kernel
 from udec_ia.inspect.table import table
-from udec_ia.kernels.fdef import move_fdef
+from udec_ia.kernels.body.fdef import move_fdef
 
 
 class Numbers(NamedTuple):

@@ -31,32 +31,32 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import compile_seconds
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.kernels.energy import liveliest
-from udec_ia.kernels.rest import at_rest, force_ratio, motion_ratio, unbalanced
-from udec_ia.ops import settings
-from udec_ia.ops.arrange import arrange
-from udec_ia.ops.automatic import generate_automatically
-from udec_ia.ops.bounds import ZERO, Triple, boundary, number_of_conditions, set_function
-from udec_ia.ops.change import change
-from udec_ia.ops.create import create
-from udec_ia.ops.cycle import cycle, finish
-from udec_ia.ops.delete import delete
-from udec_ia.ops.energy import Balance, balance, switch
-from udec_ia.ops.insitu import insitu
-from udec_ia.ops.lawfile import Given
-from udec_ia.ops.laws import LawBook
-from udec_ia.ops.limits import not_negative, real, reals, rows, whole
-from udec_ia.ops.memory import refit
-from udec_ia.ops.ranges import limits_turned, why_no_block
-from udec_ia.ops.remarks import on_moduli, on_properties, on_rest, on_rounding
-from udec_ia.ops.rounding import round_corners
-from udec_ia.ops.runaway import Runaway
-from udec_ia.ops.soft import soft
-from udec_ia.ops.split import Boxes, split
-from udec_ia.ops.timestep import bound, describe, kind_of
-from udec_ia.ops.uncut import why_uncut
-from udec_ia.ops.watch import Series, Solution, Watch, unsolved
-from udec_ia.ops.zoning import NEAR, block_to_zone, generate
+from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
+from udec_ia.kernels.energy.stored import liveliest
+from udec_ia.ops.commands import settings
+from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
+from udec_ia.ops.commands.change import change
+from udec_ia.ops.commands.create import create
+from udec_ia.ops.commands.delete import delete
+from udec_ia.ops.commands.energy import Balance, balance, switch
+from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
+from udec_ia.ops.commands.generate_automatic import generate_automatically
+from udec_ia.ops.commands.insitu import insitu
+from udec_ia.ops.commands.rounding import round_corners
+from udec_ia.ops.commands.split import Boxes, split
+from udec_ia.ops.commands.uncut import why_uncut
+from udec_ia.ops.common.limits import not_negative, real, reals, rows, whole
+from udec_ia.ops.common.memory import refit
+from udec_ia.ops.common.ranges import limits_turned, why_no_block
+from udec_ia.ops.common.soft import soft
+from udec_ia.ops.laws.law_file import Given
+from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.run.arrange import arrange
+from udec_ia.ops.run.cycle import cycle, finish
+from udec_ia.ops.run.remarks import on_moduli, on_properties, on_rest, on_rounding
+from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.timestep import bound, describe, kind_of
+from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
 from udec_ia.printable import printable
 from udec_ia.recorder import Recorder
 from udec_ia.transaction import Undo, beside, command, looking, numbers, once
@@ -459,7 +459,7 @@ class Model:
         function: int | None = None,
         free: bool = False,
     ) -> int:
-        """BOUNDARY: conditions on what lies in the range (see ops.bounds). Returns their number."""
+        """BOUNDARY: conditions on what lies in the range (ops.commands.boundary). Returns their number."""
         self._ready(shapes=True)
         return boundary(
             self.array,
@@ -627,7 +627,7 @@ class Model:
     def solve(self, ratio: float, limit: int = SOLVE_LIMIT) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
-        The ratio: greatest unbalanced force over the mean of those that are carried (kernels.rest); it is
+        The ratio: greatest unbalanced force over the mean of those that are carried (drive.unbalanced); it is
         looked at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic
         over strain energy is not greater than `ratio` either. What is returned is true if that was reached.
         """

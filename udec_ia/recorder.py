@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.ops.history import define, named
-from udec_ia.ops.watch import Series, Solution, Watch
+from udec_ia.ops.commands.history import define, named
+from udec_ia.ops.run.watch import Series, Solution, Watch
 
 if TYPE_CHECKING:
     from udec_ia.output.histories import Files

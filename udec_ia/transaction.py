@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, TypeV
 import numpy as np
 from numba import config
 
-from offsets.generated import JUNK, MFREE, MTOP, NBLK, NCON, NDOM
+import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -40,7 +40,7 @@ R = TypeVar("R")
 Method = Callable[Concatenate[Any, P], R]
 
 REPEATED = 100.0  # a copy is made anew when the commands since then have taken as long as so many copies
-COUNTS = [MFREE, JUNK, NBLK, NCON, NDOM]  # one of them changes when a group is made or given back
+COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
 PLAIN = (bool, int, float, str, np.generic, type(None))
 
 
@@ -240,7 +240,7 @@ class Undo:
 
     def _copy(self, array: MainArray) -> None:
         self.array, self.since = None, []
-        start, used = perf_counter(), int(array.h.ci[MFREE]) - 1
+        start, used = perf_counter(), int(array.h.ci[g.MFREE]) - 1
         if len(self.words) < used or self.words.dtype != array.h.ia.dtype:
             self.words = np.empty(2 * used, array.h.ia.dtype)
         self.words[:used] = array.h.ia[:used]
@@ -277,7 +277,7 @@ class Undo:
 
     def _put_words(self, h: Memory) -> None:
         """Put the copy back, into an array that may have grown since."""
-        size, used = int(h.ci[MTOP]), int(self.numbers[0][MFREE]) - 1
+        size, used = int(h.ci[g.MTOP]), int(self.numbers[0][g.MFREE]) - 1
         h.ia[:used] = self.words[:used]
         put_common(h, self.numbers)
-        h.ci[MTOP] = size
+        h.ci[g.MTOP] = size

@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from offsets.generated import NBLK
+import offsets.generated as g
 from udec_ia.deck.advice import at
 from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.parser import NUMBER, Call, parse
@@ -236,6 +236,6 @@ def counted(call: Call, n: int, model: Model) -> str:
     if n == 0:
         reason = model.why_none(name, *call.positional)
         return f" {name.upper()}: {NONE.get(name, 'no block in range')}: {reason}"
-    now = f", {model.h.ci[NBLK]} blocks now" if name in ("split", "delete") else ""
+    now = f", {model.h.ci[g.NBLK]} blocks now" if name in ("split", "delete") else ""
     what, _, done = COUNTED[name].partition(" ")
     return f" {name.upper()}: {n} {what}{'s' if n > 1 else ''} {done}{now}"

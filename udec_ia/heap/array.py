@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+import offsets.generated as g
 from offsets import generated
-from offsets.generated import MFREE, MTOP, NCOMD, NCOMI, NCOMR, NERR, NWANT
 from offsets.table import Field
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
@@ -50,14 +50,18 @@ class MainArray:
         self.scheme = scheme
         self.fixed = mtop is not None
         words = self._whole_reals(min(FIRST_SIZE, scheme.top_address) if mtop is None else mtop)
-        common = np.zeros(NCOMI, np.int64), np.zeros(NCOMR, scheme.real_type), np.zeros(NCOMD, np.float64)
+        common = (
+            np.zeros(g.NCOMI, np.int64),
+            np.zeros(g.NCOMR, scheme.real_type),
+            np.zeros(g.NCOMD, np.float64),
+        )
         self.h = self._views(_words(words, scheme.int_type), *common)
-        self.h.ci[MFREE] = 1
-        self.h.ci[MTOP] = words
+        self.h.ci[g.MFREE] = 1
+        self.h.ci[g.MTOP] = words
 
     def _copied(self, size: int) -> Any:
         """`size` words, of which those below MFREE are as they are now and the others zero."""
-        ia, used = _words(size, self.scheme.int_type), int(self.h.ci[MFREE]) - 1
+        ia, used = _words(size, self.scheme.int_type), int(self.h.ci[g.MFREE]) - 1
         ia[:used] = self.h.ia[:used]
         return ia
 
@@ -70,7 +74,7 @@ class MainArray:
     @property
     def limit(self) -> int:
         """Largest size that the array can ever have."""
-        return int(self.h.ci[MTOP]) if self.fixed else self._whole_reals(self.scheme.top_address)
+        return int(self.h.ci[g.MTOP]) if self.fixed else self._whole_reals(self.scheme.top_address)
 
     def grow(self) -> bool:
         """Make the room that an interrupted routine asked for; False if the limit forbids it.
@@ -78,26 +82,26 @@ class MainArray:
         On success error 1 and the request are cleared, and the routine can be called again.
         """
         ci = self.h.ci
-        need = int(ci[MFREE] + ci[NWANT])
+        need = int(ci[g.MFREE] + ci[g.NWANT])
         if need - 1 > self.limit:
             return False
         wanted = max(2 * need, FIRST_SIZE if need < LARGE else AMPLE)  # words not touched yet cost nothing
         size = min(self._whole_reals(wanted), self.limit)
         self.h = self._views(self._copied(size), ci, self.h.cr, self.h.cd)
-        ci[MTOP] = size
-        ci[NWANT] = 0
-        if ci[NERR] == OVERFLOW:
-            ci[NERR] = 0
+        ci[g.MTOP] = size
+        ci[g.NWANT] = 0
+        if ci[g.NERR] == OVERFLOW:
+            ci[g.NERR] = 0
         return True
 
     def refit(self, mtop: int | None) -> bool:
         """Let the array have `mtop` words and no more, or grow if that is None; False if it holds more."""
         if mtop is not None:
             size = self._whole_reals(mtop)
-            if self.h.ci[MFREE] - 1 > size or mtop > self.scheme.top_address:
+            if self.h.ci[g.MFREE] - 1 > size or mtop > self.scheme.top_address:
                 return False
             self.h = self._views(self._copied(size), *self.h[2:])
-            self.h.ci[MTOP] = size
+            self.h.ci[g.MTOP] = size
         self.fixed = mtop is not None
         return True
 

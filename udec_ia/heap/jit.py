@@ -17,7 +17,7 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.core import config
 
-from offsets.generated import DIGEST
+import offsets.generated as g
 from udec_ia.heap.linking import Kernel
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -34,9 +34,9 @@ def _cache_home() -> Path:
 
 def source_digest() -> str:
     """Hash of the field table and of the sources that compiled kernels can depend on."""
-    digest = hashlib.sha256(DIGEST.encode())
+    digest = hashlib.sha256(g.DIGEST.encode())
     for folder in ("heap", "kernels"):
-        for path in sorted((PACKAGE / folder).glob("*.py")):
+        for path in sorted((PACKAGE / folder).rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.hexdigest()
 

@@ -21,7 +21,7 @@ does, is told when the group is given back.
 
 from __future__ import annotations
 
-from offsets.generated import IHPNT, JUNK, KH, KHG, MFREE, MTOP, NERR, NWANT
+import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.array import OVERFLOW
 from udec_ia.heap.jit import kernel
@@ -35,7 +35,7 @@ JSIZES: Offset = (2, 2, 2)
 def _chain(h: Memory, n: int) -> tuple[int, int]:
     """First junk group of `n` words and first group of the chain before it; 0 where there is none."""
     before = int64(0)
-    group = int64(h.ci[JUNK])
+    group = int64(h.ci[g.JUNK])
     while group != 0 and iget(h, group, JSIZE) != n:
         before = group
         group = iget(h, group, JSIZES)
@@ -45,7 +45,7 @@ def _chain(h: Memory, n: int) -> tuple[int, int]:
 @kernel
 def _link_chain(h: Memory, before: int, group: int) -> None:
     if before == 0:
-        h.ci[JUNK] = group
+        h.ci[g.JUNK] = group
     else:
         puti(h, before, JSIZES, group)
 
@@ -53,9 +53,9 @@ def _link_chain(h: Memory, before: int, group: int) -> None:
 @kernel
 def want(h: Memory, words: int) -> None:
     """Ask for `words` words of fresh memory (NWANT): error 1, unless there is another error already."""
-    h.ci[NWANT] = words
-    if h.ci[NERR] == 0:
-        h.ci[NERR] = OVERFLOW
+    h.ci[g.NWANT] = words
+    if h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = OVERFLOW
 
 
 @kernel
@@ -74,11 +74,11 @@ def find(h: Memory, nv: Offset) -> int:
         else:
             _link_chain(h, before, iget(h, group, JSIZES))
     else:
-        group = h.ci[MFREE]
-        if group + n - 1 > h.ci[MTOP]:
+        group = h.ci[g.MFREE]
+        if group + n - 1 > h.ci[g.MTOP]:
             want(h, n)
             return int64(0)
-        h.ci[MFREE] = group + n
+        h.ci[g.MFREE] = group + n
     for i in range(n):
         puti(h, group, HEAD, 0, i)
     return group
@@ -87,11 +87,11 @@ def find(h: Memory, nv: Offset) -> int:
 @kernel
 def unwatch(h: Memory, group: int) -> None:
     """Histories of the group at `group` lose sight of it."""
-    ih = int64(h.ci[IHPNT])
+    ih = int64(h.ci[g.IHPNT])
     while ih != 0:
-        if iget(h, ih, KHG) == group:
-            puti(h, ih, KHG, 0)
-        ih = iget(h, ih, KH)
+        if iget(h, ih, g.KHG) == group:
+            puti(h, ih, g.KHG, 0)
+        ih = iget(h, ih, g.KH)
 
 
 @kernel
@@ -101,8 +101,8 @@ def lose(h: Memory, group: int, nv: Offset) -> None:
     n = int64(size_of(h, nv))
     first, before = _chain(h, n)
     if first == 0:
-        puti(h, group, JSIZES, h.ci[JUNK])
-        h.ci[JUNK] = group
+        puti(h, group, JSIZES, h.ci[g.JUNK])
+        h.ci[g.JUNK] = group
     else:
         puti(h, group, JSIZES, iget(h, first, JSIZES))
         _link_chain(h, before, group)
@@ -117,7 +117,7 @@ def room(h: Memory, words: int) -> bool:
     A routine that changes the map asks for all it may need before its first change, so that running
     out of memory never leaves the map half-made.
     """
-    if h.ci[MFREE] + words - 1 > h.ci[MTOP]:
+    if h.ci[g.MFREE] + words - 1 > h.ci[g.MTOP]:
         want(h, words)
         return False
     return True

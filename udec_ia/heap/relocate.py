@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+import offsets.generated as g
 from offsets import generated
-from offsets.generated import JUNK, MFREE
 from offsets.table import Group, Layout, layouts, read_table
 from udec_ia.heap.array import MainArray
 
@@ -26,7 +26,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     """
     h, table = array.h, read_table()
     kinds = {kind: (table.group(kind), layouts(array.scheme.ratio)[kind]) for kind in order}
-    moved = np.zeros(int(h.ci[MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
+    moved = np.zeros(int(h.ci[g.MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
     free = 1
     for kind, (_, layout) in kinds.items():
         moved[order[kind]] = free + layout.size * np.arange(len(order[kind]))
@@ -38,7 +38,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
         start = moved[order[kind][0]] - 1
         words[start : start + rows.size] = rows.ravel()
     h.ia[: free - 1] = words
-    h.ia[free - 1 : int(h.ci[MFREE]) - 1] = 0
+    h.ia[free - 1 : int(h.ci[g.MFREE]) - 1] = 0
     for field in table.common:
         if field.role == "head":
             i = getattr(generated, field.name)
@@ -46,7 +46,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     for kind, (group, _) in kinds.items():
         if group.list_head is not None:
             h.ci[getattr(generated, group.list_head)] = moved[order[kind][0]]
-    h.ci[JUNK], h.ci[MFREE] = 0, free
+    h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
     return moved
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.inspect.check_groups import KR, State
 from udec_ia.inspect.check_members import zoned
-from udec_ia.kernels.motion import FIXED, GIVEN_X
+from udec_ia.kernels.body.motion import FIXED, GIVEN_X
 
 
 def check_bounds(state: State) -> None:

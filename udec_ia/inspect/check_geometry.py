@@ -19,8 +19,8 @@ from udec_ia.heap.array import variable
 from udec_ia.inspect.check_codes import allowed
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 from udec_ia.inspect.check_map import AHEAD
-from udec_ia.kernels.shape import FLAT
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.shape import FLAT
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed

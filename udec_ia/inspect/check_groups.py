@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import offsets.generated as g
 from offsets import generated, read_table
-from offsets.generated import MCON, MCOR, MFREE
 from offsets.table import layouts
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, SOFT
@@ -106,7 +106,7 @@ class State:
         self.offset = {name: at for layout in self.layout.values() for name, at in layout.offset.items()}
         self.words = memoryview(self.h.ia)
         self.found: list[Violation] = []
-        self.free = min(max(int(self.h.ci[MFREE]), 1), len(self.h.ia) + 1)
+        self.free = min(max(int(self.h.ci[g.MFREE]), 1), len(self.h.ia) + 1)
         self.address: dict[str, Numbers] = {}
         self.owner: dict[str, Numbers] = {}
         self._columns: dict[str, Numbers] = {}
@@ -245,7 +245,7 @@ class State:
         first = end - count
         owner = np.repeat(np.arange(len(block)), count)
         here = np.arange(len(item))
-        contact = self.h.ia[item - 1] == MCON
+        contact = self.h.ia[item - 1] == g.MCON
         row = np.where(contact, self.rows("contact", item), -1)
         side = np.zeros(len(item), np.int8)
         side[contact] = self.read(item[contact], HOSTS[0]) != block[owner[contact]]
@@ -282,11 +282,11 @@ class State:
         for k in range(SHORT if last_corner > 0 else 0):
             at = np.where((here > 0) & (here <= last_corner) & ((here - 1) % self.ratio == 0), here, 0)
             head = np.where(at > 0, ia[at - 1], 0)
-            contact = (head == MCON) & (at <= last_contact) & (k > 0)
+            contact = (head == g.MCON) & (at <= last_contact) & (k > 0)
             at = np.where(contact, at, 1)
             left = contact & (ia[at + one] == blocks[live])
             right = contact & ~left & (ia[at + two] == blocks[live])
-            good = (head == MCOR) | left | right
+            good = (head == g.MCOR) | left | right
             step = np.select([left, right], [over_one, over_two], along)[good]
             here, live = here[good], live[good]
             rows.append(live)
@@ -309,9 +309,9 @@ class State:
         ring: dict[int, None] = {}
         while iad not in ring and 0 < iad <= last_corner and not (iad - 1) % ratio and len(ring) < steps:
             head = words[iad - 1]
-            if head == MCOR:
+            if head == g.MCOR:
                 step = along
-            elif head != MCON or iad > last_contact or not ring:
+            elif head != g.MCON or iad > last_contact or not ring:
                 break
             elif words[iad + one] == block:
                 step = over_one

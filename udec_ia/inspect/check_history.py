@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.inspect.check_groups import State
-from udec_ia.ops.recordable import HISTORY, by_codes
+from udec_ia.ops.commands.recordable import HISTORY, by_codes
 
 
 def check_histories(state: State) -> None:

@@ -14,9 +14,9 @@ from collections import Counter
 
 import numpy as np
 
-from offsets.generated import MRIG
+import offsets.generated as g
 from udec_ia.inspect.check_groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 
 (KNB,) = names("corner", "host")
 (KLB,) = names("corner", "clockback")
@@ -229,7 +229,7 @@ def _check_counts(state: State) -> None:
     if not blocks and contacts + domains:
         state.report(5, f"there are no blocks, but {contacts} contacts and {domains} domains")
     virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == VIRTUAL))
-    soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != MRIG))
+    soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != g.MRIG))
     counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
     for name, count in counts.items():
         if state.common(name) != count:

@@ -14,7 +14,7 @@ import numpy as np
 
 from udec_ia.inspect.check_groups import State
 from udec_ia.inspect.check_map import SIDES
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 
 
 def check_outer(state: State) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from udec_ia.inspect.check_geometry import Outlines, cross
 from udec_ia.inspect.check_groups import Numbers, State
 from udec_ia.inspect.check_map import SIDES
-from udec_ia.kernels.touch import VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 
 
 def check_pieces(state: State, o: Outlines) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check_groups import HOSTS, Numbers, State
 from udec_ia.inspect.check_map import neighbours
-from udec_ia.kernels.touch import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 
 
 @dataclass(frozen=True)

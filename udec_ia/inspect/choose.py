@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from offsets.generated import IODPNT
+import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
-from udec_ia.kernels.touch import VIRTUAL
-from udec_ia.ops.limits import finite
+from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.ops.common.limits import finite
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
@@ -119,7 +119,7 @@ def _domains(array: MainArray, address: Any) -> tuple[Any, Any]:
         row = order[np.searchsorted(address[order], contacts[side])]
         np.add.at(count, row, 1)
         np.add.at(total, row, np.column_stack([contacts["KXC"], contacts["KYC"]]))
-    inner = (count > 0) & (address != array.h.ci[IODPNT])
+    inner = (count > 0) & (address != array.h.ci[g.IODPNT])
     return address[inner], total[inner] / count[inner, np.newaxis]
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import MFREE
+import offsets.generated as g
 from offsets.table import Group, layouts, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, groups
@@ -106,7 +106,7 @@ class _Reader:
         start = here = self.sound("corner", self.field("block", "KP", blocks))
         owner = np.arange(len(blocks))
         found, owners = [here], [owner]
-        seen = np.zeros(int(self.h.ci[MFREE]), bool)
+        seen = np.zeros(int(self.h.ci[g.MFREE]), bool)
         while len(here):
             here = self.sound("corner", self.field("corner", "KR", here))
             if seen[here].any():
@@ -122,7 +122,7 @@ class _Reader:
 
     def last_address(self, kind: str) -> int:
         """The last address that a group of `kind` can have."""
-        return int(self.h.ci[MFREE]) - self.layouts[kind].size
+        return int(self.h.ci[g.MFREE]) - self.layouts[kind].size
 
     def sound(self, kind: str, addresses: Any) -> Any:
         """`addresses` as int64, if all of them are addresses of groups of `kind`."""

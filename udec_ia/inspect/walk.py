@@ -10,84 +10,36 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from offsets.generated import (
-    IBNPNT,
-    IBPNT,
-    ICPNT,
-    IDPNT,
-    IHPNT,
-    ISGPNT,
-    KB,
-    KB1,
-    KB2,
-    KBEX,
-    KC,
-    KD,
-    KD1,
-    KDLOOP,
-    KFG,
-    KFZ,
-    KG,
-    KH,
-    KL,
-    KL1,
-    KL2,
-    KP,
-    KR,
-    KT,
-    KU,
-    KZ,
-    MBND,
-    MCON,
-    MCOR,
-    MDOM,
-    MFDEF,
-    MFREE,
-    MHIS,
-    MRIG,
-    MSDEF,
-    MSIG,
-    NVBL,
-    NVBN,
-    NVCN,
-    NVCR,
-    NVDO,
-    NVFD,
-    NVGP,
-    NVHI,
-    NVSD,
-    NVSG,
-    NVZO,
-)
+import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
 
 LISTS: dict[str, tuple[int, Offset]] = {
-    "block": (IBPNT, KB),
-    "contact": (ICPNT, KC),
-    "domain": (IDPNT, KD),
-    "bound": (IBNPNT, KU),
-    "signal": (ISGPNT, KT),
-    "history": (IHPNT, KH),
+    "block": (g.IBPNT, g.KB),
+    "contact": (g.ICPNT, g.KC),
+    "domain": (g.IDPNT, g.KD),
+    "bound": (g.IBNPNT, g.KU),
+    "signal": (g.ISGPNT, g.KT),
+    "history": (g.IHPNT, g.KH),
 }
 HEADS: dict[str, tuple[int, ...]] = {
-    "block": (MRIG, MSDEF, MFDEF),
-    "corner": (MCOR,),
-    "contact": (MCON,),
-    "domain": (MDOM,),
-    "bound": (MBND,),
-    "signal": (MSIG,),
-    "history": (MHIS,),
+    "block": (g.MRIG, g.MSDEF, g.MFDEF),
+    "corner": (g.MCOR,),
+    "contact": (g.MCON,),
+    "domain": (g.MDOM,),
+    "bound": (g.MBND,),
+    "signal": (g.MSIG,),
+    "history": (g.MHIS,),
 }
-SOFT = {MSDEF: "sdef", MFDEF: "fdef"}  # kind of the extension of a block with this head code
+SOFT = {g.MSDEF: "sdef", g.MFDEF: "fdef"}  # kind of the extension of a block with this head code
 SIZES: dict[str, Offset] = {
-    "block": NVBL,
-    "corner": NVCR,
-    "contact": NVCN,
-    "domain": NVDO,
-    "bound": NVBN,
-    "signal": NVSG,
-    "history": NVHI,
+    "block": g.NVBL,
+    "corner": g.NVCR,
+    "contact": g.NVCN,
+    "domain": g.NVDO,
+    "bound": g.NVBN,
+    "signal": g.NVSG,
+    "history": g.NVHI,
 }
 
 
@@ -100,7 +52,7 @@ class Unsound(UdecError):
 
 def kind_of(h: Memory, iad: int) -> str | None:
     """Kind of the group at `iad` by its head code; None if the code is none of the known ones."""
-    end = min(int(h.ci[MFREE]) - 1, len(h.ia))
+    end = min(int(h.ci[g.MFREE]) - 1, len(h.ia))
     if not 1 <= iad <= end:
         return None
     code = iget(h, iad, HEAD)
@@ -117,7 +69,7 @@ def expect(h: Memory, iad: int, kinds: tuple[str, ...], source: str) -> int:
 
 def inside(h: Memory, iad: int, size: Offset, source: str) -> int:
     """`iad` if a group of this size, which has no head code, can stand there, else Unsound for `source`."""
-    within = 1 <= iad <= int(h.ci[MFREE]) - size_of(h, size)
+    within = 1 <= iad <= int(h.ci[g.MFREE]) - size_of(h, size)
     if not within or (iad - 1) % (h.ra.itemsize // h.ia.itemsize):
         raise Unsound(f"{source} points to {iad}, where no such group can be")
     return iad
@@ -125,14 +77,14 @@ def inside(h: Memory, iad: int, size: Offset, source: str) -> int:
 
 def extension(h: Memory, block: int) -> int:
     """The extension of deformable block `block`."""
-    size = NVSD if iget(h, block, HEAD) == MSDEF else NVFD
-    return inside(h, iget(h, block, KBEX), size, f"KBEX of block@{block}")
+    size = g.NVSD if iget(h, block, HEAD) == g.MSDEF else g.NVFD
+    return inside(h, iget(h, block, g.KBEX), size, f"KBEX of block@{block}")
 
 
 def _bounded(h: Memory, what: str, first: int, step: Callable[[int], int], stop: int) -> Iterator[int]:
     """first, step(first), ... until `stop`; Unsound if more items than the heap has words."""
     iad = first
-    for _ in range(int(h.ci[MFREE])):
+    for _ in range(int(h.ci[g.MFREE])):
         yield iad
         iad = step(iad)
         if iad == stop:
@@ -157,9 +109,9 @@ def groups(h: Memory, kind: str) -> Iterator[int]:
 
 def members(h: Memory, block: int, kind: str) -> Iterator[int]:
     """Addresses of the zones or grid-points of `block`, in list order; none if it has no zones."""
-    if iget(h, block, HEAD) != MFDEF:
+    if iget(h, block, HEAD) != g.MFDEF:
         return
-    head, link, size = {"gridpoint": (KFG, KG, NVGP), "zone": (KFZ, KZ, NVZO)}[kind]
+    head, link, size = {"gridpoint": (g.KFG, g.KG, g.NVGP), "zone": (g.KFZ, g.KZ, g.NVZO)}[kind]
     first = iget(h, extension(h, block), head)
     if first == 0:
         return
@@ -175,11 +127,11 @@ def members(h: Memory, block: int, kind: str) -> Iterator[int]:
 def next_item(h: Memory, block: int, iad: int) -> int:
     """The item after `iad` in the clockwise list of `block` (NEXTCP)."""
     if kind_of(h, iad) == "corner":
-        following = iget(h, iad, KL)
-    elif iget(h, iad, KB1) == block:
-        following = iget(h, iad, KL1)
-    elif iget(h, iad, KB2) == block:
-        following = iget(h, iad, KL2)
+        following = iget(h, iad, g.KL)
+    elif iget(h, iad, g.KB1) == block:
+        following = iget(h, iad, g.KL1)
+    elif iget(h, iad, g.KB2) == block:
+        following = iget(h, iad, g.KL2)
     else:
         raise Unsound(f"contact@{iad} stands in the list of block@{block} but names it neither KB1 nor KB2")
     return expect(h, following, ("corner", "contact"), f"the clockwise link of item@{iad} of block@{block}")
@@ -187,7 +139,7 @@ def next_item(h: Memory, block: int, iad: int) -> int:
 
 def boundary(h: Memory, block: int) -> Iterator[int]:
     """Corners and contacts of `block`, clockwise, from the corner KP on."""
-    first = expect(h, iget(h, block, KP), ("corner",), f"KP of block@{block}")
+    first = expect(h, iget(h, block, g.KP), ("corner",), f"KP of block@{block}")
     yield from _bounded(
         h, f"the clockwise list of block@{block}", first, lambda iad: next_item(h, block, iad), first
     )
@@ -200,10 +152,10 @@ def corners(h: Memory, block: int) -> list[int]:
 
 def reverse(h: Memory, block: int) -> Iterator[int]:
     """Corners of `block` along the reverse list, anticlockwise, from the corner KP on."""
-    first = expect(h, iget(h, block, KP), ("corner",), f"KP of block@{block}")
+    first = expect(h, iget(h, block, g.KP), ("corner",), f"KP of block@{block}")
 
     def step(iad: int) -> int:
-        return expect(h, iget(h, iad, KR), ("corner",), f"KR of corner@{iad}")
+        return expect(h, iget(h, iad, g.KR), ("corner",), f"KR of corner@{iad}")
 
     yield from _bounded(h, f"the reverse list of block@{block}", first, step, first)
 
@@ -213,17 +165,17 @@ def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
 
     A contact that has the domain on both its sides (a bridge of the map) is passed twice.
     """
-    contact = iget(h, domain, KDLOOP)
+    contact = iget(h, domain, g.KDLOOP)
     if contact == 0:
-        block = int(h.ci[IBPNT])
+        block = int(h.ci[g.IBPNT])
         if block:
             yield from ((iad, block) for iad in boundary(h, block))
         return
     expect(h, contact, ("contact",), f"KDLOOP of domain@{domain}")
-    block = iget(h, contact, KB2) if iget(h, contact, KD1) == domain else iget(h, contact, KB1)
+    block = iget(h, contact, g.KB2) if iget(h, contact, g.KD1) == domain else iget(h, contact, g.KB1)
     start = (contact, block)
     here = start
-    for _ in range(2 * int(h.ci[MFREE])):
+    for _ in range(2 * int(h.ci[g.MFREE])):
         yield here
         item, block = here
         following = next_item(h, block, item)
@@ -237,7 +189,7 @@ def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
 
 def other_block(h: Memory, contact: int, block: int) -> int:
     """The block on the other side of `contact`, seen from `block`."""
-    one, two = iget(h, contact, KB1), iget(h, contact, KB2)
+    one, two = iget(h, contact, g.KB1), iget(h, contact, g.KB2)
     if block not in (one, two):
         raise Unsound(
             f"contact@{contact} stands in the list of block@{block} but names it neither KB1 nor KB2"

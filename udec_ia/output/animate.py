@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from offsets.generated import MCTOT
+import offsets.generated as g
 from udec_ia.files import put_in_place
 from udec_ia.heap.accessors import Memory
 from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title
@@ -52,7 +52,7 @@ class Animation:
         from matplotlib import rc_context
         from PIL import Image
 
-        if not self.states or self.states[-1].cycle != h.ci[MCTOT]:
+        if not self.states or self.states[-1].cycle != h.ci[g.MCTOT]:
             self.states.append(snapshot(h))
         box = limits(self.states)
         inches = SHRINK * scale_for(box, 0.0)

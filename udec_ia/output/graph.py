@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.ops.watch import Series
+from udec_ia.ops.run.watch import Series
 from udec_ia.output.draw import INK, drawable
 from udec_ia.output.picture import write
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.ops.watch import Series
+from udec_ia.ops.run.watch import Series
 from udec_ia.output.turns import Turns
 
 Counts = tuple[int, ...]  # numbers of each history

@@ -16,7 +16,7 @@ import numpy as np
 import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
-from udec_ia.kernels.touch import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
+from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
 from udec_ia.output.field import Field, field
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic

@@ -33,9 +33,9 @@ from udec_ia.inspect.walk import (
     members,
     point,
 )
-from udec_ia.kernels.fdef import strain_rates
-from udec_ia.ops.energy import Balance, balance
-from udec_ia.ops.watch import Series
+from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.ops.commands.energy import Balance, balance
+from udec_ia.ops.run.watch import Series
 
 T = TypeVar("T")
 LINE = 120

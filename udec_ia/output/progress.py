@@ -13,7 +13,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from udec_ia.heap.compiling import working_time
-from udec_ia.ops.watch import Solution
+from udec_ia.ops.run.watch import Solution
 from udec_ia.printable import printable
 
 LINES = 10  # plain lines for one CYCLE command, at most

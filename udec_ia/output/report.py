@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
 
-from offsets.generated import FRAC, MCTOT, NBROKE, NMADE, TDEL, TIME
+import offsets.generated as g
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.compiling import working_time
-from udec_ia.kernels.rest import unbalanced
-from udec_ia.ops.soft import soft_in
+from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.ops.common.soft import soft_in
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -32,7 +32,7 @@ class Report:
         self.animation = animation
         self.progress: Progress | None = None
         self.shown = 0  # cycles done when progress was shown last
-        self.before = int(memory().ci[MCTOT])
+        self.before = int(memory().ci[g.MCTOT])
         self.started = working_time()
 
     def __call__(self, done: int) -> None:
@@ -46,15 +46,15 @@ class Report:
         if self.progress is None:
             from udec_ia.output.progress import Progress
 
-            tdel, frac = float(h.cr[TDEL]), float(h.cr[FRAC])
+            tdel, frac = float(h.cr[g.TDEL]), float(h.cr[g.FRAC])
             self.progress = Progress(stream, self.total, tdel, frac, self.started)
         self.shown = done
-        made, broken = int(h.ci[NMADE]), int(h.ci[NBROKE])
-        self.progress.update(done, float(h.cd[TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
+        made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
+        self.progress.update(done, float(h.cd[g.TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
 
     def close(self) -> None:
         """Take the progress off the screen; the last line tells how far a command came that was cut short."""
-        done = int(self.memory().ci[MCTOT]) - self.before
+        done = int(self.memory().ci[g.MCTOT]) - self.before
         if self.stream is not None and done != self.shown:
             self._show(done, self.stream)
         if self.progress is not None:

@@ -14,13 +14,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from offsets.generated import DTOL
+import offsets.generated as g
 from offsets.table import Table, TableError, parse, read_table
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
-from udec_ia.kernels.tolerances import tolset
-from udec_ia.ops.lawfile import RESULTS
+from udec_ia.kernels.geometry.tolerances import tolset
+from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
 from udec_ia.restart.layout import differences, losses
@@ -189,7 +189,7 @@ def _check_heap(array: MainArray) -> None:
 def _check_tolerances(array: MainArray) -> None:
     """Refuse tolerances that are not those of the rounding length: updates would not come to an end."""
     reals = array.h.cr
-    written, d = reals.copy(), reals[DTOL]
+    written, d = reals.copy(), reals[g.DTOL]
     tolset(array.h, d)
     alike = np.allclose(written, reals, rtol=4 * np.finfo(reals.dtype).eps, atol=0, equal_nan=True)
     reals[:] = written

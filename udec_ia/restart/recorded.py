@@ -14,8 +14,8 @@ import h5py
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.ops.history import Definition, definitions
-from udec_ia.ops.watch import Series
+from udec_ia.ops.commands.history import Definition, definitions
+from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
 from udec_ia.restart.reader import opened

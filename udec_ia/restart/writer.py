@@ -18,12 +18,12 @@ import h5py
 import numba
 import numpy as np
 
+import offsets.generated as g
 import udec_ia
-from offsets.generated import MFREE
 from offsets.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
-from udec_ia.ops.watch import Series
+from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import CHUNK
 from udec_ia.restart.layout import common_places, field_rows, text
 from udec_ia.restart.recorded import RECORDED, store
@@ -96,7 +96,7 @@ def _image(
 def _write_heap(file: h5py.File, array: MainArray) -> None:
     """/heap/IA: the words below MFREE; above it there is nothing that counts."""
     scheme = array.scheme
-    words = array.h.ia[: int(array.h.ci[MFREE]) - 1].astype(scheme.int_type.newbyteorder("<"), copy=False)
+    words = array.h.ia[: int(array.h.ci[g.MFREE]) - 1].astype(scheme.int_type.newbyteorder("<"), copy=False)
     chunk = min(max(len(words), 1), CHUNK)
     heap = file.create_dataset("heap/IA", data=words, chunks=(chunk,), maxshape=(None,), fletcher32=True)
     heap.attrs["int_bits"] = np.int32(scheme.int_bits)

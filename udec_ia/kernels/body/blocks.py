@@ -1,0 +1,54 @@
+"""The block pass: every block moves by the law of its type (report 2.6).
+
+`soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code,
+and such a scene neither compiles nor tests anything about deformable blocks. `laws` is None unless one of
+these follows a law of the user's.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
+from udec_ia.heap.ahead import LEAD, fetch
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.body.fdef import move_fdef
+from udec_ia.kernels.body.motion import motion
+from udec_ia.kernels.body.sdef import move_sdef
+
+TOO_FAR = 36
+
+
+@inlined
+def check_place(h: Memory, ib: int) -> None:
+    """Error 36 if block `ib` is where reals no longer tell x from x + FTOL, or if its place is no number."""
+    x, y, least = abs(getr(h, ib, g.KX)), abs(getr(h, ib, g.KY)), h.cr[g.FTOL]
+    if not (x + least > x and y + least > y) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = TOO_FAR
+        h.ci[g.IERAD] = ib
+
+
+@kernel
+def move_all(h: Memory, soft: Any, laws: Any) -> float:
+    """Move every block; returns a bound on the velocity, in x or in y, of any point.
+
+    Error 36 if a block has flown to where nothing can be calculated any more.
+    """
+    fastest = real(h, 0.0)
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        fetch(h, ib, g.NVBL, LEAD)
+        if soft is not None:
+            kind = iget(h, ib, HEAD)
+            if kind == g.MFDEF:
+                fastest = max(fastest, move_fdef(h, ib, laws))
+            elif kind == g.MSDEF:
+                fastest = max(fastest, move_sdef(h, ib, laws))
+            else:
+                fastest = max(fastest, motion(h, ib))
+        else:
+            fastest = max(fastest, motion(h, ib))
+        check_place(h, ib)
+        ib = iget(h, ib, g.KB)
+    return fastest

@@ -1,0 +1,1 @@
+"""The contact pass: forces from relative displacements (FORD; report 2.6)."""

@@ -1,0 +1,285 @@
+"""The contact pass: forces from relative displacements (FORD, CVEL, PUTFCE); report 2.6.
+
+Constitutive number 1: a linear spring normal to the contact, one along it, and Coulomb friction:
+
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0
+    dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
+
+The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
+apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
+Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
+stored forces; it vanishes along a contact that slips and in an open one.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.ahead import LEAD, fetch
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.body.boundary_point import putfce, velocity_at
+from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
+from udec_ia.kernels.detect.depth import do_not_meet
+from udec_ia.kernels.detect.gaps import gap_taken
+from udec_ia.kernels.energy.works import note_corners, note_damping, note_law_damping, note_opening
+from udec_ia.kernels.geometry.contact_geometry import (
+    CORNER_EDGE,
+    EDGE_CORNER,
+    OVERLAP_TOO_GREAT,
+    VIRTUAL,
+    faces,
+)
+from udec_ia.kernels.links.lists import is_contact
+from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.map.reclass import settle
+from udec_ia.kernels.map.segments import ahead_by, same_segment
+
+TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
+
+
+@kernel
+def restart(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Settle contact `ic` in a changed geometry, its forces as they are; normal (x, y) and overlap."""
+    nx, ny, overlap = settle(h, ic)
+    putr(h, ic, g.KCN, overlap)
+    return nx, ny, overlap
+
+
+@inlined
+def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
+    """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
+    if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
+        return False
+    dx, dy = getr(h, jc, g.KXC) - getr(h, ic, g.KXC), getr(h, jc, g.KYC) - getr(h, ic, g.KYC)
+    return dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL] and iget(h, jc, g.KCCOD) != VIRTUAL
+
+
+@inlined
+def has_twin(h: Memory, ic: int) -> bool:
+    """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
+    ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    return is_twin(h, ic, iget(h, ic, g.KL1), ib, jb) or is_twin(h, ic, iget(h, ic, g.KLB1), ib, jb)
+
+
+@inlined
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool) -> bool:
+    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other."""
+    x, y, most = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y) < -most:
+        return True
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y) > most
+
+
+@inlined
+def overtaken(h: Memory, ic: int) -> bool:
+    """True if contact `ic` and a neighbour on the same segment have passed each other.
+
+    If it is open, something has slipped through its gap.
+    """
+    code = iget(h, ic, g.KCCOD)
+    after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
+    if passed(h, ic, after, before, ip, code != EDGE_CORNER):
+        return True
+    after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
+    return passed(h, ic, after, before, ip, code != CORNER_EDGE)
+
+
+@inlined
+def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if the arc of a corner on an edge has turned away from it by more than TURNED.
+
+    The circle of a blunt corner reaches far beyond its arc, even beyond its block. (nx, ny) is the contact's
+    normal.
+    """
+    code = iget(h, ic, g.KCCOD)
+    if code == CORNER_EDGE:
+        return not faces(h, iget(h, ic, g.KCP1), nx, ny, real(h, TURNED))
+    return code == EDGE_CORNER and not faces(h, iget(h, ic, g.KCP2), -nx, -ny, real(h, TURNED))
+
+
+@inlined
+def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic):
+        return True
+    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+
+
+@kernel
+def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if contact `ic` overlaps by more than a narrow tip can stand.
+
+    Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
+    arc's centre is in the other block and the contact has passed a neighbour: the tip is squeezed out between
+    two blocks that touch.
+    """
+    gap = nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    if do_not_meet(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), gap):
+        return True
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if (code == EDGE_CORNER or getr(h, ip, g.KRAD) >= overlap) and (
+        code == CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
+    ):
+        return False
+    return overtaken(h, ic)
+
+
+@inlined
+def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """Delete contact `ic` if it is open too far or no wall any more, or idle beside a twin.
+
+    A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
+    """
+    if overlap > 0 and getr(h, ic, g.KCFN) != 0:
+        return False
+    is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
+    if overlap >= -h.cr[g.BTOL]:
+        gone = overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap)
+        if not gone and (is_bridge or not has_twin(h, ic)):
+            return False
+    h.ci[g.NBROKE] += 1
+    if is_bridge:
+        to_virtual(h, ic)
+    else:
+        delc(h, ic)
+    return True
+
+
+@inlined
+def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
+    """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL)."""
+    x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
+    vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
+    xd, yd = vxj - vxi, vyj - vyi
+    putr(h, ic, g.KXDC, xd)
+    putr(h, ic, g.KYDC, yd)
+    return xd, yd
+
+
+@inlined
+def push(
+    h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
+) -> None:
+    """Let the blocks of contact `ic` feel its forces.
+
+    Error 15 if it overlaps by too much, or if a tip is squeezed out between two others.
+    """
+    fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
+    x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
+    putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
+    too_great = overlap > h.cr[g.DTOL2] or (overlap > h.cr[g.FTOL] and squeezed(h, ic, nx, ny, overlap))
+    if too_great and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = OVERLAP_TOO_GREAT
+        h.ci[g.IERAD] = ic
+
+
+@inlined
+def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
+    """Force and displacement calculation for contact `ic` (FORD), which may vanish in it.
+
+    soft, joints, energy: as in run_cycles.
+    """
+    before = getr(h, ic, g.KCN)
+    nx, ny, overlap = settle(h, ic)
+    putr(h, ic, g.KCN, overlap)
+    zero = real(h, 0.0)
+    idle = overlap <= zero or getr(h, ic, g.KCFN) == zero
+    by_springs = True
+    if joints is not None and has_law(h, joints, ic):
+        by_springs = False
+        idle = is_open(h, ic, overlap)
+    if energy is not None and by_springs and overlap <= zero:
+        note_opening(h, ic)
+    still = zero < h.cr[g.UPEND] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
+    if idle and not still and drop(h, ic, nx, ny, overlap):
+        return  # an open contact looks at its neighbours only when the domain pass has run
+    was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
+    xd, yd = cvel(h, ic, soft)
+    if joints is not None and has_law(h, joints, ic):
+        normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
+        if energy is not None:
+            note_law_damping(h, ic, normal, shear, -(xd * nx + yd * ny), yd * nx - xd * ny)
+        push(h, ic, nx, ny, normal, shear, overlap, soft)
+        return
+    if overlap <= zero:
+        no_force(h, ic)
+        return
+    m = iget(h, ic, g.KCM) - 1
+    kn, ks, dt = h.cr[g.AKN + m], h.cr[g.AKS + m], h.cr[g.TDEL]
+    closing = -(xd * nx + yd * ny)
+    sliding = yd * nx - xd * ny
+    dus = sliding * dt
+    fn = getr(h, ic, g.KCFN) + kn * (overlap - max(before, zero))
+    held = getr(h, ic, g.KCFS)
+    fs = held + ks * dus
+    putr(h, ic, g.KCS, getr(h, ic, g.KCS) + dus)
+    if fn <= zero:
+        if energy is not None:
+            h.cd[g.WFRIC] += held * fs / (ks + ks)
+        fn, fs = zero, zero
+    most = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
+    dashpot = h.cr[g.BETA] * ks * sliding
+    if abs(fs) > most:
+        slip = (abs(fs) - most) / ks
+        h.cd[g.WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
+        fs = most if fs > zero else -most
+        dashpot = zero
+    if energy is not None and soft is not None and before > zero and fn > zero:
+        note_corners(h, ic, fn, closing, overlap - before)
+    if energy is not None and h.cr[g.BETA] != zero:
+        if before <= zero:
+            was_x, was_y = zero, zero
+        held_fn = getr(h, ic, g.KCFN)
+        stuck = abs(held) < h.cr[g.COH + m] + h.cr[g.AMU + m] * held_fn or held_fn == zero
+        was = -(was_x * nx + was_y * ny), was_y * nx - was_x * ny if stuck else zero
+        note_damping(h, kn, ks, was, (closing, sliding), sliding if dashpot != zero else zero)
+    putr(h, ic, g.KCFN, fn)
+    putr(h, ic, g.KCFS, fs)
+    push(h, ic, nx, ny, fn + h.cr[g.BETA] * kn * closing, fs + dashpot, overlap, soft)
+
+
+@inlined
+def look_ahead(h: Memory, ic: int) -> int:
+    """Fetch what contact `ic` is going to look at; returns the contact after it, 0 where there is none."""
+    if ic == 0:
+        return int64(0)
+    fetch(h, ic, g.NVCN, LEAD)
+    fetch(h, iget(h, ic, g.KCP1), g.NVCR)
+    fetch(h, iget(h, ic, g.KCP2), g.NVCR)
+    if getr(h, ic, g.KCFN) == 0:  # it may look at the first words of its neighbours
+        fetch(h, iget(h, ic, g.KL1), g.NVDO)
+        fetch(h, iget(h, ic, g.KL2), g.NVDO)
+        fetch(h, iget(h, ic, g.KLB1), g.NVDO)
+        fetch(h, iget(h, ic, g.KLB2), g.NVDO)
+    return iget(h, ic, g.KC)
+
+
+@kernel
+def ford_all(h: Memory, soft: Any, joints: Any, energy: Any) -> None:
+    """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
+    ic = h.ci[g.ICPNT]
+    ahead = ic
+    for _ in range(LEAD):
+        ahead = look_ahead(h, ahead)
+    while ic != 0:
+        ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
+        following = iget(h, ic, g.KC)
+        if iget(h, ic, g.KCCOD) != VIRTUAL:
+            ford(h, ic, soft, joints, energy)
+        ic = following
+
+
+@kernel
+def settle_all(h: Memory) -> None:
+    """Bring every contact up to date with a changed geometry, its force as it is."""
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        following = iget(h, ic, g.KC)
+        if iget(h, ic, g.KCCOD) != VIRTUAL:
+            nx, ny, overlap = restart(h, ic)
+            drop(h, ic, nx, ny, overlap)
+        ic = following

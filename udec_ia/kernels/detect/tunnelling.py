@@ -1,0 +1,218 @@
+"""Has a block gone into another one in a single step, too fast for a contact (error 15)?
+
+The argument why two blocks never overlap by more than CTOL without a contact or an error:
+
+1.  After an update of a domain every two segments of its boundary that are nearer than ATOL have a contact,
+    or one near them that stands for both (search.py); two that overlap where none can be made are error 15.
+2.  Until the next update its points approach each other by at most ETOL in x and in y, so by ATOL at most:
+    KUMAX sums their greatest relative displacement, and above ETOL the domain is updated in the same cycle
+    (domains.py). So without a contact nothing has come to touch before that cycle.
+3.  A step of at most ETOL then makes an overlap of at most CTOL, with which a contact can be made.
+4.  In a longer step blocks may come to lie deeper in each other, or pass right through each other. So after a
+    step of more than ETOL the ways of all corners of the domain are followed: none of them may have been
+    deeper in another block of the domain than CTOL, nor have come in and gone out again when it was deeper
+    than FTOL; and no edge may lie deeper than CTOL in another block. That is what this file does.
+5.  Contacts part domains like walls. One that is open is no wall any more as soon as another block comes
+    between the two (gaps.py); one that is closed ends the run if a tip is squeezed through it (ford.py).
+6.  Commands that change outlines flag all domains, which are updated before the next cycle; what is too
+    deep then is refused, and nothing is changed (ops/commands/rounding.py).
+
+The way of a corner is seen from the other block: a point is carried back to where it was before the step with
+its own block, and forth again with the other one, so that however fast the two may turn, the way from there
+to where it is now is what the other block has seen. An arc is followed at its two ends and in the middle.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.body.boundary_point import lever
+from udec_ia.kernels.detect.depth import depth_in
+from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
+from udec_ia.kernels.geometry.contact_geometry import tangents
+from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
+
+POINTS = 3  # of an arc that are followed
+STEPS = 8  # places looked at while a point goes by CTOL in x or in y
+
+
+@kernel
+def _turned(h: Memory, ib: int, rx: float, ry: float, way: int) -> tuple[float, float]:
+    """The vector (rx, ry) in block `ib`, which turns and strains, one step later (`way` 1) or before (-1)."""
+    half = h.cr[g.TDEL] * real(h, 0.5) * real(h, way)
+    td = getr(h, ib, g.KTD)
+    a, b, c, d = real(h, 0.0), -td * half, td * half, real(h, 0.0)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        ie = iget(h, ib, g.KBEX)
+        a, d = getr(h, ie, g.KED11) * half, getr(h, ie, g.KED22) * half
+        b, c = b + getr(h, ie, g.KED12) * half, c + getr(h, ie, g.KED12) * half
+    x, y = rx + a * rx + b * ry, ry + c * rx + d * ry
+    one = real(h, 1.0)
+    det = (one - a) * (one - d) - b * c
+    return ((one - d) * x + b * y) / det, (c * x + (one - a) * y) / det
+
+
+@kernel
+def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
+    """Where the point (x, y) of block `ib`, near its corner `ip`, was before this step."""
+    dt = h.cr[g.TDEL]
+    if iget(h, ib, HEAD) == g.MFDEF:
+        return x - getr(h, ip, g.KXDP) * dt, y - getr(h, ip, g.KYDP) * dt
+    xn, yn = getr(h, ib, g.KX), getr(h, ib, g.KY)
+    rx, ry = _turned(h, ib, x - xn, y - yn, -1)
+    return xn - getr(h, ib, g.KXD) * dt + rx, yn - getr(h, ib, g.KYD) * dt + ry
+
+
+@kernel
+def carried(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
+    """Where block `ib` has carried in this step what was at (x, y), near its edge that ends at `ip`."""
+    dt = h.cr[g.TDEL]
+    if iget(h, ib, HEAD) == g.MFDEF:
+        ia = iget(h, ip, g.KR)
+        part = min(max(lever(h, ip, x, y), real(h, 0.0)), real(h, 1.0))
+        rest = real(h, 1.0) - part
+        vx = rest * getr(h, ia, g.KXDP) + part * getr(h, ip, g.KXDP)
+        vy = rest * getr(h, ia, g.KYDP) + part * getr(h, ip, g.KYDP)
+        return x + vx * dt, y + vy * dt
+    xn, yn = getr(h, ib, g.KX), getr(h, ib, g.KY)
+    sx, sy = getr(h, ib, g.KXD) * dt, getr(h, ib, g.KYD) * dt
+    rx, ry = _turned(h, ib, x - (xn - sx), y - (yn - sy), 1)
+    return xn + rx, yn + ry
+
+
+@kernel
+def arc_point(h: Memory, ip: int, k: int) -> tuple[float, float]:
+    """Point `k` of the arc of corner `ip`: its middle, beginning or end; an edge point has only one."""
+    x, y, rad, d = getr(h, ip, g.KXP), getr(h, ip, g.KYP), getr(h, ip, g.KRAD), h.cr[g.DTOL]
+    if rad <= 0:
+        return x, y
+    if k == 0:
+        cx, cy = getr(h, ip, g.KXCP), getr(h, ip, g.KYCP)
+        far = np.sqrt((x - cx) * (x - cx) + (y - cy) * (y - cy))
+        return cx + (x - cx) * rad / far, cy + (y - cy) * rad / far
+    tx, ty, ux, uy = tangents(h, ip)
+    if k == 1:
+        return x - d * tx, y - d * ty
+    return x + d * ux, y + d * uy
+
+
+@kernel
+def _depths(h: Memory, ib: int, ip: int, jb: int, k: int, n: int) -> tuple[float, float, float]:
+    """How deep point `k` of the arc of corner `ip` of block `ib` lay in block `jb`.
+
+    Before this step, on its way at most, and now. n: number of places on the way that are looked at. A
+    fully-deformable block `jb` is looked at as it was then; another one carries the point's first place
+    along, however fast it turns.
+    """
+    x, y = arc_point(h, ip, k)
+    fx, fy = was_at(h, ib, ip, x, y)
+    back = h.cr[g.TDEL]
+    if iget(h, jb, HEAD) != g.MFDEF:
+        fx, fy = carried(h, jb, iget(h, jb, g.KP), fx, fy)
+        back = real(h, 0.0)
+    before = depth_in(h, jb, fx, fy, back)
+    most, now = -real(h, np.inf), before
+    for i in range(1, n + 1):
+        part = real(h, i) / real(h, n)
+        now = depth_in(h, jb, fx + (x - fx) * part, fy + (y - fy) * part, back * (real(h, 1.0) - part))
+        most = max(most, now)
+    return before, most, now
+
+
+@kernel
+def _has_gone_in(h: Memory, ib: int, ip: int, jb: int, n: int) -> bool:
+    """True if in this step the arc of corner `ip` of block `ib` was deeper than CTOL in block `jb`.
+
+    Or deeper than FTOL, and it has come in and gone out again. n: as in _depths.
+    """
+    for k in range(POINTS if getr(h, ip, g.KRAD) > 0 else 1):
+        before, most, now = _depths(h, ib, ip, jb, k, n)
+        if most > h.cr[g.CTOL] or (before <= 0 and now <= 0 and most > h.cr[g.FTOL]):
+            return True
+    return False
+
+
+@kernel
+def edge_lies_in(h: Memory, ip: int, jb: int, jp: int) -> bool:
+    """True if the edge that ends at corner `ip` lies deeper than CTOL in block `jb`, behind its edge `jp`.
+
+    Where two tips have slid past each other, no corner need lie in the other block. The edge is looked at in
+    the middle of what the two edges have in common, between its roundings.
+    """
+    ia, ja = iget(h, ip, g.KR), iget(h, jp, g.KR)
+    ax, ay = getr(h, ia, g.KXP), getr(h, ia, g.KYP)
+    ux, uy = getr(h, ip, g.KXP) - ax, getr(h, ip, g.KYP) - ay
+    zz = ux * ux + uy * uy
+    zero, share = real(h, 0.0), h.cr[g.DTOL] / np.sqrt(zz)  # a rounding's share of the edge
+    low = share if getr(h, ia, g.KRAD) > 0 else zero
+    high = real(h, 1.0) - (share if getr(h, ip, g.KRAD) > 0 else zero)
+    first = ((getr(h, ja, g.KXP) - ax) * ux + (getr(h, ja, g.KYP) - ay) * uy) / zz
+    last = ((getr(h, jp, g.KXP) - ax) * ux + (getr(h, jp, g.KYP) - ay) * uy) / zz
+    first, last = min(max(first, low), high), min(max(last, low), high)
+    at = (first + last) * real(h, 0.5)
+    x, y = ax + ux * at, ay + uy * at
+    vx, vy = getr(h, jp, g.KXP) - getr(h, ja, g.KXP), getr(h, jp, g.KYP) - getr(h, ja, g.KYP)
+    behind = (x - getr(h, ja, g.KXP)) * vy - (
+        y - getr(h, ja, g.KYP)
+    ) * vx  # the block is to the right of its edge
+    if first == last or behind <= h.cr[g.CTOL] * np.sqrt(vx * vx + vy * vy):
+        return False
+    return bool(depth_in(h, jb, x, y, zero) > h.cr[g.CTOL])
+
+
+@kernel
+def _include(boxes: Any, i: int, x: float, y: float) -> None:
+    """Widen box `i` by the point (x, y)."""
+    boxes[i, LEFT], boxes[i, RIGHT] = min(boxes[i, LEFT], x), max(boxes[i, RIGHT], x)
+    boxes[i, BELOW], boxes[i, ABOVE] = min(boxes[i, BELOW], y), max(boxes[i, ABOVE], y)
+
+
+@kernel
+def ways(h: Memory, seg: Any, n: int) -> Any:
+    """Boxes of what each segment has passed through in this step."""
+    boxes = np.empty((n, 4), np.float64)
+    for i in range(n):
+        boxes[i, LEFT] = boxes[i, BELOW] = np.inf
+        boxes[i, RIGHT] = boxes[i, ABOVE] = -np.inf
+        ib, ip = seg[i, BLOCK], seg[i, CORNER]
+        for k in range(POINTS):
+            if seg[i, ARC] == 1:
+                iq = ip
+                x, y = arc_point(h, ip, k)
+            else:
+                iq = ip if k == 0 else iget(h, ip, g.KR)
+                x, y = getr(h, iq, g.KXP), getr(h, iq, g.KYP)
+            fx, fy = was_at(h, ib, iq, x, y)
+            _include(boxes, i, x, y)
+            _include(boxes, i, fx, fy)
+    return boxes
+
+
+@kernel
+def gone_through(h: Memory, idm: int, moved: float) -> int:
+    """A corner in domain `idm` that has gone into another block in this step, or through it; 0 if none has.
+
+    moved: greatest relative displacement in x or in y of any two points of the domain in this step.
+    """
+    steps = 1 + int(moved / h.cr[g.CTOL] * real(h, STEPS))
+    items = count_items(h, idm)
+    seg = np.empty((2 * items + 2, COLUMNS), np.int64)
+    n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
+    pairs = meeting(ways(h, seg, n), n)
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        if seg[i, BLOCK] == seg[j, BLOCK]:
+            continue
+        for one, two in ((i, j), (j, i)):
+            ip = seg[one, CORNER]
+            if seg[one, ARC] == 1 and _has_gone_in(h, seg[one, BLOCK], ip, seg[two, BLOCK], steps):
+                return int64(ip)
+            edges = seg[one, ARC] + seg[two, ARC] == 0
+            if edges and edge_lies_in(h, ip, seg[two, BLOCK], seg[two, CORNER]):
+                return int64(ip)
+    return int64(0)

@@ -1,0 +1,169 @@
+"""Updating a domain: look for new contacts in it and make them (UPDATE, UPDT; report 2.2).
+
+An update makes the most urgent contact that the domain needs and looks again, in both parts if the
+domain was cut, until nothing more is needed. Blocks that overlap then where no contact can be made are
+error 15. Every single contact leaves a sound map; when memory runs out the update stops between two contacts
+and can be taken up again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import room_for_two
+from udec_ia.kernels.detect.gaps import give_up_taken
+from udec_ia.kernels.detect.search import SMALL, STRAY, search
+from udec_ia.kernels.detect.tunnelling import edge_lies_in
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
+from udec_ia.kernels.map.bridge import bridge
+from udec_ia.kernels.map.segments import (
+    ARC,
+    BLOCK,
+    COLUMNS,
+    CORNER,
+    ITEM,
+    PIECE,
+    collect,
+    count_items,
+    not_virtual,
+    settle_loop,
+)
+from udec_ia.kernels.map.virtual import cut_among_pieces, rehook
+
+NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
+WAITING = 64  # domains that may wait for their turn in one update
+
+
+@kernel
+def tie_between(ties: Any, one: int, two: int) -> int:
+    """Row of a virtual contact on the way from piece `one` to piece `two`.
+
+    Piece k + 1 was first reached over tie k, so the ties form a tree rooted in piece 0, and a piece has a
+    greater number than the one it was reached from: going up from the greater of two different numbers
+    always goes along the way between them.
+    """
+    return max(one, two) - 1
+
+
+@kernel
+def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
+    """One exposure of every piece: rows (block, item, 1 for the piece `own`)."""
+    pieces = np.zeros((nties + 1, 3), np.int64)
+    for i in range(n):
+        k = seg[i, PIECE]
+        if pieces[k, 0] == 0:
+            pieces[k, 0] = seg[i, BLOCK]
+            pieces[k, 1] = not_virtual(h, seg[i, BLOCK], seg[i, ITEM])
+            pieces[k, 2] = 1 if k == own else 0
+    return pieces
+
+
+@kernel
+def _without_contact(h: Memory, seg: Any, n: int, code: int, i: int, j: int) -> int:
+    """A corner, or an edge by its corner, that lies in another block where no contact tells it, or 0.
+
+    code, i, j: what the search has found. Edges are looked at in small domains, such as cracks.
+    """
+    if code == STRAY:
+        return int64(seg[i, CORNER] if seg[i, ARC] == 1 else seg[j, CORNER])
+    for one in range(n if n <= SMALL else 0):
+        for two in range(n):
+            edges = seg[one, ARC] + seg[two, ARC] == 0 and seg[one, BLOCK] != seg[two, BLOCK]
+            if edges and edge_lies_in(h, seg[one, CORNER], seg[two, BLOCK], seg[two, CORNER]):
+                return int64(seg[one, CORNER])
+    return int64(0)
+
+
+@kernel
+def updt(h: Memory, idm: int) -> tuple[int, int]:
+    """Make the most urgent contact in domain `idm` (UPDT), or give up one in whose gap a third block stands.
+
+    Returns what was done, and the new domain (CUT) or the domain that `idm` is part of now (MERGED).
+    """
+    zero = int64(0)
+    if iget(h, idm, g.KDLOOP) == 0:
+        return NOTHING, zero
+    items = count_items(h, idm)
+    seg = np.empty((2 * items + 2, COLUMNS), np.int64)
+    ties = np.empty((min(h.ci[g.NVIRT], items), 3), np.int64)
+    n, nties = collect(h, idm, seg, ties)
+    if getr(h, idm, g.KUMAX) >= h.cr[g.ETOL] + h.cr[g.ETOL]:  # a long step, or a domain that was flagged
+        found, merged = give_up_taken(h, idm, seg, n)
+        if found:
+            return MERGED, merged
+    code, i, j = search(h, seg, n)
+    if code <= 0:
+        ip = _without_contact(h, seg, n, code, i, j)
+        if ip != 0 and h.ci[g.NERR] == 0:
+            h.ci[g.NERR] = OVERLAP_TOO_GREAT
+            h.ci[g.IERAD] = ip
+        return NOTHING, zero
+    ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
+    one, two = seg[i, PIECE], seg[j, PIECE]
+    if one != two:
+        rehook(h, ties[tie_between(ties, one, two), 0], ib, iad, jb, jad, code)
+        return MADE, zero
+    if not room_for_two(h, g.NVCN, g.NVDO):
+        return NO_ROOM, zero
+    if nties > 0:
+        pieces = _pieces(h, seg, n, nties, one)
+        return CUT, cut_among_pieces(h, ib, iad, jb, jad, code, idm, ties[:nties, 0].copy(), pieces)
+    ic = bridge(h, ib, iad, jb, jad, code, idm)
+    return CUT, iget(h, ic, g.KD1) if iget(h, ic, g.KD2) == idm else iget(h, ic, g.KD2)
+
+
+@kernel
+def update(h: Memory, idm: int) -> bool:
+    """Update domain `idm` and every domain that is cut from it (UPDATE). False if memory ran out."""
+    waiting = np.empty(WAITING, np.int64)
+    waiting[0] = idm
+    n = 1
+    if iget(h, idm, g.KDLOOP) != 0:
+        settle_loop(h, idm)
+    while n > 0:
+        here = waiting[n - 1]
+        done, idnew = updt(h, here)
+        if done == NO_ROOM:
+            return False
+        if done == NOTHING:
+            putr(h, here, g.KUMAX, real(h, 0.0))
+            if h.ci[g.NTIPS] > 0:  # to be looked at in the next cycle again: the gap may close then
+                putr(h, here, g.KUMAX, h.cr[g.ETOL])
+                h.cr[g.UPEND] = h.cr[g.HTOL]
+            n -= 1
+        elif done == CUT:
+            putr(h, idnew, g.KUMAX, getr(h, here, g.KUMAX))
+            if n < WAITING:  # else it keeps its displacement and is found by the next pass
+                waiting[n] = waiting[n - 1]
+                waiting[n - 1] = idnew
+                n += 1
+        elif done == MERGED:  # one that was waiting may be gone; they are flagged and found by update_all
+            settle_loop(h, idnew)
+            waiting[0] = idnew
+            n = 1
+    return True
+
+
+@kernel
+def update_all(h: Memory) -> bool:
+    """Update every domain whose fictitious displacement exceeds ETOL. False if memory ran out."""
+    again = True
+    while again:
+        again = False
+        broken = h.ci[g.NBROKE]
+        idm = h.ci[g.IDPNT]
+        while idm != 0:
+            following = iget(h, idm, g.KD)
+            if getr(h, idm, g.KUMAX) > h.cr[g.ETOL]:
+                if not update(h, idm):
+                    return False
+                again = True
+            if h.ci[g.NBROKE] != broken:
+                break  # domains have merged, the following one may be gone
+            idm = following
+    return True

@@ -1,0 +1,63 @@
+"""The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts.
+
+JPHASE says which pass comes next, so that a cycle that had to stop because an update ran out of memory
+can be taken up again at that very point and goes on as if it had not stopped.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import room
+from udec_ia.kernels.body.blocks import move_all
+from udec_ia.kernels.body.bounds import apply_bounds
+from udec_ia.kernels.contact.ford import ford_all
+from udec_ia.kernels.detect.domains import accumulate
+from udec_ia.kernels.detect.update import update_all
+from udec_ia.kernels.energy.works import note_forces, note_stresses
+
+BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
+
+
+@kernel
+def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any) -> int:
+    """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
+
+    soft: None if all blocks are rigid and free of boundary conditions, else True. laws, joints: None if no
+    deformable block, no contact follows a law of the user's, else the laws (body.law_call). energy: None if
+    no account of the energy is kept, else True.
+    """
+    done = 0
+    while done < n:
+        if h.ci[g.JPHASE] == BLOCKS:
+            if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
+                return done  # IA() grows between two cycles, where growing changes nothing
+            if soft is not None:
+                apply_bounds(h, energy)
+            if energy is not None:
+                note_forces(h, soft)
+            fastest = move_all(h, soft, laws)
+            if energy is not None:
+                note_stresses(h, soft)
+            h.ci[g.JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
+        if h.ci[g.JPHASE] == DOMAINS:
+            if not update_all(h):
+                return done
+            h.ci[g.JPHASE] = CONTACTS
+        if h.ci[g.JPHASE] == CONTACTS:
+            broken = h.ci[g.NBROKE]
+            ford_all(h, soft, joints, energy)
+            h.ci[g.JPHASE] = BLOCKS if h.ci[g.NBROKE] == broken else BROKEN
+        if h.ci[g.JPHASE] == BROKEN:  # domains that merged are looked through at once
+            if not update_all(h):
+                return done
+            h.ci[g.JPHASE] = BLOCKS
+        h.ci[g.MCTOT] += 1
+        h.cd[g.TIME] += h.cr[g.TDEL]
+        done += 1
+        if h.ci[g.NERR] != 0:
+            return done
+    return done

@@ -1,0 +1,45 @@
+"""What the time-step needs to know of the whole model, in one walk each."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
+from udec_ia.heap.jit import kernel
+
+
+@kernel
+def least_mass(h: Memory) -> tuple[float, int, int]:
+    """Least mass of a free block (of any if none is free), that block, and a block without mass or 0."""
+    free, least = real(h, np.inf), real(h, np.inf)
+    at_free, at_least, massless = int64(0), int64(0), int64(0)
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        mass = getr(h, ib, g.KBM)
+        if not mass > 0:
+            massless = ib
+        if mass < least:
+            least, at_least = mass, ib
+        if iget(h, ib, g.KBFIX) == 0 and mass < free:
+            free, at_free = mass, ib
+        ib = iget(h, ib, g.KB)
+    if at_free == 0:
+        return least, at_least, massless
+    return free, at_free, massless
+
+
+@kernel
+def greatest_stiffness(h: Memory) -> tuple[float, int]:
+    """Greatest joint stiffness of a contact, and a contact without stiffness or 0."""
+    most = real(h, 0.0)
+    undefined = int64(0)
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        m = iget(h, ic, g.KCM) - 1
+        kn, ks = h.cr[g.AKN + m], h.cr[g.AKS + m]
+        if not min(kn, ks) > 0:
+            undefined = ic
+        most = max(most, max(kn, ks))
+        ic = iget(h, ic, g.KC)
+    return most, undefined

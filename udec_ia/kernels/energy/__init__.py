@@ -1,0 +1,1 @@
+"""What a model holds and what a cycle gives and takes (ENERGY)."""

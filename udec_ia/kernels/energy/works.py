@@ -1,0 +1,247 @@
+"""Works of a cycle: what damping, boundary conditions and yielding take or give (ENERGY ON).
+
+Each is the work over a full step: the force at the full step, times the mean of the displacements of the two
+half steps around it (kernels.energy.stored).
+
+    mass damping       ALPHA dt m u u      u the mean of the velocities before and after; INTERNAL alike
+    given velocities   -dt F v             F the force that they withstand
+    loads              dt L u
+    stiffness damping  dt D u              D the force of a dashpot
+    yielding           dt A S e less what the strain energy grows by
+    change of shape    dt Fn v less Fn times the growth of the overlap; inertia that strained blocks gain
+
+Yielding is what a deformable block takes and does not keep: plastic work, and what linear elasticity in the
+current shape, which has no energy of its own, makes of great strains. Stiffness damping in zones is taken at
+the end of the step instead of around it. Change of shape is where the formulation does not keep energy: as a
+block deforms, its corners are rounded anew, by which overlaps change although nothing moves; and the laws of
+motion of a simply-deformable block (2.6) take its moment of inertia and Euler tensor as constant, although
+they change.
+
+Two passes over the model stand before and after the block pass, and the contact pass notes its own. None is
+compiled without ENERGY ON.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.body.bounds import load, velocity_of
+from udec_ia.kernels.body.fdef import gradient, next_point_velocity
+from udec_ia.kernels.body.motion import FIXED, GIVEN_X, GIVEN_Y, next_velocity
+from udec_ia.kernels.body.sdef import strain
+from udec_ia.kernels.energy.stored import inertia, strain_of_block
+
+
+@inlined
+def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None:
+    """Work of damping, or of what gives the velocity, on a mass `m` of velocity `v` and then `u`.
+
+    f: the force on it, weight and loads included.
+    """
+    if given:
+        h.cd[g.WBOUND] -= np.float64(f) * v * h.cr[g.TDEL]
+    else:
+        h.cd[g.WMASS] += np.float64(h.cr[g.ALPHA]) * h.cr[g.TDEL] * 0.25 * m * (v + u) * (v + u)
+
+
+@kernel
+def note_block(h: Memory, ib: int) -> None:
+    """Block `ib` as a rigid body."""
+    fix, bm = iget(h, ib, g.KBFIX), getr(h, ib, g.KBM)
+    xd, yd, td = next_velocity(h, ib)
+    fx, fy = getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX], getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
+    note(h, fix & GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
+    note(h, fix & GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
+    note(h, fix == GIVEN_X + GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
+
+
+@kernel
+def note_points(h: Memory, ib: int) -> None:
+    """The grid-points of block `ib`."""
+    ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+    while ig != 0:
+        fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
+        xd, yd = next_point_velocity(h, ig)
+        note(h, fix & 1 != 0, m, getr(h, ig, g.KXDG), xd, getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX])
+        note(h, fix & 2 != 0, m, getr(h, ig, g.KYDG), yd, getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY])
+        ig = iget(h, ig, g.KG)
+
+
+@kernel
+def note_strain(h: Memory, ie: int) -> None:
+    """Damping of the strain rates of extension `ie`."""
+    e11, e12, e22 = strain(h, ie)
+    u11, u12, u22 = getr(h, ie, g.KED11) + e11, getr(h, ie, g.KED12) + e12, getr(h, ie, g.KED22) + e22
+    h.cd[g.WMASS] += np.float64(h.cr[g.ALPB]) * h.cr[g.TDEL] * 0.25 * inertia(h, ie, u11, u12, u22)
+
+
+@kernel
+def turning(h: Memory, ib: int, ahead: bool) -> float:
+    """Kinetic energy of spin and strain rates of simply-deformable block `ib` with its present inertia.
+
+    ahead: at the rates at the end of the step.
+    """
+    ie, td = iget(h, ib, g.KBEX), getr(h, ib, g.KTD)
+    e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
+    if ahead:
+        _, _, td = next_velocity(h, ib)
+        e11, e12, e22 = strain(h, ie)
+    w = np.float64(td)
+    of_strain = inertia(h, ie, np.float64(e11), np.float64(e12), np.float64(e22))
+    return (of_strain + getr(h, ib, g.KBI) * w * w) * 0.5
+
+
+@inlined
+def power(h: Memory, ie: int, e11: float, e12: float, e22: float) -> float:
+    """Power of the internal stress of extension `ie` at strain rates e."""
+    shear = getr(h, ie, g.KS112) * e12
+    return getr(h, ie, g.KSAREA) * (getr(h, ie, g.KS111) * e11 + shear + shear + getr(h, ie, g.KS122) * e22)
+
+
+@inlined
+def zone_power(h: Memory, iz: int, ahead: bool) -> float:
+    """Power of the stress of zone `iz` at the velocities of now; ahead: at those at the end of the step."""
+    g1, g2, g3, b1, c1, b2, c2, _ = gradient(h, iz, real(h, 0.0))
+    u1, v1, u2, v2 = getr(h, g1, g.KXDG), getr(h, g1, g.KYDG), getr(h, g2, g.KXDG), getr(h, g2, g.KYDG)
+    u3, v3 = getr(h, g3, g.KXDG), getr(h, g3, g.KYDG)
+    if ahead:
+        u1, v1 = next_point_velocity(h, g1)
+        u2, v2 = next_point_velocity(h, g2)
+        u3, v3 = next_point_velocity(h, g3)
+    u1, v1, u2, v2 = u1 - u3, v1 - v3, u2 - u3, v2 - v3
+    normal = getr(h, iz, g.KZS11) * (b1 * u1 + b2 * u2) + getr(h, iz, g.KZS22) * (c1 * v1 + c2 * v2)
+    return (normal + getr(h, iz, g.KZS12) * (c1 * u1 + c2 * u2 + b1 * v1 + b2 * v2)) * real(h, 0.5)
+
+
+@kernel
+def stress_power(h: Memory, ib: int, ahead: bool) -> float:
+    """Power of the stresses in deformable block `ib`; ahead: at the velocities at the end of the step."""
+    ie = iget(h, ib, g.KBEX)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
+        if ahead:
+            e11, e12, e22 = strain(h, ie)
+        return power(h, ie, e11, e12, e22)
+    total = real(h, 0.0)
+    iz = iget(h, ie, g.KFZ)
+    while iz != 0:
+        total += zone_power(h, iz, ahead)
+        iz = iget(h, iz, g.KZ)
+    return total
+
+
+@kernel
+def note_loads(h: Memory) -> None:
+    """The loads of the boundary conditions."""
+    iu = int64(h.ci[g.IBNPNT])
+    while iu != 0:
+        fx, fy, x, y = load(h, iu)
+        vx, vy = velocity_of(h, iu, x, y)
+        ig, ib = iget(h, iu, g.KUG), iget(h, iu, g.KUB)
+        if ig != 0:
+            ux, uy = next_point_velocity(h, ig)
+        else:
+            rx, ry = x - getr(h, ib, g.KX), y - getr(h, ib, g.KY)
+            xd, yd, td = next_velocity(h, ib)
+            ux, uy = xd - td * ry, yd + td * rx
+            if iget(h, ib, HEAD) == g.MSDEF:
+                e11, e12, e22 = strain(h, iget(h, ib, g.KBEX))
+                ux, uy = ux + e11 * rx + e12 * ry, uy + e12 * rx + e22 * ry
+        if iget(h, ib, g.KBFIX) != FIXED:
+            h.cd[g.WBOUND] += (np.float64(fx) * (vx + ux) + fy * (vy + uy)) * h.cr[g.TDEL] * 0.5
+        iu = iget(h, iu, g.KU)
+
+
+@kernel
+def note_forces(h: Memory, soft: Any) -> None:
+    """Before the block pass: what is done with the forces of now."""
+    ib = int64(h.ci[g.IBPNT])
+    while ib != 0:
+        if iget(h, ib, g.KBFIX) != FIXED:
+            kind = iget(h, ib, HEAD)
+            if soft is not None and kind == g.MFDEF:
+                note_points(h, ib)
+            else:
+                note_block(h, ib)
+            if soft is not None and kind == g.MSDEF:
+                note_strain(h, iget(h, ib, g.KBEX))
+                h.cd[g.WSHAPE] += turning(h, ib, True)
+            if soft is not None and kind != g.MRIG:
+                taken = np.float64(stress_power(h, ib, True)) * h.cr[g.TDEL] * 0.5
+                h.cd[g.WYIELD] += taken + strain_of_block(h, ib)
+        ib = iget(h, ib, g.KB)
+    if soft is not None:
+        note_loads(h)
+
+
+@kernel
+def note_stresses(h: Memory, soft: Any) -> None:
+    """After the block pass, when grid-points feel the zones only: what is done with the stresses of now."""
+    ib = int64(h.ci[g.IBPNT])
+    while soft is not None and ib != 0:
+        kind = iget(h, ib, HEAD)
+        if kind != g.MRIG and iget(h, ib, g.KBFIX) != FIXED:
+            now = np.float64(stress_power(h, ib, False))
+            h.cd[g.WYIELD] += now * h.cr[g.TDEL] * 0.5 - strain_of_block(h, ib)
+            if kind == g.MSDEF:
+                h.cd[g.WSHAPE] -= turning(h, ib, False)
+            elif h.cr[g.BETA] != 0:
+                h.cd[g.WSTIF] += (point_power(h, ib) - now) * h.cr[g.TDEL]
+        ib = iget(h, ib, g.KB)
+
+
+@kernel
+def point_power(h: Memory, ib: int) -> float:
+    """What the force sums of the grid-points of block `ib` take from them."""
+    total = real(h, 0.0)
+    ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+    while ig != 0:
+        total -= getr(h, ig, g.KGFX) * getr(h, ig, g.KXDG) + getr(h, ig, g.KGFY) * getr(h, ig, g.KYDG)
+        ig = iget(h, ig, g.KG)
+    return total
+
+
+@kernel
+def note_opening(h: Memory, ic: int) -> None:
+    """What the shear spring of contact `ic` held, whose hold is broken because it opens."""
+    fs = getr(h, ic, g.KCFS)
+    ks = h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
+    h.cd[g.WFRIC] += fs * fs / (ks + ks)
+
+
+@inlined
+def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) -> None:
+    """Work against the normal force of contact `ic`, which becomes `fn`, that its overlap does not show.
+
+    closing: velocity at which the blocks approach. grown: what the overlap has grown by. Rigid blocks keep
+    their shape: what differs there is an error of the step.
+    """
+    if iget(h, iget(h, ic, g.KB1), HEAD) != g.MRIG or iget(h, iget(h, ic, g.KB2), HEAD) != g.MRIG:
+        mean = (getr(h, ic, g.KCFN) + fn) * real(h, 0.5)
+        h.cd[g.WSHAPE] += mean * (closing * h.cr[g.TDEL] - grown)
+
+
+@inlined
+def note_damping(
+    h: Memory, kn: float, ks: float, before: tuple[float, float], now: tuple[float, float], shear: float
+) -> None:
+    """What the dashpots of a contact take in this step.
+
+    before: closing and sliding velocity that they answered to half a step ago. now: closing and sliding
+    velocity now. shear: sliding velocity that the dashpot answers to now, 0 if the contact slips.
+    """
+    closing, sliding = now
+    done = kn * closing * (before[0] + closing) + ks * sliding * (before[1] + shear)
+    h.cd[g.WSTIF] += h.cr[g.BETA] * h.cr[g.TDEL] * real(h, 0.5) * done
+
+
+@inlined
+def note_law_damping(h: Memory, ic: int, normal: float, shear: float, closing: float, sliding: float) -> None:
+    """What contact `ic`, which follows a law, takes by what its blocks feel beyond the forces it holds."""
+    done = (normal - getr(h, ic, g.KCFN)) * closing + (shear - getr(h, ic, g.KCFS)) * sliding
+    h.cd[g.WSTIF] += done * h.cr[g.TDEL]

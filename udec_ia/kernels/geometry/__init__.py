@@ -1,0 +1,1 @@
+"""Geometry without topology: shapes of blocks, tensors, tolerances, boxes, contacts."""

@@ -1,0 +1,151 @@
+"""Geometry of one contact: corner on edge (CE), corner on corner (CC), contact point (COORD).
+
+Everything is measured from circle centres c with radii r (report 2.3, 2.5). Normals point from block
+KB1 to block KB2; the overlap is positive when the rounded outlines overlap.
+
+    corner/edge     overlap = r - (c - a).e        e outward normal of the edge that starts at a
+    corner/corner   overlap = r1 + r2 - |c2 - c1|  normal along c2 - c1
+
+The contact point lies on the normal through the circle's centre, in the middle of the overlap. Where
+a contact passes from edge to arc, both forms give the same normal and the same overlap.
+
+A point of an edge (KRAD = 0: a flat corner, or one that GENERATE has put there) is a circle of radius zero
+that may touch edges and arcs of others. Whatever slides past it goes from the one edge to the other where
+their bisector is: there both give the same overlap.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.geometry.shape import zcs
+from udec_ia.kernels.links.lists import next_corner
+
+CORNER_CORNER = 1
+CORNER_EDGE = 2
+EDGE_CORNER = 3
+VIRTUAL = 4
+
+OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
+
+
+@inlined
+def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
+    """Corner `ip` against the edge that ends at corner `iq` (CE).
+
+    Returns the edge's outward normal (x, y), the overlap, the distance of the circle's centre along the
+    edge from its start, and the length of the edge.
+    """
+    ia = iget(h, iq, g.KR)
+    z, c, s = zcs(h, iq)
+    x, y = getr(h, ip, g.KXCP) - getr(h, ia, g.KXP), getr(h, ip, g.KYCP) - getr(h, ia, g.KYP)
+    return -s, c, getr(h, ip, g.KRAD) - (y * c - x * s), x * c + y * s, z
+
+
+@inlined
+def cc(h: Memory, ip: int, iq: int) -> tuple[float, float, float]:
+    """Corner `ip` of block KB1 against corner `iq` of block KB2 (CC): normal (x, y) and overlap."""
+    dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
+    z = np.sqrt(dx * dx + dy * dy)
+    return dx / z, dy / z, getr(h, ip, g.KRAD) + getr(h, iq, g.KRAD) - z
+
+
+@kernel
+def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
+    """Unit vectors of the edges that arrive at and leave corner `ip`."""
+    _, tx, ty = zcs(h, ip)
+    _, ux, uy = zcs(h, next_corner(h, iget(h, ip, g.KNB), ip))
+    return tx, ty, ux, uy
+
+
+@kernel
+def past(h: Memory, iq: int, ip: int) -> float:
+    """How far the circle of corner `ip` has passed corner `iq` of another block, clockwise.
+
+    Measured along the mean direction of the two edges at `iq`, so zero on their bisector.
+    """
+    tx, ty, ux, uy = tangents(h, iq)
+    x, y = getr(h, ip, g.KXCP) - getr(h, iq, g.KXP), getr(h, ip, g.KYCP) - getr(h, iq, g.KYP)
+    return (x * (tx + ux) + y * (ty + uy)) * real(h, 0.5)
+
+
+@inlined
+def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
+    """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
+
+    Returns its component along the edge that leaves the corner and minus its component along the edge
+    that arrives: with (x, y) drawn from the circle's centre, both are negative or zero inside the arc.
+    With m = centre - corner, t_out = (D m - R Jm)/m.m and -t_in = (D m + R Jm)/m.m.
+    """
+    d, r = h.cr[g.DTOL], getr(h, ip, g.KRAD)
+    if r <= 0:
+        tx, ty, ux, uy = tangents(h, ip)
+        return x * ux + y * uy, -(x * tx + y * ty)
+    mx, my = getr(h, ip, g.KXCP) - getr(h, ip, g.KXP), getr(h, ip, g.KYCP) - getr(h, ip, g.KYP)
+    mm = mx * mx + my * my
+    along = d * (x * mx + y * my)
+    across = r * (x * my - y * mx)
+    return (along - across) / mm, (along + across) / mm
+
+
+@kernel
+def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
+    """True if the unit vector (x, y) leans over neither end of the arc of corner `ip` by more than `slack`.
+
+    Opposite to a blunt arc a vector leans a little over both ends: it does not face the arc at all.
+    """
+    ahead, behind = lean(h, ip, x, y)
+    if getr(h, ip, g.KRAD) <= 0:  # a point of an edge: outwards is to the left of its edges
+        tx, ty, ux, uy = tangents(h, ip)
+        return max(ahead, behind) <= slack and y * (tx + ux) - x * (ty + uy) > 0
+    return max(ahead, behind) <= slack and min(ahead, behind) <= 0
+
+
+@inlined
+def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[float, float]:
+    """Contact point of corner `ip`, whose circle touches something in direction (nx, ny)."""
+    reach = getr(h, ip, g.KRAD) - overlap * real(h, 0.5)
+    return getr(h, ip, g.KXCP) + nx * reach, getr(h, ip, g.KYCP) + ny * reach
+
+
+@inlined
+def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
+    """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2.
+
+    The last number is the margin of the code: below zero, the normal has left an arc or the contact
+    point has left the straight part of an edge, and the contact may have to be re-classified.
+    """
+    if code == CORNER_CORNER:
+        nx, ny, overlap = cc(h, ip, iq)
+        x, y = point_on(h, ip, nx, ny, overlap)
+        dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
+        margin = h.cr[g.GTOL] - max(max(lean(h, ip, dx, dy)), max(lean(h, iq, -dx, -dy)))
+    elif code == CORNER_EDGE:
+        ex, ey, overlap, along, z = ce(h, ip, iq)
+        nx, ny = -ex, -ey
+        x, y = point_on(h, ip, nx, ny, overlap)
+        margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+    else:
+        nx, ny, overlap, along, z = ce(h, iq, ip)
+        x, y = point_on(h, iq, -nx, -ny, overlap)
+        margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+    return nx, ny, overlap, x, y, margin
+
+
+@inlined
+def coord(h: Memory, ic: int) -> tuple[float, float, float, float]:
+    """Update the coordinates of contact `ic` (COORD); returns normal (x, y), overlap and margin."""
+    nx, ny, overlap, x, y, margin = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
+    putr(h, ic, g.KXC, x)
+    putr(h, ic, g.KYC, y)
+    return nx, ny, overlap, margin
+
+
+@kernel
+def begin(h: Memory, ic: int) -> None:
+    """Coordinates of contact `ic`, and its overlap as the one that force increments count from."""
+    _, _, overlap, _ = coord(h, ic)
+    putr(h, ic, g.KCN, overlap)

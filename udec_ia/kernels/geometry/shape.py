@@ -1,0 +1,159 @@
+"""Shape of a block: area, centroid, inertia (GEO, INERT, MAKEB) and rounded corners (CRAD).
+
+A block's outline is the polygon through its corners, clockwise. Mass and moment of inertia are those
+of the unrounded polygon (report 2.3). Each corner is rounded by the arc that is tangent to its two
+edges at the distance DTOL from the corner; the arc's radius is D tan(theta/2), theta the interior
+angle. With t the unit vector along an edge, clockwise, and Jt = (ty, -tx) pointing into the block:
+
+    centre = corner - D t_in + R J t_in = corner + D t_out + R J t_out
+
+A concave corner gets R < 0: it carries no contact, the edges at it count down to the corner itself.
+A flat corner (R would be infinite) gets R = 0 and is a point of one long edge; so is, for good, a corner that
+GENERATE has put on an edge (KGEDGE), however the block deforms.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.jit import kernel
+from udec_ia.kernels.links.lists import next_corner
+
+TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
+FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a straight edge
+
+
+@kernel
+def geo(h: Memory, ib: int) -> tuple[float, float, float, float, float, float]:
+    """Area, centroid x and y, and second moments of area xx, xy, yy about the centroid (GEO, INERT).
+
+    Sums over the triangles that a first corner makes with every edge; a clockwise outline is positive.
+    """
+    ip0 = iget(h, ib, g.KP)
+    x0, y0 = getr(h, ip0, g.KXP), getr(h, ip0, g.KYP)
+    zero, half = real(h, 0.0), real(h, 0.5)
+    twice, sx, sy, sxx, sxy, syy = zero, zero, zero, zero, zero, zero
+    ip = ip0
+    while True:
+        iq = iget(h, ip, g.KR)  # the edge from iq to ip
+        ax, ay = getr(h, iq, g.KXP) - x0, getr(h, iq, g.KYP) - y0
+        bx, by = getr(h, ip, g.KXP) - x0, getr(h, ip, g.KYP) - y0
+        cross = bx * ay - ax * by
+        twice += cross
+        sx += cross * (ax + bx)
+        sy += cross * (ay + by)
+        sxx += cross * (ax * ax + ax * bx + bx * bx)
+        sxy += cross * (ax * ay + (ax * by + ay * bx) * half + bx * by)
+        syy += cross * (ay * ay + ay * by + by * by)
+        ip = iq
+        if ip == ip0:
+            break
+    area, three, twelve = twice * half, real(h, 3.0), real(h, 12.0)
+    cx, cy = sx / (three * twice), sy / (three * twice)
+    jxx, jyy = sxx / twelve - area * cx * cx, syy / twelve - area * cy * cy
+    return area, x0 + cx, y0 + cy, jxx, sxy / twelve - area * cx * cy, jyy
+
+
+@kernel
+def density_of(h: Memory, ib: int) -> float:
+    """Density of block `ib` as PROPERTY has given it to its material."""
+    return h.cr[g.DENS + iget(h, ib, g.KMAT) - 1]
+
+
+@kernel
+def makeb(h: Memory, ib: int, dens: float) -> None:
+    """Centroid, mass, moment of inertia and farthest corner of block `ib` of density `dens` (MAKEB)."""
+    area, x, y, jxx, _, jyy = geo(h, ib)
+    putr(h, ib, g.KX, x)
+    putr(h, ib, g.KY, y)
+    putr(h, ib, g.KBM, dens * area)
+    putr(h, ib, g.KBI, dens * (jxx + jyy))
+    ip0 = iget(h, ib, g.KP)
+    far = real(h, 0.0)
+    ip = ip0
+    while True:
+        dx, dy = getr(h, ip, g.KXP) - x, getr(h, ip, g.KYP) - y
+        far = max(far, dx * dx + dy * dy)
+        ip = iget(h, ip, g.KR)
+        if ip == ip0:
+            break
+    putr(h, ib, g.KBRO, np.sqrt(far))
+
+
+@kernel
+def zcs(h: Memory, ip: int) -> tuple[float, float, float]:
+    """Length and unit vector of the edge that ends at corner `ip` (ZCS)."""
+    ia = iget(h, ip, g.KR)
+    dx, dy = getr(h, ip, g.KXP) - getr(h, ia, g.KXP), getr(h, ip, g.KYP) - getr(h, ia, g.KYP)
+    z = np.sqrt(dx * dx + dy * dy)
+    return z, dx / z, dy / z
+
+
+@kernel
+def is_edge_point(h: Memory, ip: int) -> bool:
+    """True if corner `ip` was put on an edge by GENERATE."""
+    ig = iget(h, ip, g.KGP)
+    return ig != 0 and iget(h, ig, g.KGEDGE) == 1
+
+
+@kernel
+def span(h: Memory, ip: int, z: float) -> float:
+    """What two roundings have to share of the edge of length `z` that ends at corner `ip`.
+
+    An edge between two roundings counts with its length, an edge from a rounding to an edge point with
+    twice its length, and one between two edge points is infinite.
+    """
+    one, two = is_edge_point(h, ip), is_edge_point(h, iget(h, ip, g.KR))
+    if one and two:
+        return real(h, np.inf)
+    return z + z if one or two else z
+
+
+@kernel
+def crad(h: Memory, ib: int) -> int:
+    """Radius and circle centre for each corner of block `ib` (CRAD).
+
+    Notes in LSHORT an edge between two roundings whose straight part is shorter than FTOL. Returns the corner
+    where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
+    """
+    d = h.cr[g.DTOL]
+    tight = int64(0)
+    ip0 = iget(h, ib, g.KP)
+    ip = ip0
+    while True:
+        iq = next_corner(h, ib, ip)
+        z, c1, s1 = zcs(h, ip)
+        _, c2, s2 = zcs(h, iq)
+        on_edge = is_edge_point(h, ip)
+        if z - d - d < h.cr[g.FTOL]:
+            if not (on_edge or is_edge_point(h, iget(h, ip, g.KR))):
+                h.ci[g.LSHORT] = 1
+            if span(h, ip, z) - d - d < -h.cr[g.FTOL]:
+                tight = ip
+        turn = c2 * s1 - c1 * s2  # sine of the clockwise turn
+        rad = real(h, 0.0)
+        x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+        if abs(turn) >= real(h, FLAT) and not on_edge:
+            if abs(s1 - s2) > abs(c1 - c2):  # the form with the larger denominator (report 2.3)
+                rad = d * (c1 + c2) / (s1 - s2)
+            else:
+                rad = d * (s1 + s2) / (c2 - c1)
+            x += d * c2 + rad * s2
+            y += d * s2 - rad * c2
+        putr(h, ip, g.KRAD, rad)
+        putr(h, ip, g.KXCP, x)
+        putr(h, ip, g.KYCP, y)
+        ip = iq
+        if ip == ip0:
+            return tight
+
+
+@kernel
+def round_anew(h: Memory, ib: int) -> None:
+    """CRAD for block `ib`, strained in this step. Error 14 if an edge can no longer hold its roundings."""
+    ip = crad(h, ib)
+    if ip != 0 and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = TOO_SHORT
+        h.ci[g.IERAD] = ip

@@ -1,0 +1,162 @@
+"""The links of the map: stepping along them, and putting items in and taking them out.
+
+    clockwise list of a block    corner -> contact -> contact -> corner -> ... -> first corner
+    loop of a domain             along a block's list, changing to the other block at every contact
+    main lists                   blocks, contacts, domains: from a head in the common block, linked both ways
+
+NEXTCP, NEXTP, NEXTD and DELLST of the report are here. An exposure is the piece of a block's boundary
+between two successive items of its list: it is named by the block and the item before it.
+"""
+
+from __future__ import annotations
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti
+from udec_ia.heap.jit import kernel
+
+
+@kernel
+def is_corner(h: Memory, iad: int) -> bool:
+    """True if the item at `iad` is a corner, False if it is a contact."""
+    return iget(h, iad, HEAD) == g.MCOR
+
+
+@kernel
+def is_contact(h: Memory, iad: int) -> bool:
+    """True if the item at `iad` is a contact, False if it is a corner."""
+    return iget(h, iad, HEAD) == g.MCON
+
+
+@kernel
+def nextcp(h: Memory, ib: int, iad: int) -> int:
+    """Item after `iad` in the clockwise list of block `ib` (NEXTCP)."""
+    if is_corner(h, iad):
+        return iget(h, iad, g.KL)
+    if iget(h, iad, g.KB1) == ib:
+        return iget(h, iad, g.KL1)
+    return iget(h, iad, g.KL2)
+
+
+@kernel
+def prevcp(h: Memory, ib: int, iad: int) -> int:
+    """Item before `iad` in the clockwise list of block `ib`."""
+    if is_corner(h, iad):
+        return iget(h, iad, g.KLB)
+    if iget(h, iad, g.KB1) == ib:
+        return iget(h, iad, g.KLB1)
+    return iget(h, iad, g.KLB2)
+
+
+@kernel
+def link(h: Memory, ib: int, before: int, after: int) -> None:
+    """Make `after` follow `before` in the clockwise list of block `ib`."""
+    if is_corner(h, before):
+        puti(h, before, g.KL, after)
+    elif iget(h, before, g.KB1) == ib:
+        puti(h, before, g.KL1, after)
+    else:
+        puti(h, before, g.KL2, after)
+    if is_corner(h, after):
+        puti(h, after, g.KLB, before)
+    elif iget(h, after, g.KB1) == ib:
+        puti(h, after, g.KLB1, before)
+    else:
+        puti(h, after, g.KLB2, before)
+
+
+@kernel
+def corner_of(h: Memory, ib: int, ic: int) -> int:
+    """First corner after contact `ic` in the list of block `ib`."""
+    if iget(h, ic, g.KB1) == ib:
+        return iget(h, ic, g.KCP1)
+    return iget(h, ic, g.KCP2)
+
+
+@kernel
+def set_corner_of(h: Memory, ib: int, ic: int, ip: int) -> None:
+    """Note that `ip` is the first corner after contact `ic` in the list of block `ib`."""
+    if iget(h, ic, g.KB1) == ib:
+        puti(h, ic, g.KCP1, ip)
+    else:
+        puti(h, ic, g.KCP2, ip)
+
+
+@kernel
+def nextp(h: Memory, ib: int, iad: int) -> int:
+    """First corner at or after item `iad` of block `ib` (NEXTP)."""
+    if is_corner(h, iad):
+        return int64(iad)
+    return corner_of(h, ib, iad)
+
+
+@kernel
+def next_corner(h: Memory, ib: int, ip: int) -> int:
+    """Corner after corner `ip`, clockwise."""
+    return nextp(h, ib, iget(h, ip, g.KL))
+
+
+@kernel
+def insert_after(h: Memory, ib: int, iad: int, ic: int) -> None:
+    """Put contact `ic` into the list of block `ib`, after the item `iad`."""
+    after = nextcp(h, ib, iad)
+    set_corner_of(h, ib, ic, nextp(h, ib, after))
+    link(h, ib, iad, ic)
+    link(h, ib, ic, after)
+
+
+@kernel
+def take_out(h: Memory, ib: int, iad: int) -> None:
+    """Take item `iad` out of the list of block `ib`."""
+    link(h, ib, prevcp(h, ib, iad), nextcp(h, ib, iad))
+
+
+@kernel
+def other(h: Memory, ib: int, ic: int) -> int:
+    """The block that meets block `ib` at contact `ic`."""
+    if iget(h, ic, g.KB1) == ib:
+        return iget(h, ic, g.KB2)
+    return iget(h, ic, g.KB1)
+
+
+@kernel
+def domain_before(h: Memory, ib: int, ic: int) -> int:
+    """Domain on the exposure of block `ib` that ends at contact `ic`."""
+    if iget(h, ic, g.KB1) == ib:
+        return iget(h, ic, g.KD1)
+    return iget(h, ic, g.KD2)
+
+
+@kernel
+def idomp(h: Memory, ib: int, iad: int) -> int:
+    """Domain on the exposure of block `ib` that follows item `iad` (IDOMP)."""
+    item = nextcp(h, ib, iad)
+    start = item
+    while is_corner(h, item):
+        item = nextcp(h, ib, item)
+        if item == start:
+            return int64(h.ci[g.IODPNT])  # a lone block
+    return domain_before(h, ib, item)
+
+
+@kernel
+def to_front(h: Memory, lst: int, knext: Offset, kback: Offset, iad: int) -> None:
+    """Put group `iad` at the head of the main list whose head is ci[lst]."""
+    first = h.ci[lst]
+    puti(h, iad, knext, first)
+    puti(h, iad, kback, 0)
+    if first != 0:
+        puti(h, first, kback, iad)
+    h.ci[lst] = iad
+
+
+@kernel
+def dellst(h: Memory, lst: int, knext: Offset, kback: Offset, iad: int) -> None:
+    """Delete group `iad` from the main list whose head is ci[lst] (DELLST)."""
+    after = iget(h, iad, knext)
+    before = iget(h, iad, kback)
+    if before == 0:
+        h.ci[lst] = after
+    else:
+        puti(h, before, knext, after)
+    if after != 0:
+        puti(h, after, kback, before)

@@ -1,0 +1,1 @@
+"""SPLIT: blocks are cut by a line (report 2.7)."""

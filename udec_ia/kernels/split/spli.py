@@ -1,0 +1,220 @@
+"""Splitting one block along a line (SPLI): the surgery on its lists.
+
+The line comes in at corner A and goes out at corner B, both on the block's outline; corners are put
+there first when the line crosses edges. The clockwise list is then cut twice and closed twice, with a
+twin of each of the two corners and two contacts across the new crack, one at either end:
+
+    before   ... uA  mA  A  wA ............ uB  mB  B  wB ...
+    one      wA ... uB  cB  B  cA  mA  A'     (the twin A' closes the loop at wA)
+    other    wB ... uA  cA  A  cB  mB  B'     (the twin B' closes the loop at wB)
+
+mA are the contacts on the arc of A that lie beyond the line. The crack is a new domain with the two
+contacts cA and cB; the domains outside A and B stay as they are and are flagged for an update.
+"""
+
+from __future__ import annotations
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
+from udec_ia.heap.jit import kernel
+from udec_ia.heap.memory import find
+from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.shape import density_of, geo, makeb
+from udec_ia.kernels.links.lists import (
+    idomp,
+    is_contact,
+    is_corner,
+    link,
+    nextcp,
+    nextp,
+    prevcp,
+    set_corner_of,
+    to_front,
+)
+from udec_ia.kernels.map.bridge import flag, makec, maked
+from udec_ia.kernels.map.segments import on_arc
+
+
+@kernel
+def makep(h: Memory, ib: int, x: float, y: float) -> int:
+    """A new corner of block `ib` at (x, y), moving with the block, in no list yet (MAKEP)."""
+    ip = find(h, g.NVCR)
+    puti(h, ip, HEAD, g.MCOR)
+    puti(h, ip, g.KNB, ib)
+    putr(h, ip, g.KXP, x)
+    putr(h, ip, g.KYP, y)
+    td = getr(h, ib, g.KTD)
+    putr(h, ip, g.KXDP, getr(h, ib, g.KXD) - td * (y - getr(h, ib, g.KY)))
+    putr(h, ip, g.KYDP, getr(h, ib, g.KYD) + td * (x - getr(h, ib, g.KX)))
+    return ip
+
+
+@kernel
+def new_block(h: Memory, material: int, constitutive: int) -> int:
+    """A rigid block without corners at the head of the block list."""
+    ib = find(h, g.NVBL)
+    puti(h, ib, HEAD, g.MRIG)
+    puti(h, ib, g.KMAT, material)
+    puti(h, ib, g.KCONS, constitutive)
+    to_front(h, g.IBPNT, g.KB, g.KBB, ib)
+    h.ci[g.NBLK] += 1
+    return ib
+
+
+@kernel
+def corner_on_edge(h: Memory, ib: int, iq: int, x: float, y: float) -> int:
+    """Put a corner at (x, y) on the edge of block `ib` that ends at corner `iq`; returns it."""
+    ia = iget(h, iq, g.KR)
+    ax, ay = getr(h, ia, g.KXP), getr(h, ia, g.KYP)
+    tx, ty = getr(h, iq, g.KXP) - ax, getr(h, iq, g.KYP) - ay
+    here = (x - ax) * tx + (y - ay) * ty
+    ip = makep(h, ib, x, y)
+    last = ia
+    item = iget(h, ia, g.KL)
+    while item != iq and not on_arc(h, ib, item):
+        if (getr(h, item, g.KXC) - ax) * tx + (getr(h, item, g.KYC) - ay) * ty > here:
+            break
+        set_corner_of(h, ib, item, ip)
+        last = item
+        item = nextcp(h, ib, item)
+    link(h, ib, last, ip)
+    link(h, ib, ip, item)
+    puti(h, ip, g.KR, ia)
+    puti(h, iq, g.KR, ip)
+    return ip
+
+
+@kernel
+def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
+    """Last item before corner `ip` whose place on the arc lies on this side of the line (uA, uB).
+
+    (nx, ny) is normal to the line and points to the other side.
+    """
+    item = prevcp(h, ib, ip)
+    while is_contact(h, item):
+        if iget(h, item, g.KCCOD) != VIRTUAL:
+            dx, dy = getr(h, item, g.KXC) - getr(h, ip, g.KXP), getr(h, item, g.KYC) - getr(h, ip, g.KYP)
+            if not on_arc(h, ib, item) or dx * nx + dy * ny < 0:
+                break
+        item = prevcp(h, ib, item)
+    return item
+
+
+@kernel
+def _claim(h: Memory, ib: int, jb: int, iad: int, last: int) -> None:
+    """Hand the items from `iad` to `last` from block `ib` to block `jb`."""
+    item = int64(iad)
+    while True:
+        following = nextcp(h, ib, item)
+        if is_corner(h, item):
+            puti(h, item, g.KNB, jb)
+        elif iget(h, item, g.KB1) == ib:
+            puti(h, item, g.KB1, jb)
+        else:
+            puti(h, item, g.KB2, jb)
+        if item == last:
+            return
+        item = following
+
+
+@kernel
+def _first_run_is_shorter(h: Memory, ib: int, ia: int, iz: int) -> bool:
+    """True if there are no more items from corner `ia` to corner `iz` than from `iz` to `ia`."""
+    one, two = nextcp(h, ib, ia), nextcp(h, ib, iz)
+    while True:
+        if one == iz:
+            return True
+        if two == ia:
+            return False
+        one, two = nextcp(h, ib, one), nextcp(h, ib, two)
+
+
+@kernel
+def _close(h: Memory, ib: int, last: int, near: int, ip: int, far: int, twin: int, run: int) -> None:
+    """Close the list of one part: run ... last, near, ip, far, contacts on the twin's arc, twin.
+
+    near, far: the crack's contacts at `ip` and at the twin. The contacts on the twin's arc are already
+    linked to each other; the first of them follows `far`.
+    """
+    link(h, ib, last, near)
+    link(h, ib, near, ip)
+    link(h, ib, ip, far)
+    set_corner_of(h, ib, near, ip)
+    set_corner_of(h, ib, far, twin)
+    link(h, ib, twin, run)
+    puti(h, nextp(h, ib, run), g.KR, twin)
+    puti(h, twin, g.KR, ip)
+    puti(h, ib, g.KP, twin)
+
+
+@kernel
+def _to_twin(h: Memory, ib: int, crack: int, first: int, last: int, twin: int) -> None:
+    """Put the contacts from `first` to `last` (0 for none) between a crack contact and the twin."""
+    if first == 0:
+        link(h, ib, crack, twin)
+        return
+    link(h, ib, crack, first)
+    link(h, ib, last, twin)
+    item = int64(first)
+    while item != twin:
+        set_corner_of(h, ib, item, twin)
+        item = nextcp(h, ib, item)
+
+
+@kernel
+def _beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
+    """First and last contact between item `last` and corner `ip`; 0 and 0 if there is none."""
+    first = nextcp(h, ib, last)
+    if first == ip:
+        return int64(0), int64(0)
+    return first, prevcp(h, ib, ip)
+
+
+@kernel
+def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
+    """Split block `ib` from its corner `ia` to its corner `iz` (SPLI). Returns the new block.
+
+    The corners are not neighbours. Memory for one block, two corners, two contacts and one domain must
+    be there. Masses, corner circles and contact codes of both parts are left to the caller.
+    """
+    if not _first_run_is_shorter(h, ib, ia, iz):
+        ia, iz = iz, ia
+    dx, dy = getr(h, iz, g.KXP) - getr(h, ia, g.KXP), getr(h, iz, g.KYP) - getr(h, ia, g.KYP)
+    ua = _before_cut(h, ib, ia, -dy, dx)
+    uz = _before_cut(h, ib, iz, dy, -dx)
+    firsta, lasta = _beyond(h, ib, ua, ia)
+    firstz, lastz = _beyond(h, ib, uz, iz)
+    wa, wz = iget(h, ia, g.KL), iget(h, iz, g.KL)
+    ida, idz = idomp(h, ib, ua), idomp(h, ib, uz)
+    jb = new_block(h, iget(h, ib, g.KMAT), iget(h, ib, g.KCONS))
+    puti(h, jb, g.KBFIX, iget(h, ib, g.KBFIX))
+    ta = makep(h, ib, getr(h, ia, g.KXP), getr(h, ia, g.KYP))
+    tz = makep(h, ib, getr(h, iz, g.KXP), getr(h, iz, g.KYP))
+    crack = maked(h)
+    ca = makec(h, jb, ib, CORNER_CORNER, crack, ida)
+    cz = makec(h, jb, ib, CORNER_CORNER, idz, crack)
+    _claim(h, ib, jb, wa, uz)
+    if firsta != 0:
+        _claim(h, ib, jb, firsta, lasta)
+    puti(h, iz, g.KNB, jb)
+    puti(h, ta, g.KNB, jb)
+    _to_twin(h, jb, ca, firsta, lasta, ta)
+    _close(h, jb, uz, cz, iz, ca, ta, wa)
+    _to_twin(h, ib, cz, firstz, lastz, tz)
+    _close(h, ib, ua, ca, ia, cz, tz, wz)
+    puti(h, crack, g.KDLOOP, ca)
+    puti(h, ida, g.KDLOOP, ca)
+    puti(h, idz, g.KDLOOP, cz)
+    flag(h, ida)
+    flag(h, idz)
+    x, y = getr(h, ib, g.KX), getr(h, ib, g.KY)
+    xd, yd, td = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD)
+    dens = density_of(h, ib)
+    if h.ci[g.MCTOT] > 0:  # masses do not change any more
+        dens = getr(h, ib, g.KBM) / (geo(h, ib)[0] + geo(h, jb)[0])
+    for b in (ib, jb):
+        makeb(h, b, dens)
+        putr(h, b, g.KTD, td)
+        putr(h, b, g.KXD, xd - td * (getr(h, b, g.KY) - y))
+        putr(h, b, g.KYD, yd + td * (getr(h, b, g.KX) - x))
+    return jb

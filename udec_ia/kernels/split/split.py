@@ -1,0 +1,236 @@
+"""SPLIT: all blocks in the path of a line are split (SPLIT, TRUE; report 2.7).
+
+The whole path is looked at before anything is changed, so a line that one block refuses changes
+nothing. Then the blocks are cut one by one, and last the domains at the ends of the cracks are updated:
+corners of halves that lie opposite each other get their contacts. A line that was interrupted for want
+of memory has cut nothing yet, or only its updates are left: it is simply begun again.
+
+The blocks in the path are found in a list of boxes (four reals and an address a block), which is kept
+beside the heap while one split follows another: looking through boxes that lie together in memory is
+what keeps the thousandth line as cheap, block for block, as the first.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.memory import room
+from udec_ia.kernels.body.masses import share_extension
+from udec_ia.kernels.contact.ford import restart, settle_all
+from udec_ia.kernels.detect.update import update, update_all
+from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.shape import crad, zcs
+from udec_ia.kernels.geometry.tolerances import set_rounding
+from udec_ia.kernels.links.lists import idomp, is_corner, nextcp, prevcp
+from udec_ia.kernels.map.bridge import flag_all
+from udec_ia.kernels.split.crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
+from udec_ia.kernels.split.shared_bounds import off_grid, share_bounds
+from udec_ia.kernels.split.spli import corner_on_edge, spli
+
+DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
+
+
+@kernel
+def enter_box(h: Memory, ib: int, box: Any) -> None:
+    """Fill `box` (x and y from, x and y to) for block `ib`."""
+    ip0 = iget(h, ib, g.KP)
+    x, y = getr(h, ip0, g.KXP), getr(h, ip0, g.KYP)
+    ax, ay, bx, by = x, y, x, y
+    ip = iget(h, ip0, g.KR)
+    while ip != ip0:
+        x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+        ax, ay, bx, by = min(ax, x), min(ay, y), max(bx, x), max(by, y)
+        ip = iget(h, ip, g.KR)
+    box[0], box[1], box[2], box[3] = ax, ay, bx, by
+
+
+@kernel
+def enter_boxes(h: Memory, boxes: Any, blocks: Any) -> int:
+    """Fill `boxes` and `blocks` from the block list, the last block first; returns the number of blocks.
+
+    New blocks come to the head of the list: the rows are in the order in which the blocks were made, and
+    that is the order in which they are cut, whether the boxes were kept or are entered anew.
+    """
+    row = h.ci[g.NBLK]
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        row -= 1
+        enter_box(h, ib, boxes[row])
+        blocks[row] = ib
+        ib = iget(h, ib, g.KB)
+    return h.ci[g.NBLK]
+
+
+@inlined
+def in_path(boxes: Any, k: int, line: Any, far: Any) -> bool:
+    """True unless box `k` lies clear of the line, or on one side of it."""
+    ax, ay, bx, by = boxes[k, 0], boxes[k, 1], boxes[k, 2], boxes[k, 3]
+    if max(line[0], far[0]) < ax or min(line[0], far[0]) > bx:
+        return False
+    if max(line[1], far[1]) < ay or min(line[1], far[1]) > by:
+        return False
+    x, y = (ax + bx) / 2 - line[0], (ay + by) / 2 - line[1]
+    return abs(y * line[2] - x * line[3]) <= (bx - ax) * abs(line[3]) + (by - ay) * abs(line[2])
+
+
+@kernel
+def path(
+    h: Memory, boxes: Any, blocks: Any, n: int, line: Any, rows: Any, where: Any, which: Any
+) -> tuple[int, int, int]:
+    """Rows of the blocks that the line splits: status, their number and that of the cuts.
+
+    When a block refuses, its address is returned instead of the number, the place in row 0 of `where`. With
+    NO_ROWS a block has more crossings than `where` and `which` have rows.
+    """
+    far = (line[0] + line[2] * line[4], line[1] + line[3] * line[4])
+    found, all_cuts = 0, 0
+    for k in range(n):
+        if not in_path(boxes, k, line, far):
+            continue
+        what, cuts = try_cuts(h, blocks[k], line, where, which)
+        if what != OK:
+            return REFUSED_CLOSE + what - 1, blocks[k], 0
+        if cuts > 0:
+            rows[found] = k
+            found += 1
+            all_cuts += cuts
+    return DONE, found, all_cuts
+
+
+@kernel
+def _settle_crack(h: Memory, ic: int) -> None:
+    """A crack contact stands on the arcs of both corners, or on the edge where one is not convex."""
+    if getr(h, iget(h, ic, g.KCP1), g.KRAD) <= 0:
+        puti(h, ic, g.KCCOD, EDGE_CORNER)
+    elif getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0:
+        puti(h, ic, g.KCCOD, CORNER_EDGE)
+    restart(h, ic)
+
+
+@kernel
+def _settle_around(h: Memory, ib: int, ip: int) -> None:
+    """Bring the contacts near the new corner `ip` of block `ib` up to date.
+
+    They stand on its arc and on its two edges; contacts farther off are as they were.
+    """
+    reach = h.cr[g.DTOL] * real(h, 3.0)
+    x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+    for forwards in (True, False):
+        item = nextcp(h, ib, ip) if forwards else prevcp(h, ib, ip)
+        while not is_corner(h, item):
+            following = nextcp(h, ib, item) if forwards else prevcp(h, ib, item)
+            if iget(h, item, g.KCCOD) != VIRTUAL:
+                if abs(getr(h, item, g.KXC) - x) + abs(getr(h, item, g.KYC) - y) > reach + reach:
+                    break
+                restart(h, item)
+            item = following
+
+
+@kernel
+def _shortest(h: Memory, ib: int) -> float:
+    """Length of the shortest edge of block `ib`."""
+    ip0 = iget(h, ib, g.KP)
+    least, _, _ = zcs(h, ip0)
+    ip = iget(h, ip0, g.KR)
+    while ip != ip0:
+        z, _, _ = zcs(h, ip)
+        least = min(least, z)
+        ip = iget(h, ip, g.KR)
+    return least
+
+
+@kernel
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) -> int:
+    """Split block `ib` between its crossings `k` and `k` + 1; returns the new block."""
+    ia, iz = which[k, CORNER], which[k + 1, CORNER]
+    if which[k, AT] == 0:
+        ia = corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
+    if which[k + 1, AT] == 0:
+        iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
+    jb = spli(h, ib, ia, iz)
+    if soft is not None and iget(h, ib, HEAD) == g.MSDEF:
+        share_extension(h, ib, jb)
+    if soft is not None and h.ci[g.IBNPNT] != 0:
+        share_bounds(h, ib, jb)
+    if rounding_is_open(h):
+        least = min(_shortest(h, ib), _shortest(h, jb))
+        if least < h.cr[g.DTOL] * real(h, 4.0):
+            set_rounding(h, least * real(h, 0.125))
+    crad(h, ib)
+    crad(h, jb)
+    end = iget(h, iget(h, jb, g.KP), g.KR)  # the crack runs from this corner to KP
+    _settle_crack(h, iget(h, end, g.KL))
+    _settle_crack(h, iget(h, end, g.KLB))
+    for b in (ib, jb):
+        twin = iget(h, b, g.KP)
+        _settle_around(h, b, twin)
+        _settle_around(h, b, iget(h, twin, g.KR))
+    return jb
+
+
+@kernel
+def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
+    """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out."""
+    broken = h.ci[g.NBROKE]
+    for k in range(first, n):
+        ib = blocks[k]
+        ip = iget(h, ib, g.KP)
+        item = iget(h, ip, g.KL)
+        while item != ip:
+            idm = idomp(h, ib, item)
+            if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not update(h, idm):
+                return False
+            if h.ci[g.NBROKE] != broken:
+                return update_all(h)  # the contact at hand may be gone
+            item = nextcp(h, ib, item)
+    return True
+
+
+@kernel
+def cut_path(
+    h: Memory,
+    boxes: Any,
+    blocks: Any,
+    n: int,
+    line: Any,
+    rows: Any,
+    found: int,
+    cuts: int,
+    where: Any,
+    which: Any,
+    soft: Any,
+) -> tuple[int, int]:
+    """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
+
+    `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
+    so `where` and `which` do as they did for `path`. Returns the status and the new number of boxes.
+    """
+    first = n
+    rounding_length = h.cr[g.DTOL]
+    need = size_of(h, g.NVBL) + 4 * size_of(h, g.NVCR) + 6 * size_of(h, g.NVCN) + 5 * size_of(h, g.NVDO)
+    if soft is not None:
+        need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
+    if not room(h, need * cuts + h.ci[g.NSPARE]):  # for the whole line, so that no cut is ever interrupted
+        return NO_MEMORY, n
+    for r in range(found):
+        row, following = rows[r], n
+        while True:
+            k = first_cut(h, blocks[row], line, where, which)
+            if k < 0:
+                if following == n:
+                    break
+                row = following  # a new block may be crossed once more
+                following += 1
+                continue
+            blocks[n] = _cut_block(h, blocks[row], where, which, k, soft)
+            enter_box(h, blocks[row], boxes[row])
+            enter_box(h, blocks[n], boxes[n])
+            n += 1
+    if h.cr[g.DTOL] != rounding_length:
+        settle_all(h)
+        flag_all(h)
+        return (DONE if update_all(h) else NO_MEMORY), n
+    return (DONE if update_cracks(h, blocks, first, n) else NO_MEMORY), n

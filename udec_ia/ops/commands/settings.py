@@ -1,0 +1,156 @@
+"""The commands that set numbers: PROPERTY, GRAVITY, DAMPING, FRACTION, SCALE, FIX, FREE, RSET."""
+
+from __future__ import annotations
+
+import math
+
+import offsets.generated as g
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.body.masses import greatest_block
+from udec_ia.kernels.body.motion import FIXED, carry_corners
+from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.ops.commands.boundary import given_velocities
+from udec_ia.ops.common.forces import renew_forces
+from udec_ia.ops.common.limits import bearable, finite, material_number, not_negative, positive, whole
+from udec_ia.ops.common.lists import chain
+from udec_ia.ops.common.ranges import Range, blocks_in
+
+DEFAULT_FRACTION = 0.1
+PROPERTIES = {  # keyword of the PROPERTY command: array of the common block
+    "bulk": g.BULK,
+    "cohesion": g.COH,
+    "density": g.DENS,
+    "kn": g.AKN,
+    "friction": g.AMU,
+    "ks": g.AKS,
+    "g": g.SHEAR,
+    "dilation": g.JDIL,
+    "residual_friction": g.RMU,
+    "residual_cohesion": g.RCOH,
+    "critical_slip": g.UCRIT,
+    "block_friction": g.BMU,
+    "block_cohesion": g.BCOH,
+    "block_tension": g.BTEN,
+    "block_dilation": g.BDIL,
+    "p1": g.PAR1,
+    "p2": g.PAR2,
+    "p3": g.PAR3,
+    "p4": g.PAR4,
+}
+FREE = ("p1", "p2", "p3", "p4")  # may be negative: what they mean is the user's
+
+
+def set_property(array: MainArray, material: int, **values: float | None) -> None:
+    """PROPERTY: set properties of a material; those not given stay. Error 4, or 28 for a negative value."""
+    i = material_number(material) - 1
+    given = {name: value for name, value in values.items() if value is not None}
+    finite(array, **{name: value for name, value in given.items() if name in FREE})
+    not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
+    cr = array.h.cr
+    bulk, shear = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
+    lame = {"K + 4G/3": bulk + 4 * shear / 3, "K - 2G/3": bulk - 2 * shear / 3}  # constants of plane strain
+    finite(array, **lame)
+    if "density" in given:
+        bearable(array, given["density"], float(greatest_block(array.h)))
+    for name, value in given.items():
+        cr[PROPERTIES[name] + i] = value
+    cr[g.ALAM1 + i], cr[g.ALAM2 + i] = lame.values()
+
+
+def set_gravity(array: MainArray, gx: float, gy: float) -> None:
+    """GRAVITY: accelerations in the x and y directions."""
+    finite(array, gx=gx, gy=gy)
+    array.h.cr[g.GRAVX], array.h.cr[g.GRAVY] = gx, gy
+
+
+def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = None) -> None:
+    """DAMPING: Rayleigh damping with the fraction `fcrit` of critical at the centre frequency `freq` (Hz).
+
+    ALPHA = fcrit 2 pi freq, BETA = fcrit/(2 pi freq). "mass" or "stiffness" drops the other half without
+    rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
+    internal degrees of freedom of simply-deformable blocks instead.
+    """
+    not_negative(array, fcrit=fcrit)
+    positive(array, freq=freq)
+    if only not in (None, "mass", "stiffness", "internal"):
+        raise UdecError(10, f"{only}", "mass, stiffness or internal", parameter="only")
+    omega = 2 * math.pi * freq
+    alpha, beta = fcrit * omega, fcrit / omega
+    finite(array, alpha=alpha, beta=beta)
+    cr = array.h.cr
+    if only == "internal":
+        cr[g.ALPB] = alpha
+        return
+    cr[g.ALPHA] = 0 if only == "stiffness" else alpha
+    cr[g.BETA] = 0 if only == "mass" else beta
+
+
+def set_fraction(array: MainArray, f: float, safe: bool = False) -> None:
+    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound."""
+    positive(array, f=f)
+    if safe and f > 1:
+        raise UdecError(
+            28, f"{f:g} of the safe bound is not safe", "FRACTION f SAFE takes f up to 1", parameter="f"
+        )
+    array.h.cr[g.FRAC] = f
+    array.h.ci[g.LSAFE] = int(safe)
+
+
+def set_scale(array: MainArray, s: float) -> None:
+    """SCALE: plot scale; 0 lets the plot fill its frame."""
+    not_negative(array, s=s)
+    array.h.cr[g.PSCALE] = s
+
+
+def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
+    """FIX and FREE: hold or release the blocks in the range. Returns their number.
+
+    A block that is fixed stops at once; one that is set free starts from rest.
+    """
+    h = array.h
+    blocks = blocks_in(array, where)
+    given = {} if fixed else given_velocities(h)
+    for ib in blocks:
+        puti(h, ib, g.KBFIX, FIXED if fixed else given.get(ib, 0))
+        if fixed:
+            _stop(h, ib)
+    if not fixed and h.ci[g.MCTOT] > 0 and any(iget(h, ib, HEAD) == g.MFDEF for ib in blocks):
+        renew_forces(array)  # a fixed block has none at its grid-points
+    return len(blocks)
+
+
+def _stop(h: Memory, ib: int) -> None:
+    """Set all velocities of block `ib` to zero, those of corners and grid-points and strain rates, too."""
+    for k in (g.KXD, g.KYD, g.KTD):
+        putr(h, ib, k, 0.0)
+    carry_corners(h, ib)
+    ie = iget(h, ib, g.KBEX)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)
+    elif iget(h, ib, HEAD) == g.MFDEF:
+        for ig in chain(h, iget(h, ie, g.KFG), g.KG):
+            putr(h, ig, g.KXDG, 0.0)
+            putr(h, ig, g.KYDG, 0.0)
+
+
+def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:
+    """RSET: put the real value `v` at offset `ioff` (counted from 1) of the group at address `ia`.
+
+    Error 30 if the real would lie outside the groups in use, or if `ia` cannot be the address of a group.
+    """
+    finite(array, v=v)
+    ia, ioff = whole(ia=ia), whole(ioff=ioff)
+    h, ratio = array.h, array.scheme.ratio
+    last = int(h.ci[g.MFREE]) - 1
+    if ia < 1 or (ia - 1) % ratio:
+        advice = f"addresses are 1 plus a multiple of {ratio}"
+        raise UdecError(30, f"{ia} is not the address of a group", advice, parameter="ia")
+    if ioff < 1:
+        advice = "offsets count from 1: offset 1 is the first real of a group, HELP RSET"
+        raise UdecError(30, f"offset {ioff}", advice, parameter="ioff")
+    if ia + ioff * ratio - 1 > last:
+        place = f"offset {ioff} from address {ia}"
+        raise UdecError(30, place, f"the last word in use is {last}", parameter="ia" if ia > last else "ioff")
+    h.ra[(ia - 1) // ratio + ioff - 1] = v

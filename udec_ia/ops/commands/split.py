@@ -1,0 +1,126 @@
+"""SPLIT: blocks are cut by a line (report 2.7)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.split.crossing import LEAST, X, Y, rounding_is_open
+from udec_ia.kernels.split.split import DONE, NO_MEMORY, NO_ROWS, REFUSED_SHORT, cut_path, enter_boxes, path
+from udec_ia.ops.commands.rounding import update_flagged
+from udec_ia.ops.common.forces import renew_forces
+from udec_ia.ops.common.limits import EDGE_DIGITS, finite, last_digit
+from udec_ia.ops.common.memory import find_room, keep_spare
+from udec_ia.ops.common.soft import soft
+
+CROSSINGS = 64  # of one block that are looked for at first
+ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
+
+
+class Boxes:
+    """The boxes of all blocks, kept from one SPLIT to the next as long as nothing else moved a block."""
+
+    def __init__(self) -> None:
+        self.boxes = np.zeros((0, 4))
+        self.blocks = np.zeros(0, np.int64)
+        self.n = 0
+        self.size = 0.0  # greatest |x| + |y| that a corner can have
+
+    def forget(self) -> None:
+        """Blocks have moved or gone: look at the block list again next time."""
+        self.n = 0
+
+    def enter(self, array: MainArray) -> None:
+        """Make sure that all blocks of the list are entered."""
+        count = int(array.h.ci[g.NBLK])
+        self.make_room(array, count)
+        if self.n != count:
+            self.n = enter_boxes(array.h, self.boxes, self.blocks)
+            far = np.abs(self.boxes[: self.n]).max(axis=0)
+            self.size = float(max(far[0], far[2]) + max(far[1], far[3]))
+
+    def make_room(self, array: MainArray, count: int) -> None:
+        """Make sure that there are `count` rows."""
+        if len(self.blocks) >= count:
+            return
+        boxes, blocks = np.zeros((2 * count, 4), array.h.cr.dtype), np.zeros(2 * count, np.int64)
+        boxes[: self.n], blocks[: self.n] = self.boxes[: self.n], self.blocks[: self.n]
+        self.boxes, self.blocks = boxes, blocks
+
+
+def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: float) -> int:
+    """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
+
+    A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
+    runs too close to a corner or an edge; error 17 if it would split a block that has zones.
+    """
+    finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
+    z = math.hypot(x2 - x1, y2 - y1)
+    finite(array, length=z)
+    if z == 0:
+        raise UdecError(28, "the two ends of the line are the same point", "give two points", parameter="x2")
+    before = int(array.h.ci[g.NBLK])
+    if before == 0:
+        return 0
+    boxes.enter(array)
+    digit = last_digit(array, boxes.size)
+    least = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
+    slack = ROUNDINGS * (digit + last_digit(array, abs(x1) + abs(y1)))
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, least, slack], array.h.cr.dtype)
+    while not _cut(array, boxes, line):
+        boxes.forget()
+    if array.h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    return int(array.h.ci[g.NBLK]) - before
+
+
+def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
+    """Cut along the line; False if it has to be begun again with more memory."""
+    keep_spare(array)
+    boxes.enter(array)
+    h = array.h
+    rows = np.empty(boxes.n, np.int64)
+    status, most = NO_ROWS, CROSSINGS
+    while status == NO_ROWS:
+        where, which = np.empty((most, 3), h.cr.dtype), np.empty((most, 2), np.int64)
+        status, found, cuts = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where, which)
+        most *= 2
+    if status != DONE:
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[LEAST]))
+    for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
+        if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
+            raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
+    boxes.make_room(array, boxes.n + cuts)
+    status, boxes.n = cut_path(
+        h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which, soft(array)
+    )
+    if status == NO_MEMORY:
+        try:
+            find_room(array)
+        finally:
+            boxes.forget()
+        update_flagged(array)
+    return bool(status == DONE)
+
+
+def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, least: float) -> None:
+    place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
+    if status == REFUSED_SHORT and rounding_is_open(array.h):
+        bits = array.scheme.real_bits
+        detail = f"{place} it leaves an edge shorter than {least:g}, the finest for {bits}-bit reals here"
+        advice = "move the line, take the origin nearer to the blocks, or a --build with 64-bit reals"
+        raise UdecError(27, detail, advice, group=ib)
+    if status == REFUSED_SHORT:
+        detail = f"the cut {place} leaves an edge shorter than {least:g}"
+        raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
+    raise UdecError(
+        27,
+        place,
+        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside",
+        group=ib,
+    )

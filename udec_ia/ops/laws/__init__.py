@@ -1,0 +1,1 @@
+"""Laws of the user's: read, compiled, attached (Appendix IV-4)."""

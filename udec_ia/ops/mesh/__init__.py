@@ -1,0 +1,1 @@
+"""How GENERATE ... AUTOMATIC divides an outline into zones: plain geometry, no heap."""

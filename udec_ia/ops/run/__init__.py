@@ -1,0 +1,1 @@
+"""What CYCLE and SOLVE do around the compiled cycle: order, time-step, watching, stopping."""

@@ -1,0 +1,262 @@
+"""CYCLE: prepare (INI), then run the calculation cycle in pieces (report 2.6).
+
+Between two pieces the caller hears how far the run has come; the pieces are as long as fits a few reports
+a second and have no influence on the results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
+from udec_ia.heap.array import OVERFLOW, MainArray
+from udec_ia.heap.compiling import working_time
+from udec_ia.kernels.body.blocks import TOO_FAR
+from udec_ia.kernels.body.laws import LAW_FAILED
+from udec_ia.kernels.body.masses import make_masses
+from udec_ia.kernels.drive.cycle import BLOCKS, run_cycles
+from udec_ia.kernels.drive.finite import not_finite
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
+from udec_ia.kernels.geometry.shape import TOO_SHORT
+from udec_ia.kernels.geometry.tensor import INSIDE_OUT
+from udec_ia.ops.commands import energy
+from udec_ia.ops.commands.rounding import check_strained_edges, crowded, settle_default
+from udec_ia.ops.common.limits import last_digit
+from udec_ia.ops.common.lists import chain
+from udec_ia.ops.common.memory import find_room, keep_spare
+from udec_ia.ops.common.soft import soft
+from udec_ia.ops.laws.laws import Bound, LawBook
+from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.timestep import kind_of, time_step
+from udec_ia.ops.run.watch import Watch
+from udec_ia.signals import poll
+
+REPORT_SECONDS = 0.2
+FIRST_PIECE = 10
+Report = Callable[[int], None]
+Prepared = Callable[[], None]
+
+
+def prepare(array: MainArray) -> None:
+    """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
+
+    Errors 11, 12, 13, 14, 16, 26 and 28.
+    """
+    h = array.h
+    if h.ci[g.NBLK] == 0:
+        raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
+    if h.ci[g.MCTOT] == 0:
+        make_masses(h, soft(array))
+    settle_default(array)
+    check_strained_edges(array)
+    _check_deformable(array)
+    h.cr[g.TDEL] = time_step(array)
+    for alpha, con1, con2, number in ((g.ALPHA, g.CON1, g.CON2, 13), (g.ALPB, g.C1B, g.C2B, 16)):
+        half = h.cr[alpha] * h.cr[g.TDEL] / 2
+        if half >= 1:
+            detail = (
+                f"the damping coefficient {h.cr[alpha]:g} times the time-step {h.cr[g.TDEL]:g} is not below 2"
+            )
+            raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
+        h.cr[con1] = 1 - half
+        h.cr[con2] = 1 / (1 + half)
+
+
+def _check_deformable(array: MainArray) -> None:
+    """Error 26 for a fully-deformable block without zones, or a deformable one without stiffness."""
+    h = array.h
+    for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if h.ci[g.NSOFT] else ():
+        if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFZ) == 0:
+            place = f"({getr(h, ib, g.KX):g}, {getr(h, ib, g.KY):g})"
+            raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
+        m = iget(h, ib, g.KMAT)
+        if iget(h, ib, HEAD) != g.MRIG and not h.cr[g.ALAM1 + m - 1] > 0:
+            detail = f"block@{ib} is deformable, and its material {m} has neither BULK nor G"
+            raise UdecError(26, detail, f"PROPERTY MATERIAL={m} BULK=... G=...", group=ib)
+
+
+def cycle(
+    array: MainArray,
+    n: int,
+    report: Report | None = None,
+    every: int | None = None,
+    prepared: Prepared | None = None,
+    laws: LawBook | None = None,
+    watch: Watch | None = None,
+    settled: Callable[[], None] | None = None,
+    runaway: Runaway | None = None,
+) -> int:
+    """Run `n` cycles. Returns how many were completed.
+
+    laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
+    report: called with the number of cycles done so far, every `every` cycles or a few times a second.
+    prepared: called before the first cycle, when the time-step is known.
+    watch: records on the way and may end the run before. runaway: error 37 if it finds energy from nowhere.
+    settled: called after every piece of the run, before its errors are raised: what was computed is to stay.
+    Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
+    too coarse for contacts, or a force grown beyond them: the cycle in which it did is completed.
+    """
+    prepare(array)
+    if prepared is not None:
+        prepared()
+    laws = laws or LawBook()
+    bound = laws.bind(array)
+    keep_spare(array)
+    array.h.ci[g.NCYC] = n
+    # a run that was interrupted may have left an error behind, or a wish for memory
+    array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
+    energy.begin(array)
+    runaway = runaway or Runaway()
+    runaway.begin(array, bound.own_blocks)
+    try:
+        done = _run(array, n, report, every, bound, watch, settled or (lambda: None), runaway)
+    finally:
+        finish(array, watch)
+        runaway.end(array)
+    _check_finite(array)
+    return done
+
+
+def finish(array: MainArray, watch: Watch | None) -> None:
+    """What a run that ends leaves, why ever it ends. To do it twice does no harm."""
+    energy.end(array)
+    if watch is not None:
+        watch.hand_on()
+
+
+def _run(
+    array: MainArray,
+    n: int,
+    report: Report | None,
+    every: int | None,
+    bound: Bound,
+    watch: Watch | None,
+    settled: Callable[[], None],
+    runaway: Runaway,
+) -> int:
+    """`n` cycles, in pieces. Returns how many were completed."""
+    if watch is not None:
+        watch.begin()
+    done, piece = 0, every or FIRST_PIECE
+    settled()
+    while done < n and not (watch is not None and watch.reached):
+        poll()
+        start = working_time()
+        before, target = done, min(done + piece, n)
+        while done < target and not (watch is not None and watch.reached):
+            most = min(target - done, runaway.ahead(array.h))
+            given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
+            done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
+            settled()
+            _raise_error(array, bound.book)
+            runaway.look(array)
+        if report is not None:
+            report(done)
+        if every is not None:
+            continue
+        seconds = max(working_time() - start, 1e-6)
+        piece = max(1, min(int((done - before) * REPORT_SECONDS / seconds), 4 * piece))
+    return done
+
+
+def _check_finite(array: MainArray) -> None:
+    """Error 36 if the run has ended with a force, a velocity, a stress or an energy beyond the reals."""
+    h, group = array.h, int(not_finite(array.h))
+    if group != 0:
+        kind, *here = ("contact", g.KXC, g.KYC) if iget(h, group, HEAD) == g.MCON else ("block", g.KX, g.KY)
+        x, y = (float(getr(h, group, k)) for k in here)
+        what = f"a force, a velocity or a stress of {kind}@{group} at ({x:g}, {y:g}) is"
+    elif not (np.isfinite(h.cr).all() and np.isfinite(h.cd).all()):
+        what = "an energy or a displacement that the run has summed up is"
+    else:
+        return
+    largest = float(np.finfo(array.scheme.real_type).max)
+    detail = f"{what} greater than {array.scheme.real_bits}-bit reals can hold, {largest:.2g}, in cycle "
+    raise UdecError(TOO_FAR, f"{detail}{int(h.ci[g.MCTOT])}", group=group)
+
+
+def _strained(h: Memory, iz: int) -> str:
+    """Zone `iz` and its block, or simply-deformable block `iz`, and its centroid, as a message names it."""
+    if iget(h, iz, HEAD) == g.MSDEF:
+        return f"block@{iz} at ({getr(h, iz, g.KX):g}, {getr(h, iz, g.KY):g})"
+    corners = [iget(h, iz, g.KZG, i) for i in range(3)]
+    x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (g.KXG, g.KYG))
+    return f"{kind_of(h, iz)} at ({x:g}, {y:g})"
+
+
+def _too_far(array: MainArray, ib: int) -> UdecError:
+    """Error 36: block `ib` is where the reals are too coarse for contacts."""
+    h, bits = array.h, array.scheme.real_bits
+    x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
+    return UdecError(
+        TOO_FAR,
+        f"block@{ib} has come to ({x:g}, {y:g}) in cycle {int(h.ci[g.MCTOT])}, where {bits}-bit reals "
+        f"resolve {last_digit(array, max(abs(x), abs(y))):g}, and the rounding length is {h.cr[g.DTOL]:g}",
+        group=ib,
+    )
+
+
+def _without_contact(array: MainArray, ip: int) -> UdecError:
+    """Error 15: corner `ip` has come into another block where there is no contact."""
+    h = array.h
+    x, y, ib = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP)), iget(h, ip, g.KNB)
+    detail = (
+        f"blocks have gone into each other in cycle {int(h.ci[g.MCTOT])} of {h.cr[g.TDEL]:g} s, too fast for "
+        f"a contact in time: block@{ib} with its corner at ({x:g}, {y:g})"
+    )
+    advice = "take a greater KN, lower velocities, a smaller FRACTION or a greater ROUND"
+    return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=ip)
+
+
+def _raise_error(array: MainArray, laws: LawBook) -> None:
+    """Find memory if that is what a kernel stopped for; else raise the error it left behind.
+
+    An error of a cycle that needs memory, too, is raised when the cycle is complete, or if it cannot be.
+    """
+    h = array.h
+    number = int(h.ci[g.NERR])
+    if number == OVERFLOW and h.ci[g.JPHASE] == BLOCKS:
+        h.ci[g.NERR] = h.ci[g.NWANT] = 0
+        keep_spare(array)
+        return
+    if h.ci[g.NWANT] != 0:
+        try:
+            find_room(array)
+            return
+        except UdecError:
+            if number == OVERFLOW:
+                raise
+    if number == 0:
+        return
+    group = int(h.ci[g.IERAD])
+    h.ci[g.NERR] = h.ci[g.IERAD] = 0
+    if number == INSIDE_OUT:
+        raise UdecError(number, f"{_strained(h, group)} in cycle {int(h.ci[g.MCTOT])}", group=group)
+    if number == TOO_SHORT:
+        raise crowded(array, group, int(h.ci[g.MCTOT]))
+    if number == LAW_FAILED:
+        raise laws.failure(array, group)
+    if number == TOO_FAR:
+        raise _too_far(array, group)
+    if iget(h, group, HEAD) == g.MCOR:
+        raise _without_contact(array, group)
+    if iget(h, group, HEAD) != g.MCON:  # it vanished in a later pass of the same cycle
+        raise UdecError(
+            number, f"in cycle {int(h.ci[g.MCTOT])}", "take a smaller FRACTION or a greater ROUND"
+        )
+    m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
+    most = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
+    detail = (
+        f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
+        f"({getr(h, group, g.KXC):g}, {getr(h, group, g.KYC):g}) overlaps by {overlap:g}, more than "
+        f"{most}, in cycle {int(h.ci[g.MCTOT])}"
+    )
+    advice = (
+        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
+        "of the critical one: take a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+    )
+    raise UdecError(number, detail, advice, group=group)

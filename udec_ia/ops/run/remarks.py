@@ -1,0 +1,85 @@
+"""What is no error and yet hardly meant: said once, before the run, with the cure.
+
+A remark is made of what can be known without running: a number that looks like one of another unit, a
+material that lacks a modulus, a wait for rest that nothing brings about.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+import offsets.generated as g
+from udec_ia.heap.accessors import HEAD, getr, integers
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.geometry.tolerances import edges
+
+TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
+SLIVER = 40  # the mean edge over the shortest, from which on it is said
+STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
+
+
+def on_properties(material: int, values: dict[str, float | None]) -> Iterator[str]:
+    """PROPERTY: nothing to set; an angle where a tangent is wanted."""
+    if all(value is None for value in values.values()):
+        yield f"PROPERTY MATERIAL={material} names no property, and none was set"
+    for name in TANGENTS:
+        value = values.get(name)
+        if value is not None and STEEP < value < 90:
+            angle, tangent = math.degrees(math.atan(value)), math.tan(math.radians(value))
+            yield (
+                f"{name.replace('_', ' ')} {value:g} of material {material} is a tangent, of {angle:.3g} "
+                f"degrees: if an angle of {value:g} degrees is meant, give {tangent:.3g}"
+            )
+
+
+def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
+    """CYCLE: one of two moduli in the material of a deformable block that is linearly elastic.
+
+    own_laws: constitutive numbers that stand for block laws of the user's, which may want other properties.
+    """
+    h = array.h
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB) if h.ci[g.NSOFT] else np.zeros(0, np.int64)
+    soft = (integers(h, blocks, HEAD) != g.MRIG) & ~np.isin(integers(h, blocks, g.KCONS), [*own_laws])
+    for m in np.unique(integers(h, blocks[soft], g.KMAT)):
+        bulk, shear = h.cr[g.BULK + m - 1], h.cr[g.SHEAR + m - 1]
+        for given, lacking, what, without in (("BULK", "G", bulk, shear), ("G", "BULK", shear, bulk)):
+            if what > 0 and not without > 0:
+                change = "shape" if lacking == "G" else "volume"
+                yield (
+                    f"material {m} of deformable blocks has {given} and no {lacking}: nothing in them "
+                    f"resists a change of {change}; PROPERTY MATERIAL={m} {lacking}=..."
+                )
+
+
+def on_rounding(array: MainArray) -> Iterator[str]:
+    """CYCLE, before the first one: a sliver that makes the default rounding length very small.
+
+    All tolerances follow from that length: impacts that other blocks bear are then error 15.
+    """
+    h = array.h
+    if h.ci[g.LROUND] or h.ci[g.MCTOT] or not h.ci[g.IBPNT]:
+        return
+    mean, least, ip = (float(one) for one in edges(h))
+    if least < mean / SLIVER:
+        x, y = float(getr(h, int(ip), g.KXP)), float(getr(h, int(ip), g.KYP))
+        yield (
+            f"the edge of {least:.3g} m that ends at ({x:g}, {y:g}), where the mean edge has {mean:.3g} m, "
+            f"makes the rounding length {h.cr[g.DTOL]:.3g} m and allows overlaps up to half of that: "
+            "cut elsewhere, or DELETE the sliver"
+        )
+
+
+def on_rest(array: MainArray) -> Iterator[str]:
+    """SOLVE: nothing that brings a model to rest."""
+    h = array.h
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    viscous = any(np.any(getr(h, bounds, k)) for k in (g.KUCXX, g.KUCYY)) if len(bounds) else False
+    if not (h.cr[g.ALPHA] or h.cr[g.BETA] or h.cr[g.ALPB] or viscous):
+        yield (
+            "there is no damping, and nothing but friction brings blocks to rest: "
+            "DAMPING 0.5 f MASS, with f near the frequency (Hz) at which they would swing"
+        )

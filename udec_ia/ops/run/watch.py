@@ -1,0 +1,197 @@
+"""Recording while cycles run: what the histories in IA() ask for is gathered into series of numbers.
+
+A compiled loop fills a block of rows (kernels.drive.watch); between two pieces of a run the rows are handed
+on to the series. Rows that were handed on before are passed over, so nothing is lost or doubled when Ctrl-C
+comes between the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.watch import record, run_watched
+from udec_ia.ops.commands.history import Definition, definitions, places
+from udec_ia.ops.common.soft import soft
+
+ROWS = 1024  # rows that a compiled piece can fill
+NEVER = -1.0  # force ratio that is never reached
+
+
+class Series:
+    """The numbers of one history.
+
+    number: of the history. name, unit, text: of the field. group: kind and last address of its group, "" if
+    there is none. place: where the group was when it was chosen by a point, else "". lost: True once the
+    group has gone and the user has been told so.
+    """
+
+    def __init__(self, number: int, definition: Definition, place: str = "") -> None:
+        field = definition.what.field
+        self.number = number
+        self.name, self.unit, self.text = field.name, "" if field.unit == "-" else field.unit, field.text
+        self.group = ""
+        self.place = place
+        self.every = definition.every
+        self.lost = False
+        self.count = 0  # numbers recorded
+        self._parts = [np.zeros((0, 3))]
+        self.follow(definition)
+
+    def follow(self, definition: Definition) -> None:
+        """Take the address that the group has now; one that has gone keeps its last name."""
+        if definition.address:
+            self.group = f"{definition.what.group}@{definition.address}"
+
+    @property
+    def title(self) -> str:
+        """What is recorded, in a few words."""
+        return f"{self.number}: {self.name}" + (f" of {self.group}" if self.group else "")
+
+    def __str__(self) -> str:
+        place = f" at {self.place}" if self.place else ""
+        cycles = "cycle" if self.every == 1 else f"{self.every} cycles"
+        return f"history {self.title}{place}, every {cycles}: {self.text}"
+
+    @property
+    def numbers(self) -> Any:
+        """All that was recorded, one row each: cycle, time in s, value."""
+        self._parts = [np.concatenate(self._parts)]
+        return self._parts[0]
+
+    def since(self, n: int) -> Any:
+        """What was recorded after the first `n` numbers, as rows of `numbers`."""
+        parts, missing = [np.zeros((0, 3))], self.count - n
+        for part in reversed(self._parts):
+            if missing <= 0:
+                break
+            parts.append(part[-missing:])
+            missing -= len(parts[-1])
+        return np.concatenate(parts[::-1])
+
+    @property
+    def last_cycle(self) -> int:
+        """The last cycle that was recorded; -1 before the first one."""
+        last = next((part for part in reversed(self._parts) if len(part)), None)
+        return -1 if last is None else int(last[-1, 0])
+
+    def add(self, rows: Any) -> None:
+        """Take in rows of cycle, time and value that were recorded later than all others."""
+        new = rows[rows[:, 0] > self.last_cycle]
+        if len(new):
+            self._parts.append(new)
+            self.count += len(new)
+
+
+class Solution(NamedTuple):
+    """How a SOLVE ended.
+
+    wanted: force ratio asked for; ratio: at the end; cycles: how many it took. worst: what is farthest from
+    balance, "" if nothing is out of it. motion: kinetic over strain energy at the end; liveliest: what has
+    most of the kinetic energy, "" if nothing moves.
+    """
+
+    reached: bool
+    wanted: float
+    ratio: float
+    cycles: int
+    worst: str
+    motion: float
+    liveliest: str
+
+    def __bool__(self) -> bool:
+        return self.reached
+
+    def __str__(self) -> str:
+        if self.reached:
+            return f"force ratio {self.wanted:g} reached: it is {self.ratio:.3g} after {self.cycles} cycles"
+        found = f"force ratio {self.wanted:g} NOT REACHED: it is {self.ratio:.3g} after {self.cycles} cycles"
+        if self.ratio > self.wanted:
+            return f"{found}, most out of balance is {self.worst}{self._advice}"
+        if self.motion > self.wanted:
+            return (
+                f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
+                f"{self.liveliest} has most of it"
+            )
+        return f"{found}, and at least one cycle must show it"
+
+    @property
+    def _advice(self) -> str:
+        """What else to look at: strains that only DAMPING ... INTERNAL brings to rest."""
+        return "; see DAMPING ... INTERNAL" if "strain" in self.worst else ""
+
+
+def unsolved(solutions: Sequence[Solution]) -> list[Solution]:
+    """Those that came to their limit, but for one before a SOLVE that asked for as much: that one tells."""
+    return [
+        one
+        for i, one in enumerate(solutions)
+        if not one and all(later.wanted > one.wanted for later in solutions[i + 1 :])
+    ]
+
+
+class Watch:
+    """Runs cycles of `array` and hands what is recorded to `series`.
+
+    ratio: to within which there must be rest to stop. reached: True when there was, after a cycle of this
+    run: forces are those of the properties, loads and laws of now only when the contacts have been passed
+    through with them. lost: those of `series` whose groups were found to have gone since they were last
+    looked at.
+    """
+
+    def __init__(self, array: MainArray, series: list[Series], ratio: float = NEVER) -> None:
+        self.array = array
+        self.series = series
+        self.ratio = float(ratio)  # a kernel is compiled for one type
+        self.reached = False
+        self.lost: list[Series] = []
+        self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
+
+    def begin(self) -> None:
+        """Look at the state before the first cycle, groups being where they will stay."""
+        self.look()
+        self._places = places(self.array)
+        self._rows = np.empty((ROWS, 2 + len(self.series)))
+        record(self.array.h, soft(self.array), self._places, self._rows, self._count)
+        self.hand_on()
+
+    def run(self, n: int, laws: Any) -> int:
+        """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
+
+        laws: see kernels.drive.watch.run_watched.
+        """
+        done, full = 0, True
+        while done < n and full:
+            try:
+                completed, self.reached = run_watched(
+                    self.array.h, n - done, laws, self.ratio, self._places, self._rows, self._count
+                )
+            finally:
+                full = self.hand_on() == ROWS
+            done += int(completed)
+        return done
+
+    def look(self) -> None:
+        """See where the groups are now, and which have gone."""
+        for number, definition in enumerate(definitions(self.array), 1):
+            if number > len(self.series):
+                self.series.append(Series(number, definition))
+            series = self.series[number - 1]
+            series.follow(definition)
+            if definition.lost and not series.lost:
+                series.lost = True
+                self.lost.append(series)
+
+    def hand_on(self) -> int:
+        """Let the series have the rows that are filled, if they have not; returns the number of rows."""
+        if self._count[0] == 0:
+            return 0
+        rows = self._rows[: self._count[0]].copy()
+        for i, series in enumerate(self.series):
+            due = rows[:, 0] % series.every == 0
+            series.add(rows[due][:, [0, 1, 2 + i]])
+        self._count[0] = 0
+        return len(rows)
