@@ -92,6 +92,24 @@ def test_a_deck_whose_name_is_no_utf8(in_folder: Path) -> None:
     assert b"d\xe9ck-plot-1.png" in os.listdir(os.fsencode(in_folder))
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+def test_nothing_can_be_written_to_the_standard_output(in_folder: Path) -> None:
+    Path("deck.dat").write_text(SMALL)
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "udec_ia", "run", "deck.dat"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            check=False,
+        )
+    assert done.returncode == 1
+    assert "standard output: No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_a_restart_file_is_no_deck(in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Model().save(in_folder / "run.h5")
     assert main(["run.h5"]) == 1

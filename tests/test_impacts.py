@@ -6,12 +6,23 @@ Decks in which blocks went through others or stopped at nothing, and some impact
 
 from __future__ import annotations
 
+import math
+import os
+import subprocess
+import sys
+import time
 from contextlib import suppress
+from pathlib import Path
 
 import impacts
+import numpy as np
 import pytest
 from stage import Over, Stage
 from strikes import SHAPES
+
+from udec_ia import Model, UdecError
+from udec_ia.heap.compiling import compile_seconds
+from udec_ia.kernels.geometry.contact_geometry import faces
 
 BATCH = 16
 SEED = 1
@@ -50,6 +61,22 @@ BOUNDARY 0,2 2,4 XVEL=27.0 YVEL=-27.0
 CYCLE 1
 BOUNDARY 0,2 2,4 XVEL=1 YVEL=-1
 CYCLE 100
+"""
+
+GIVEN_UP = """
+START
+PROPERTY MAT=1 DENSITY 2000 KN 3.8E8 KS 1.1E8
+BLOCK 0 0 0 10 20 10 20 0
+SPLIT 5.29 -21.23 7.07 38.74
+SPLIT -26.56 1.66 33.4 3.93
+SPLIT -26.78 8.59 32.99 3.36
+SPLIT -11.35 8.51 48.38 2.83
+SPLIT -12.91 12.75 46.71 6.0
+SPLIT -15.54 5.53 44.28 0.86
+ROUND 0.05
+BOUNDARY 3.007 3.027 5.023 5.043 XVEL 137 YVEL 56
+BOUNDARY 2.733 2.753 3.425 3.445 XVEL 169 YVEL 28
+CYCLE 1
 """
 
 # What the search has found, cut down to what is needed.
@@ -162,6 +189,65 @@ def test_what_the_search_has_found(deck: str) -> None:
     with suppress(Over):
         stage.run(deck)
     assert set(stage.errors) <= {15}
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [
+        ("extreme", 52),  # two tips in a gap that one of them fills, overlaps included
+        ("extreme", 879),
+        ("extreme", 1143),
+        ("long", 564),  # the far side of a blunt corner's circle
+    ],
+)
+def test_long_scenes_that_the_search_has_found(kind: str, number: int) -> None:
+    found = impacts.play(kind, 2000, number, "i32r64")
+    assert not found.failure, f"{impacts.describe(found, 2000)}\n{found.snippet}"
+
+
+def test_an_update_after_a_long_step_comes_to_an_end(tmp_path: Path) -> None:
+    """Contacts that what has come into their gaps takes away are not made and given up for ever."""
+    (tmp_path / "deck.dat").write_text(GIVEN_UP)
+    command = [sys.executable, "-m", "udec_ia", "run", "deck.dat"]
+    path = str(Path(__file__).parent.parent)
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert "error 15" in done.stderr
+
+
+@pytest.mark.parametrize("rise", [0.02, 0.1, 0.5, 5.0])
+def test_what_faces_an_arc(rise: float) -> None:
+    """All directions: those between the normals of its two edges, and up to the slack beyond either."""
+    model = Model()
+    model.block(-1, -10, -1, 0, 0, rise, 1, 0, 1, -10)
+    model.round(0.05)
+    (corner,) = (row for row in model.table("corner") if row["KYP"] == rise)
+    half, h = math.atan(rise), model.array.h
+    for slack in (0.25, 0.3):
+        for angle in np.arange(-179.5, 180, 1) * math.pi / 180:  # from the middle of the arc, upwards
+            x, y = math.sin(angle), math.cos(angle)
+            faced = faces(h, int(corner["address"]), x, y, h.cr.dtype.type(slack))
+            assert faced == (abs(angle) <= half + math.asin(slack)), (slack, angle)
+
+
+@pytest.mark.parametrize("speed", [1e4, 1e8, 1e13])
+def test_however_fast_a_block_is_looking_where_it_went_takes_no_time(speed: float) -> None:
+    """A cycle of it ends in an error, or nothing was in the way."""
+    for turn in (0.0, 1.0):
+        model = Model()
+        model.run(START)
+        model.boundary(0, 2, 2, 4, xvel=speed, yvel=-turn * speed)
+        start = time.process_time()
+        with suppress(UdecError):
+            model.cycle(1)
+        assert time.process_time() - start < 5 + compile_seconds()
 
 
 @pytest.mark.parametrize("kind", SHAPES)

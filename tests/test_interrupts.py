@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 from interrupts import SCENE, interrupt_lines, state
 
+import offsets.generated as g
 from offsets.generated import JPHASE, KX, MCTOT, MTOP, NERR, NWANT, TDEL
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
@@ -59,7 +61,7 @@ def test_a_command_is_taken_back_also_by_repeating_others(
     m.block(0, 0, 0, 30, 40, 30, 40, 0)
     for x in range(1, 40):
         m.split(x, -1, x, 31)
-    assert len(m.undo.since) == (1 if repeated == 0 else 39)
+    assert len(m.undo.since) == (0 if repeated == 0 else 39)
     before, size = state(m), len(m.array.h.ia)
 
     def fail(*_: object) -> None:
@@ -432,3 +434,137 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
     assert caught.value.number == 15
     assert len(calls) == (2 if mtop is None else 1)
     assert int(m.h.ci[MCTOT]) == (4 if mtop is None else 3)
+
+
+# ---- several commands obeyed as one
+
+
+def words(m: Model) -> tuple[object, ...]:
+    return state(m)["words"], state(m)["integers"], state(m)["reals"]
+
+
+def test_commands_before_one_that_is_refused_are_taken_back() -> None:
+    m = blocks()
+    m.free(0, 4, 0, 1)
+    before = words(m)
+    with pytest.raises(UdecError) as caught:
+        m.whole(lambda: (m.fix(0, 4, 0, 1), m.block(0, 0, 0, 0)))
+    assert caught.value.number == 18
+    assert words(m) == before
+
+
+def test_commands_after_a_run_are_taken_back_to_its_end(tmp_path: Path) -> None:
+    m, twin = blocks(tmp_path), blocks(tmp_path)
+    twin.cycle(5)
+
+    def action() -> None:
+        m.cycle(5)
+        m.change(0, 4, 1, 4, type="sdef")
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        m.whole(action)
+    assert m.check() == []
+    assert words(m) == words(twin)
+
+
+def test_split_finds_the_blocks_that_were_taken_back() -> None:
+    """It keeps the boxes of all blocks, also of those that came and went in between."""
+    m, twin = blocks(), blocks()
+
+    def action() -> None:
+        m.delete(0, 2, 1, 3)
+        m.split(3, 0.5, 3, 4)
+        raise ZeroDivisionError
+
+    for one in (m, twin):
+        one.cycle(0)
+    with pytest.raises(ZeroDivisionError):
+        m.whole(action)
+    assert m.split(1, 0.5, 1, 4) == twin.split(1, 0.5, 1, 4) == 1
+    assert words(m) == words(twin)
+
+
+def test_what_is_written_among_commands_is_proved_before_it_is_followed() -> None:
+    m = blocks()
+    place = int(m.table("corner")["address"][0]) - 1 + g.KL[1]
+
+    def action() -> None:
+        m.h.ia[place] = 10**8
+        m.round(0.1)
+
+    with pytest.raises(UdecError) as caught:
+        m.whole(action)
+    assert caught.value.number == 20
+    with pytest.raises(UdecError) as caught:
+        m.why_none("split", 0, 0, 1, 1)
+    assert caught.value.number == 20
+
+
+def test_many_commands_that_change_numbers_only_leave_no_long_list() -> None:
+    m = blocks()
+    m.undo.cost = 0.0
+    for n in range(50):
+        m.gravity(0, -n)
+    assert len(m.undo.since) < 3
+
+
+def test_a_run_that_is_ended_by_system_exit_leaves_a_rescue_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    m = blocks(tmp_path)
+
+    def leave(*_: object) -> None:
+        raise SystemExit
+
+    monkeypatch.setattr("udec_ia.ops.commands.settings.set_gravity", leave)
+    with pytest.raises(SystemExit) as caught:
+        m.run("CYCLE 5\nGRAVITY 0 -5\n")
+    (note,) = caught.value.__notes__
+    assert note == f"what was computed is saved in {tmp_path / 'rescue.h5'}"
+    assert Model.restore(tmp_path / "rescue.h5").h.ci[MCTOT] == 5
+
+
+def test_a_handler_that_raises_is_called_once_for_a_signal() -> None:
+    calls = []
+
+    def leave(number: int, frame: object) -> None:
+        calls.append(number)
+        raise SystemExit
+
+    former = signal.signal(signal.SIGTERM, leave)
+    try:
+        with pytest.raises(SystemExit), hold(), passing():
+            os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGTERM, former)
+    assert calls == [signal.SIGTERM]
+
+
+def test_no_memory_left_in_a_run_does_not_say_that_nothing_was_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    m = blocks(tmp_path)
+
+    def none_left(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("udec_ia.ops.run.cycle.run_cycles", none_left)
+    with pytest.raises(UdecError, match="what was computed is kept") as caught:
+        m.run("CYCLE 5\n")
+    assert caught.value.number == 1
+
+
+def test_ctrl_c_stops_an_animated_run_as_soon(tmp_path: Path) -> None:
+    m = blocks(tmp_path)
+    m.animate = True
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    former = signal.signal(signal.SIGALRM, lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    start = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            m.cycle(10**8)
+    finally:
+        signal.signal(signal.SIGALRM, former)
+    assert time.monotonic() - start < 10
+    assert m.check() == []

@@ -52,6 +52,23 @@ def test_a_property_that_is_not_named(tmp_path: Path) -> None:
     assert said == ["PROPERTY MATERIAL=2 names no property, and none was set"]
 
 
+def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
+    m = soft(tmp_path, bulk=1e9, g=1e9)
+    said = told(m)
+    m.property(1, density=3000)
+    assert said == []
+    m.cycle(1)
+    masses = m.table("block")["KBM"].tolist()
+    m.property(2, density=3000)
+    m.property(1, kn=2e8)
+    assert said == []
+    m.property(1, density=4000)
+    (text,) = said
+    assert text.startswith("masses were made before the first cycle: the 2 blocks of material 1 keep theirs")
+    m.cycle(1)
+    assert m.table("block")["KBM"].tolist() == masses
+
+
 @pytest.mark.parametrize(("at", "d", "many"), [(0.499, 0.0, 1), (0.4, 0.0, 0), (0.499, 0.0001, 0)])
 def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, tmp_path: Path) -> None:
     """A cut near a corner leaves an edge of a thousandth; who gives a length by ROUND knows."""

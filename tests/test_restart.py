@@ -46,7 +46,7 @@ def test_state_and_deck_come_back(name: str, tmp_path: Path) -> None:
     before = parts(array)
     path = save(array, tmp_path / "deeper" / "two.h5", DECK)
     assert parts(array) == before
-    restored, deck, _ = load(path)
+    restored, deck, *_ = load(path)
     assert same(array, restored)
     assert deck == DECK
     assert not np.shares_memory(restored.h.ia, array.h.ia)
@@ -55,7 +55,7 @@ def test_state_and_deck_come_back(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", SCHEMES)
 def test_empty_array_comes_back(name: str, tmp_path: Path) -> None:
     array = MainArray(scheme(name))
-    restored, deck, _ = load(save(array, tmp_path / "empty.h5"))
+    restored, deck, *_ = load(save(array, tmp_path / "empty.h5"))
     assert same(array, restored)
     assert deck == []
 
@@ -64,7 +64,7 @@ def test_empty_array_comes_back(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("mtop", [1, 2000])
 def test_fixed_size_comes_back(name: str, mtop: int, tmp_path: Path) -> None:
     array = MainArray(scheme(name), mtop)
-    restored, _, _ = load(save(array, tmp_path / "fixed.h5"))
+    restored, _, *_ = load(save(array, tmp_path / "fixed.h5"))
     assert same(array, restored)
     assert restored.limit == array.limit
 
@@ -77,7 +77,7 @@ def test_junk_and_growth_come_back(name: str, tmp_path: Path) -> None:
         lose(array.h, group, g.NVCN)
     array.h.ci[g.NWANT] = len(array.h.ia)
     assert array.grow()
-    restored, _, _ = load(save(array, tmp_path / "grown.h5"))
+    restored, _, *_ = load(save(array, tmp_path / "grown.h5"))
     assert same(array, restored)
     assert find(restored.h, g.NVCN) == find(array.h, g.NVCN) == groups[-1]
 

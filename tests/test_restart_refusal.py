@@ -394,7 +394,7 @@ def test_a_run_that_blew_up_can_be_looked_at(tmp_path: Path) -> None:
     array = ARRAYS["i32r64"].copy()
     for block in groups(array.h, "block"):
         putr(array.h, block, g.KXD, np.nan)
-    restored, _, _ = load(save(array, tmp_path / "two.h5"))
+    restored, _, *_ = load(save(array, tmp_path / "two.h5"))
     assert np.isnan(restored.h.ra).sum() == 2
 
 
@@ -473,7 +473,7 @@ def test_mad_heaps_in_good_files(
     path = tmp_path_factory.getbasetemp() / "mad.h5"
     save(array, path)
     with suppress(UdecError):
-        restored, deck, _ = load(path)
+        restored, deck, *_ = load(path)
         assert [view.tobytes() for view in restored.h] == [view.tobytes() for view in array.h]
         assert (restored.scheme, restored.fixed, deck) == (array.scheme, array.fixed, [])
 

@@ -204,3 +204,16 @@ def test_what_boundary_conditions_put_in_is_summed(tmp_path: Path) -> None:
     m.cycle(10)
     assert float(m.h.cd[g.WDRIVE]) - before == pytest.approx(1000 * 25 / 2 - moved, rel=1e-6)
     assert not math.isnan(float(m.h.cd[g.WDRIVE]))
+
+
+def test_a_command_puts_no_work_in() -> None:
+    """CHANGE makes the force sums anew, and no step goes by."""
+    m = Model()
+    m.property(1, density=1000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.boundary(-1, 2, -1, 2, yforce=-100.0)
+    m.cycle(10)
+    before = float(m.h.cd[g.WDRIVE])
+    assert before > 0
+    m.change(-1, 2, -1, 2, type="sdef")
+    assert float(m.h.cd[g.WDRIVE]) == before

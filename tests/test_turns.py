@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from mechanics import G
 
-from udec_ia import Model
+from udec_ia import Model, UdecError
 from udec_ia.output.turns import Turns
 
 
@@ -68,19 +68,46 @@ def test_what_is_interrupted_is_not_in_the_file(tmp_path: Path, monkeypatch: pyt
         assert (tmp_path / "text").read_text() == "".join(text.lines)
 
 
-@pytest.mark.parametrize("name", ["text", ".text"])
+@pytest.mark.parametrize("name", ["text", ".udec-*.tmp"])
 @pytest.mark.parametrize("what", ["goes", "changes"])
 def test_what_somebody_else_has_changed_is_written_anew(tmp_path: Path, name: str, what: str) -> None:
     text = Text(tmp_path / "text")
     for _ in range(4):
         text.add()
+    (file,) = tmp_path.glob(name)
     if what == "goes":
-        (tmp_path / name).unlink()
+        file.unlink()
     else:
-        (tmp_path / name).write_text("something else\n")
+        file.write_text("line of somebody else's\n")
     for _ in range(3):
         text.add()
         assert (tmp_path / "text").read_text() == "".join(text.lines)
+
+
+def test_a_file_of_another_kind_that_comes_between_stays(tmp_path: Path) -> None:
+    text = Text(tmp_path / "text")
+    text.add()
+    text.add()
+    (tmp_path / "text").write_text("notes\n")
+    with pytest.raises(UdecError) as caught:
+        text.add()
+    assert caught.value.number == 31
+    assert (tmp_path / "text").read_text() == "notes\n"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_hidden_files_of_others_stay_and_a_mode_is_kept(tmp_path: Path) -> None:
+    others = tmp_path / ".text", tmp_path / ".text.last"
+    for other in others:
+        other.write_text("notes\n")
+    text = Text(tmp_path / "text")
+    for n in range(5):
+        text.add()
+        if n == 1:
+            (tmp_path / "text").chmod(0o600)
+    assert (tmp_path / "text").stat().st_mode & 0o777 == 0o600
+    text.turns.close()
+    assert [other.read_text() for other in others] == ["notes\n"] * 2
 
 
 def test_a_file_system_without_second_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -157,6 +157,7 @@ def _main(argv: Sequence[str]) -> int:
         return ERROR
     except OSError as error:
         sys.stdout.flush()
-        print(f"udec: {printable(str(error.filename))}: {error.strerror}", file=sys.stderr)
+        where = "standard output" if error.filename is None else printable(str(error.filename))
+        print(f"udec: {where}: {error.strerror or error}", file=sys.stderr)
         return ERROR
     return status

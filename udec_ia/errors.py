@@ -79,7 +79,7 @@ ADVICE = {
     28: "HELP and the name of the command show what it takes",
     29: "check the name of the file and whether it is complete: udec info FILE",
     30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
-    31: "check that the folder exists and can be written to",
+    31: "check that the folder can be written to, and its name",
     32: "take a stiffer material, a smaller FRACTION or smaller loads",
     33: "the zones must cover the block side to side, each side between two grid-points once",
     34: "correct the file that --constitutive names",

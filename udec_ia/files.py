@@ -97,13 +97,13 @@ def _alike(path: Path, content: Content) -> Judge:
 
 
 def _write(target: Path, content: Content, before: os.stat_result | None, force: bool) -> None:
-    temporary = target.parent / f".udec-{secrets.token_hex(8)}.tmp"
+    temporary = hidden(target)
     mode = 0o666 if before is None else 0o600  # less what the user's mask forbids
     try:
         with open(temporary, "xb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
             file.write(content)
             if before is not None:
-                _keep_rights(temporary, before)
+                keep_rights(temporary, before)
             if force:
                 file.flush()
                 os.fsync(file.fileno())
@@ -116,6 +116,11 @@ def _write(target: Path, content: Content, before: os.stat_result | None, force:
             _sync_folder(target.parent)
 
 
+def hidden(path: Path) -> Path:
+    """A name beside `path` that nobody has, for what is to take its place."""
+    return path.with_name(f".udec-{secrets.token_hex(8)}.tmp")
+
+
 def last_number(folder: Path, name: str) -> int:
     """The greatest n for which there is a file name-n.* in `folder`, or 0."""
     numbered = re.compile(rf"{re.escape(name)}-(\d+)\.[^.]+")
@@ -123,7 +128,7 @@ def last_number(folder: Path, name: str) -> int:
     return max((int(one[1]) for one in found if one), default=0)
 
 
-def _keep_rights(file: Path, before: os.stat_result) -> None:
+def keep_rights(file: Path, before: os.stat_result) -> None:
     """Give `file` the mode of what it replaces, and its owner and group as far as that is allowed.
 
     A group that cannot be kept loses its rights: they were not meant for the one that comes in its place.

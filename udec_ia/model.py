@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
 import numba
 import numpy as np
 
-from offsets.generated import DTOL, IHPNT, MCTOT, NBLK, NCON, TIME
+from offsets.generated import DTOL, MCTOT, NBLK, NCON, TIME
 from udec_ia.errors import UdecError
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
@@ -161,9 +161,13 @@ class Model:
 
     def note_writes(self) -> None:
         """Something was written to the words that `h` lends: what follows them proves them first."""
-        self._boxes.forget()
+        self.forget_boxes()
+        self.undo.array = None  # commands obeyed once more would not give these words
         self._touched = True
-        self.writes.made = False
+
+    def forget_boxes(self) -> None:
+        """Blocks are not where SPLIT has seen them last."""
+        self._boxes.forget()
 
     # ---- starting, saving, ending
 
@@ -203,13 +207,12 @@ class Model:
         when they were saved. Pictures that are there stay: those to come take the next numbers. Error 29 if
         the file cannot be used, 1 if it holds more; the model is then as it was.
         """
-        from udec_ia.restart import load, recall
+        from udec_ia.restart import load
 
         source = self.out / RESTART_FILE if path is None else path
-        array, deck_log, laws = load(source)
+        array, deck_log, laws, series = load(source)
         refit(array, self.mtop)
-        self._recorder.series = recall(source, array) if array.h.ci[IHPNT] else []
-        self.array, self.deck_log = array, deck_log
+        self.array, self.deck_log, self._recorder.series = array, deck_log, series
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
@@ -301,6 +304,8 @@ class Model:
         """
         if not self.started:
             self.start()
+        if self.writes.made:  # by the function that is obeyed as a whole, and it stays if that is taken back
+            self.note_writes()
         if (sound and self._touched) or (shapes and self._unproved):
             self._prove()
 
@@ -344,6 +349,7 @@ class Model:
 
     def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
         """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
+        self._ready(shapes=command == "split")
         if command == "split":
             return why_uncut(self.array, self._boxes, a, b, c, d)
         if command != "boundary":
@@ -482,7 +488,7 @@ class Model:
         """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
         if len(tf) % 2:
             raise UdecError(8, f"{len(tf)} numbers given", "give t1, f1, t2, f2, ...")
-        self._ready(sound=self._touched)
+        self._ready()
         set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 
     @command
@@ -548,7 +554,7 @@ class Model:
 
         From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
-        self._ready(sound=self._touched)
+        self._ready()
         values = {
             "bulk": bulk,
             "cohesion": cohesion,
@@ -571,7 +577,7 @@ class Model:
             "p4": p4,
         }
         settings.set_property(self.array, material, **values)
-        self._remark(on_properties(material, values))
+        self._remark(on_properties(self.array, material, values))
 
     @numbers
     def gravity(self, gx: float, gy: float) -> None:
@@ -599,7 +605,7 @@ class Model:
 
         Error 26 unless energy("on") began one.
         """
-        self._ready(sound=self._touched)
+        self._ready()
         return balance(self.array.h)
 
     @numbers
@@ -681,7 +687,7 @@ class Model:
             raise
         finally:
             report.close()
-        self.undo.release()
+        self.undo.afresh(self)
         self._keep(watch)
         return done
 
@@ -697,7 +703,7 @@ class Model:
 
         Estimate and bound are those of the present state, which the cycles since then have made.
         """
-        self._ready(sound=self._touched)
+        self._ready()
         return describe(self.array, bound(self.array))
 
     def _judge(self) -> None:
@@ -789,7 +795,7 @@ class Model:
         from udec_ia.output.printout import printout
 
         if any(word.lower() == "energy" for word in what):
-            self._ready(sound=self._touched)
+            self._ready()
         return printout(self.array.h, *(word.lower() for word in what), series=self._recorder.series)
 
     @looking

@@ -39,6 +39,7 @@ class _Waiting:
 
     depth: holds that are open. passing: signals are let through all the same. firm: even the second one
     waits. former: the handlers that `_arrived` stands in for. signals: those that have come, in order.
+    raised: what the last handler has raised.
     """
 
     def __init__(self) -> None:
@@ -47,6 +48,13 @@ class _Waiting:
         self.firm = False
         self.former: dict[int, Any] = {}
         self.signals: list[int] = []
+        self.raised: BaseException | None = None
+
+    def ended(self, error: object) -> None:
+        """Something ends by `error`: if a signal has done that, it is not handed on again."""
+        if isinstance(error, KeyboardInterrupt) or (error is not None and error is self.raised):
+            self.signals.clear()
+            self.raised = None
 
 
 _waiting = _Waiting()
@@ -59,8 +67,12 @@ def _arrived(number: int, frame: Any) -> None:
         _waiting.signals.append(number)
         return
     _waiting.signals[:] = [number] if _waiting.depth > 0 else []
-    _waiting.former[number](number, frame)
-    _waiting.signals.clear()  # it did not raise
+    try:
+        _waiting.former[number](number, frame)
+    except BaseException as error:
+        _waiting.raised = error
+        raise
+    _waiting.signals.clear()
 
 
 class hold:  # noqa: N801 - a context, which reads as a verb
@@ -88,8 +100,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
             return
         _waiting.depth -= 1
         _waiting.passing, _waiting.firm = self.before
-        if isinstance(exception[1], KeyboardInterrupt):
-            _waiting.signals.clear()
+        _waiting.ended(exception[1])
         if _waiting.depth == 0:
             for number, handler in _waiting.former.items():
                 if signal.getsignal(number) is _arrived:
@@ -116,8 +127,8 @@ def passing() -> Iterator[None]:
     try:
         poll()
         yield
-    except KeyboardInterrupt:
-        _waiting.signals.clear()
+    except BaseException as error:
+        _waiting.ended(error)
         raise
     finally:
         _waiting.passing = before

@@ -9,9 +9,11 @@ words bit for bit. The copy is made anew when they have taken as long as a hundr
 or two per cent to the time of many commands, and to take one back takes little more than a hundred copies do.
 
 A command that raises a numbered error has changed no word: ops check before their first change, or go back
-themselves. If groups were made or given back all the same, their words are taken back, too.
+themselves. If groups were made or given back all the same, their words are taken back, too, and so are those
+of the commands before it where several are obeyed as one.
 
-CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). Compiled
+CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). What follows
+them is taken back as far as to their end (`afresh`). Compiled
 passes stop by themselves for want of memory only, at a place from which the next CYCLE goes on (JPHASE).
 Interpreted ones stop at any place: there the words are copied between the pieces of a run, too.
 """
@@ -133,6 +135,7 @@ class Before:
             del value[length:]
         put_common(self.h, self.numbers)
         model.array.h = self.h
+        model.forget_boxes()
 
     def same_groups(self, h: Memory) -> bool:
         """True if `h` has as many groups of every kind as there were."""
@@ -216,6 +219,11 @@ class Undo:
         else:
             self.release()
 
+    def afresh(self, model: Model) -> None:
+        """What was done until now stays, and what follows is taken back to here: a run has ended."""
+        self.release()
+        self.covered, self.doing, self.before = False, [], Before(model)
+
     def release(self) -> None:
         """Let go of the copy, and of its memory."""
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
@@ -223,7 +231,7 @@ class Undo:
     def _begin(self, model: Model) -> None:
         if model.writes.made:
             model.note_writes()
-            self.array = None
+            model.writes.made = False
         self.doing, self.covered, self._start = [], False, perf_counter()
         self.before = Before(model)
         self.busy = True
@@ -231,12 +239,14 @@ class Undo:
     def _end(self, model: Model) -> None:
         """Note what was done, in one step, or that the copy is of no use any more."""
         if self.array is model.array and None not in self.doing:
-            since = [*self.since, *(step for step in self.doing if step is not None)]
             seconds = self.seconds + (perf_counter() - self._start if self.doing else 0.0)
-            left = image(model.array.h)
-            self.since, self.seconds, self.left, self.before = since, seconds, left, None
+            self.left, self.seconds = image(model.array.h), seconds
+            self.since += [step for step in self.doing if step is not None]
+            if seconds > REPEATED * self.cost:
+                self.array, self.since = None, []
         else:
-            self.array, self.before = None, None
+            self.array = None
+        self.before = None
 
     def _copy(self, array: MainArray) -> None:
         self.array, self.since = None, []
@@ -254,7 +264,7 @@ class Undo:
         if before is None:
             return
         changed = self.covered and not (
-            self.doing and isinstance(error, UdecError) and before.same_groups(model.array.h)
+            len(self.doing) == 1 and isinstance(error, UdecError) and before.same_groups(model.array.h)
         )
         before.put_back(model)
         if changed and not self._repeat(model, before):

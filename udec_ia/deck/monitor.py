@@ -40,6 +40,7 @@ COUNTED = {  # what a command that returns a number has done
     "boundary": "condition in the range",
 }
 NONE = {"split": "no block cut", "boundary": "no condition in range"}
+RUNS = ("cycle", "solve")  # what they have done until something ends them stays
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
 
@@ -76,7 +77,7 @@ class Monitor:
             raise type(interrupt)(self.rescue()) from None
         except BrokenPipeError:
             raise
-        except Exception as failure:  # of ours, or of a function of the user's
+        except BaseException as failure:  # of ours, or of a function of the user's
             failure.add_note(f"what was computed is saved in {self.rescue()}")
             raise
 
@@ -94,7 +95,8 @@ class Monitor:
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
         except MemoryError as error:
-            advice = "take a smaller model, or a machine with more memory; nothing was changed"
+            stays = "what was computed is kept" if name in RUNS else "nothing was changed"
+            advice = f"take a smaller model, or a machine with more memory; {stays}"
             raise at(UdecError(1, "this machine has no memory left", advice), call.head) from error
         except UdecError as error:
             raise at(error, call.place_of(error)) from error.__cause__

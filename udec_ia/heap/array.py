@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 import offsets.generated as g
-from offsets import generated
 from offsets.table import Field
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
@@ -32,7 +31,7 @@ def _words(n: int, kind: Any) -> Any:
 
 def variable(h: Memory, field: Field) -> Any:
     """The elements of a variable of the common block, in place."""
-    first = getattr(generated, field.name)
+    first = getattr(g, field.name)
     return {"int": h.ci, "real": h.cr, "double": h.cd}[field.type][first : first + field.count]
 
 

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 import offsets.generated as g
-from offsets import generated
 from offsets.table import Group, Layout, layouts, read_table
 from udec_ia.heap.array import MainArray
 
@@ -41,11 +40,11 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     h.ia[free - 1 : int(h.ci[g.MFREE]) - 1] = 0
     for field in table.common:
         if field.role == "head":
-            i = getattr(generated, field.name)
+            i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
     for kind, (group, _) in kinds.items():
         if group.list_head is not None:
-            h.ci[getattr(generated, group.list_head)] = moved[order[kind][0]]
+            h.ci[getattr(g, group.list_head)] = moved[order[kind][0]]
     h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
     return moved
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from offsets import generated
+import offsets.generated as g
 from offsets.table import Field
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 
@@ -23,7 +23,7 @@ def check_codes(state: State) -> None:
     for field in TABLE.common:
         if field.real or field.target is not None or not field.allowed:
             continue
-        value = state.h.ci[getattr(generated, field.name)]
+        value = state.h.ci[getattr(g, field.name)]
         if not allowed(field, value):
             state.report(2, f"{field.name} is {value}, not {in_words(field)}")
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import offsets.generated as g
-from offsets import generated, read_table
+from offsets import read_table
 from offsets.table import layouts
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, SOFT
@@ -129,11 +129,11 @@ class State:
 
     def common(self, name: str) -> int:
         """An integer of the common block."""
-        return int(self.h.ci[getattr(generated, name)])
+        return int(self.h.ci[getattr(g, name)])
 
     def tolerance(self, name: str) -> float:
         """A real of the common block."""
-        return float(self.h.cr[getattr(generated, name)])
+        return float(self.h.cr[getattr(g, name)])
 
     def get(self, iad: int, name: str) -> int:
         """The integer `name` of the group in use at `iad`."""

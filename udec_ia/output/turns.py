@@ -3,7 +3,8 @@
 One copy has the name. The other, a hidden file beside it, is what is written to: it gets what has come since
 it had the name itself, and takes the name in one step; the copy that had it until then is the next to be
 extended. So every addition costs what is added, twice, and not what is there. Where a file cannot have two
-names, or somebody else has changed one of the copies, the whole is written anew.
+names, or somebody else has changed one of the copies, the whole is written anew, in the place of
+a file of this kind or of none.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from udec_ia.errors import UdecError
-from udec_ia.files import FRONT, check_name, status
+from udec_ia.files import FRONT, check_name, hidden, keep_rights, status
 
 Stamp = tuple[int, int, int, int] | None
 State = tuple[Stamp, Any]  # of a copy: its stamp, and the mark that it has come to
@@ -36,11 +37,10 @@ class Turns:
         except OSError as error:
             raise UdecError(31, f"{path}: {error.strerror or error}") from error
         self.path = path.resolve()
-        self.spare = self.path.with_name(f".{self.path.name}")
+        self.spare = hidden(self.path)
         self._named: State | None = None  # None for a copy that is not there, or not known
         self._other: State | None = None
         self._tidy: Any = None
-        self._taken = False  # the name is ours: it was free, or had a file of this kind
 
     def put(self, mark: Any, whole: Whole, extend: Extend) -> None:
         """Let the named copy come to `mark`. Raises OSError, or error 31 if another kind of file is there."""
@@ -50,7 +50,7 @@ class Turns:
         before, self._other = (self._other if ours else None), None
         try:
             self._bring(before, whole, extend)
-            if not self._taken:
+            if not ours:
                 with self.spare.open("rb") as file:
                     check_name(self.path, file.read(FRONT))
             self._swap(mark, ours)
@@ -84,13 +84,14 @@ class Turns:
     def _swap(self, mark: Any, ours: bool) -> None:
         """Give the hidden copy the name, and hide the one that had it."""
         named, self._named = self._named, None
-        last = self.path.with_name(f".{self.path.name}.last")
-        _remove(last)
+        last, there = hidden(self.path), status(self.path)
+        if there is not None:
+            keep_rights(self.spare, there)
         if ours:
             with suppress(OSError):
                 os.link(self.path, last)
         self.spare.replace(self.path)
-        self._named, self._taken = (_stamp(self.path), mark), True
+        self._named = _stamp(self.path), mark
         if ours and named is not None and last.exists():
             last.replace(self.spare)
             self._other = _stamp(self.spare), named[1]

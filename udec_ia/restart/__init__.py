@@ -8,7 +8,6 @@ any byte is refused before a word of it is believed. `docs/restart-format.md` is
 
 from udec_ia.restart.header import info
 from udec_ia.restart.reader import load
-from udec_ia.restart.recorded import recall
 from udec_ia.restart.writer import save
 
-__all__ = ["info", "load", "recall", "save"]
+__all__ = ["info", "load", "save"]

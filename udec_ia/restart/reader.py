@@ -12,18 +12,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
-import offsets.generated as g
 from offsets.table import Table, TableError, parse, read_table
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
-from udec_ia.kernels.geometry.tolerances import tolset
+from udec_ia.inspect.check_common import check_common
 from udec_ia.ops.laws.law_file import RESULTS
+from udec_ia.ops.run.watch import Series
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
 from udec_ia.restart.layout import differences, losses
+from udec_ia.restart.recorded import recall
 from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
@@ -42,6 +41,7 @@ class Restored(NamedTuple):
     array: MainArray
     deck: list[str]
     laws: dict[str, tuple[str, str]]
+    series: list[Series]
 
 
 def load(path: str | Path) -> Restored:
@@ -53,9 +53,8 @@ def load(path: str | Path) -> Restored:
     path = Path(path)
     with refusing(path), opened(path) as file:
         array = _read_state(file)
-        restored = Restored(array, read_deck(file), read_laws(file))
         _check_heap(array)
-    return restored
+        return Restored(array, read_deck(file), read_laws(file), recall(file, array))
 
 
 @contextmanager
@@ -180,18 +179,6 @@ def _check_heap(array: MainArray) -> None:
     Compiled routines follow these without a further test. Forces and overlaps that have run away are
     taken: such a state is there to be looked at.
     """
-    faults = [violation.message for violation in check_links(array)]
+    faults = [violation.message for violation in check_links(array) or check_common(array)]
     if faults:
         raise RefusedError(f"holds an unsound heap: {shorten(faults)}")
-    _check_tolerances(array)
-
-
-def _check_tolerances(array: MainArray) -> None:
-    """Refuse tolerances that are not those of the rounding length: updates would not come to an end."""
-    reals = array.h.cr
-    written, d = reals.copy(), reals[g.DTOL]
-    tolset(array.h, d)
-    alike = np.allclose(written, reals, rtol=4 * np.finfo(reals.dtype).eps, atol=0, equal_nan=True)
-    reals[:] = written
-    if not (0 <= d < np.inf and alike):
-        raise RefusedError(f"holds tolerances that are not those of its rounding length, {d:g}")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -18,8 +17,7 @@ from udec_ia.ops.commands.history import Definition, definitions
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
-from udec_ia.restart.reader import opened
-from udec_ia.restart.refusal import RefusedError, refusing
+from udec_ia.restart.refusal import RefusedError
 
 TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in the order of Series.numbers
 CHUNK = 512  # numbers that stand together in a dataset that grows
@@ -50,10 +48,9 @@ def extend(parent: h5py.Group, series: Sequence[Series], before: Sequence[int]) 
             dataset[n:] = column.astype(kind)
 
 
-def recall(path: str | Path, array: MainArray) -> list[Series]:
-    """What the restart file `path`, which holds `array`, has recorded. Error 29 if it contradicts itself."""
-    with refusing(Path(path)), opened(Path(path)) as file:
-        return [_recall(file, number, one) for number, one in enumerate(definitions(array), 1)]
+def recall(file: Contents, array: MainArray) -> list[Series]:
+    """What a restart file, which holds `array`, has recorded. RefusedError if it contradicts itself."""
+    return [_recall(file, number, one) for number, one in enumerate(definitions(array), 1)]
 
 
 def _recall(file: Contents, number: int, definition: Definition) -> Series:

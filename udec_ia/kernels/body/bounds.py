@@ -188,15 +188,18 @@ def power_of_loads(h: Memory) -> float:
 
 
 @kernel
-def push_loads(h: Memory) -> None:
-    """Add the loads of all boundary conditions to the force sums."""
+def push_loads(h: Memory, dt: float) -> None:
+    """Add the loads of all boundary conditions to the force sums, and what they put in during `dt` to WDRIVE.
+
+    dt: the time-step that begins, 0 between two cycles.
+    """
     zero = real(h, 0.0)
     iu = h.ci[g.IBNPNT]
     while iu != 0:
         fx, fy, x, y = load(h, iu)
         if fx != zero or fy != zero:
             push_load(h, iu, fx, fy, x, y)
-            h.cd[g.WDRIVE] += power_of_load(h, iu, fx, fy, x, y) * h.cr[g.TDEL]
+            h.cd[g.WDRIVE] += power_of_load(h, iu, fx, fy, x, y) * dt
         iu = iget(h, iu, g.KU)
 
 
@@ -230,7 +233,7 @@ def apply_bounds(h: Memory, energy: Any) -> None:
                 factor = getr(h, iget(h, iu, g.KUS), g.KTNOW)
             _give_velocity(h, iu, factor, energy)
         iu = iget(h, iu, g.KU)
-    push_loads(h)
+    push_loads(h, h.cr[g.TDEL])
     iu = h.ci[g.IBNPNT]
     while iu != 0:
         if iget(h, iu, g.KUFIX) != 0:

@@ -106,7 +106,7 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
         putr(h, idm, g.KUMAX, umax)
         most = max(most, umax)
         if moved > h.cr[g.ETOL] and h.ci[g.NERR] == 0:
-            ip = gone_through(h, idm, moved)
+            ip = gone_through(h, idm)
             if ip != 0:
                 h.ci[g.NERR] = OVERLAP_TOO_GREAT
                 h.ci[g.IERAD] = ip

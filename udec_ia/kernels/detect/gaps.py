@@ -72,15 +72,35 @@ def _arc_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float,
 
 
 @kernel
+def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
+    """True if the point (x, y) lies on the side of the edge that ends at corner `ip` where its block is."""
+    ia = iget(h, ip, g.KR)
+    ax, ay = getr(h, ia, g.KXP), getr(h, ia, g.KYP)
+    return bool((x - ax) * (getr(h, ip, g.KYP) - ay) > (y - ay) * (getr(h, ip, g.KXP) - ax))
+
+
+@kernel
+def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
+    """True if block `ib` holds the point (x, y). ip: a corner near it, iq: the next one; they save time."""
+    if not _lies_behind(h, ip, x, y):
+        return False
+    if not (_lies_behind(h, iq, x, y) or _lies_behind(h, iget(h, ip, g.KR), x, y)):
+        return False
+    return bool(depth_in(h, ib, x, y, real(h, 0.0)) > 0)
+
+
+@kernel
 def stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
-    """True if corner `ip` of block `ib`, rounded, or an edge at it crosses a gap.
+    """True if corner `ip` of block `ib`, rounded, or an edge at it crosses a gap, or the block fills it.
 
     The gap is 2 `half` wide along the unit vector (nx, ny), its middle is at (x, y).
     """
+    iq = next_corner(h, ib, ip)
     return (
         _arc_stands_in(h, ip, x, y, nx, ny, half)
         or _edge_stands_in(h, ip, x, y, nx, ny, half)
-        or _edge_stands_in(h, next_corner(h, ib, ip), x, y, nx, ny, half)
+        or _edge_stands_in(h, iq, x, y, nx, ny, half)
+        or _holds(h, ib, ip, iq, x, y)
     )
 
 

@@ -102,12 +102,39 @@ def arc_point(h: Memory, ip: int, k: int) -> tuple[float, float]:
 
 
 @kernel
-def _depths(h: Memory, ib: int, ip: int, jb: int, k: int, n: int) -> tuple[float, float, float]:
+def _surroundings(h: Memory, jb: int) -> tuple[float, float, float, float]:
+    """Where block `jb` is or, if it deforms freely, was, and CTOL around: x and y from, x and y to."""
+    far = real(h, np.inf)
+    lx, ly, hx, hy = far, far, -far, -far
+    first = iget(h, jb, g.KP)
+    jp = first
+    while True:
+        x, y = getr(h, jp, g.KXP), getr(h, jp, g.KYP)
+        lx, ly, hx, hy = min(lx, x), min(ly, y), max(hx, x), max(hy, y)
+        if iget(h, jb, HEAD) == g.MFDEF:
+            x, y = was_at(h, jb, jp, x, y)
+            lx, ly, hx, hy = min(lx, x), min(ly, y), max(hx, x), max(hy, y)
+        jp = iget(h, jp, g.KR)
+        if jp == first:
+            return lx - h.cr[g.CTOL], ly - h.cr[g.CTOL], hx + h.cr[g.CTOL], hy + h.cr[g.CTOL]
+
+
+@kernel
+def _between(start: float, way: float, low: float, high: float) -> tuple[float, float]:
+    """The parts of a way along one axis at which it comes between `low` and `high`, and goes."""
+    if way == 0:
+        return (0.0, 1.0) if low <= start <= high else (1.0, 0.0)
+    one, two = np.float64((low - start) / way), np.float64((high - start) / way)
+    return max(min(one, two), 0.0), min(max(one, two), 1.0)
+
+
+@kernel
+def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float, float]:
     """How deep point `k` of the arc of corner `ip` of block `ib` lay in block `jb`.
 
-    Before this step, on its way at most, and now. n: number of places on the way that are looked at. A
+    Before this step, on its way at most, and now; no further than to the first place that is too deep. A
     fully-deformable block `jb` is looked at as it was then; another one carries the point's first place
-    along, however fast it turns.
+    along, however fast it turns. What lies far from the block is passed over, however long the way.
     """
     x, y = arc_point(h, ip, k)
     fx, fy = was_at(h, ib, ip, x, y)
@@ -115,23 +142,31 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int, n: int) -> tuple[float
     if iget(h, jb, HEAD) != g.MFDEF:
         fx, fy = carried(h, jb, iget(h, jb, g.KP), fx, fy)
         back = real(h, 0.0)
-    before = depth_in(h, jb, fx, fy, back)
-    most, now = -real(h, np.inf), before
-    for i in range(1, n + 1):
-        part = real(h, i) / real(h, n)
-        now = depth_in(h, jb, fx + (x - fx) * part, fy + (y - fy) * part, back * (real(h, 1.0) - part))
-        most = max(most, now)
+    before, now = depth_in(h, jb, fx, fy, back), depth_in(h, jb, x, y, real(h, 0.0))
+    most = now
+    lx, ly, hx, hy = _surroundings(h, jb)
+    (enters, leaves), (above, below) = _between(fx, x - fx, lx, hx), _between(fy, y - fy, ly, hy)
+    first, last = max(enters, above), min(leaves, below)
+    if first < last:
+        way = np.float64(max(abs(x - fx), abs(y - fy))) * (last - first)
+        n = 1 + int(way / np.float64(h.cr[g.CTOL]) * STEPS)
+        for i in range(n + 1):
+            part = real(h, first + (last - first) * i / n)
+            place = fx + (x - fx) * part, fy + (y - fy) * part
+            most = max(most, depth_in(h, jb, place[0], place[1], back * (real(h, 1.0) - part)))
+            if most > h.cr[g.CTOL]:
+                break
     return before, most, now
 
 
 @kernel
-def _has_gone_in(h: Memory, ib: int, ip: int, jb: int, n: int) -> bool:
+def _has_gone_in(h: Memory, ib: int, ip: int, jb: int) -> bool:
     """True if in this step the arc of corner `ip` of block `ib` was deeper than CTOL in block `jb`.
 
-    Or deeper than FTOL, and it has come in and gone out again. n: as in _depths.
+    Or deeper than FTOL, and it has come in and gone out again.
     """
     for k in range(POINTS if getr(h, ip, g.KRAD) > 0 else 1):
-        before, most, now = _depths(h, ib, ip, jb, k, n)
+        before, most, now = _depths(h, ib, ip, jb, k)
         if most > h.cr[g.CTOL] or (before <= 0 and now <= 0 and most > h.cr[g.FTOL]):
             return True
     return False
@@ -157,9 +192,8 @@ def edge_lies_in(h: Memory, ip: int, jb: int, jp: int) -> bool:
     at = (first + last) * real(h, 0.5)
     x, y = ax + ux * at, ay + uy * at
     vx, vy = getr(h, jp, g.KXP) - getr(h, ja, g.KXP), getr(h, jp, g.KYP) - getr(h, ja, g.KYP)
-    behind = (x - getr(h, ja, g.KXP)) * vy - (
-        y - getr(h, ja, g.KYP)
-    ) * vx  # the block is to the right of its edge
+    # the block is to the right of its edge
+    behind = (x - getr(h, ja, g.KXP)) * vy - (y - getr(h, ja, g.KYP)) * vx
     if first == last or behind <= h.cr[g.CTOL] * np.sqrt(vx * vx + vy * vy):
         return False
     return bool(depth_in(h, jb, x, y, zero) > h.cr[g.CTOL])
@@ -194,12 +228,8 @@ def ways(h: Memory, seg: Any, n: int) -> Any:
 
 
 @kernel
-def gone_through(h: Memory, idm: int, moved: float) -> int:
-    """A corner in domain `idm` that has gone into another block in this step, or through it; 0 if none has.
-
-    moved: greatest relative displacement in x or in y of any two points of the domain in this step.
-    """
-    steps = 1 + int(moved / h.cr[g.CTOL] * real(h, STEPS))
+def gone_through(h: Memory, idm: int) -> int:
+    """A corner in domain `idm` that has gone into another block in this step, or through; 0 if none has."""
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
@@ -210,7 +240,7 @@ def gone_through(h: Memory, idm: int, moved: float) -> int:
             continue
         for one, two in ((i, j), (j, i)):
             ip = seg[one, CORNER]
-            if seg[one, ARC] == 1 and _has_gone_in(h, seg[one, BLOCK], ip, seg[two, BLOCK], steps):
+            if seg[one, ARC] == 1 and _has_gone_in(h, seg[one, BLOCK], ip, seg[two, BLOCK]):
                 return int64(ip)
             edges = seg[one, ARC] + seg[two, ARC] == 0
             if edges and edge_lies_in(h, ip, seg[two, BLOCK], seg[two, CORNER]):

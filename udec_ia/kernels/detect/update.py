@@ -4,6 +4,10 @@ An update makes the most urgent contact that the domain needs and looks again, i
 domain was cut, until nothing more is needed. Blocks that overlap then where no contact can be made are
 error 15. Every single contact leaves a sound map; when memory runs out the update stops between two contacts
 and can be taken up again.
+
+It comes to an end. After a long step contacts are given up first, as long as there is one to give up, and
+only then are contacts made: none twice, and none of them is given up in the same update, unless a domain
+that has not been looked at yet gives up its own. Of these there is one less each time.
 """
 
 from __future__ import annotations
@@ -36,6 +40,9 @@ from udec_ia.kernels.map.segments import (
 from udec_ia.kernels.map.virtual import cut_among_pieces, rehook
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
+SEARCHED = (
+    1.5  # ETOL, the displacement of a domain whose walls stand: what is made then is not given up at once
+)
 WAITING = 64  # domains that may wait for their turn in one update
 
 
@@ -96,6 +103,7 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
         found, merged = give_up_taken(h, idm, seg, n)
         if found:
             return MERGED, merged
+        putr(h, idm, g.KUMAX, h.cr[g.ETOL] * real(h, SEARCHED))
     code, i, j = search(h, seg, n)
     if code <= 0:
         ip = _without_contact(h, seg, n, code, i, j)

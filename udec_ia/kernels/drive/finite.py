@@ -10,13 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 import offsets.generated as g
-from offsets import generated, read_table
+from offsets import read_table
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
 from udec_ia.heap.jit import kernel
 
 # Offsets of all reals of a kind of group, from the field table.
 REALS = {
-    group.name: tuple(getattr(generated, field.name) for field in group.fields if field.real)
+    group.name: tuple(getattr(g, field.name) for field in group.fields if field.real)
     for group in read_table().groups
 }
 OF_BLOCK, OF_CORNER, OF_CONTACT = REALS["block"], REALS["corner"], REALS["contact"]

@@ -95,13 +95,18 @@ def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
 def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
     """True if the unit vector (x, y) leans over neither end of the arc of corner `ip` by more than `slack`.
 
-    Opposite to a blunt arc a vector leans a little over both ends: it does not face the arc at all.
+    Opposite to a blunt arc a vector may lean as little over its ends, and does not face the arc at all. An
+    arc is no longer than half a circle, so for slacks up to 0.5 what faces it is less than 120 degrees from
+    its middle, and what does not is more than 150 degrees away.
     """
     ahead, behind = lean(h, ip, x, y)
     if getr(h, ip, g.KRAD) <= 0:  # a point of an edge: outwards is to the left of its edges
         tx, ty, ux, uy = tangents(h, ip)
         return max(ahead, behind) <= slack and y * (tx + ux) - x * (ty + uy) > 0
-    return max(ahead, behind) <= slack and min(ahead, behind) <= 0
+    mx, my = getr(h, ip, g.KXCP) - getr(h, ip, g.KXP), getr(h, ip, g.KYCP) - getr(h, ip, g.KYP)
+    inwards = x * mx + y * my
+    opposite = inwards > 0 and inwards * inwards > real(h, 0.25) * (mx * mx + my * my)
+    return max(ahead, behind) <= slack and not opposite
 
 
 @inlined

@@ -30,6 +30,7 @@ from udec_ia.ops.common.lists import chain, items
 from udec_ia.ops.common.memory import all_or_nothing, require
 from udec_ia.ops.common.ranges import Range, blocks_in
 
+STAYS = "leave the block fully-deformable"
 TYPES = {"rigid": g.MRIG, "sdef": g.MSDEF, "fdef": g.MFDEF}
 Stress = tuple[float, float, float]  # 11, 12, 22
 
@@ -74,8 +75,8 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
             straighten(array.h, ib)
         _change_all(array, changing, kind)
         if meshed:
-            update_flagged(array)
-            check_overlaps(array, float(array.h.cr[g.DTOL]), "leave the block fully-deformable")
+            update_flagged(array, STAYS)
+            check_overlaps(array, float(array.h.cr[g.DTOL]), STAYS)
             if array.h.ci[g.MCTOT] > 0:
                 renew_forces(array)
 
@@ -87,7 +88,7 @@ def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
         become(h, ib, g.MSDEF)
     if h.ci[g.MCTOT] > 0:
         renew_forces(array)
-        push_loads(h)
+        push_loads(h, h.cr.dtype.type(0))
         for ib in rigid:
             stress = applied_stress(h, ib)
             held(array, f"the stress in block@{ib}", stress)

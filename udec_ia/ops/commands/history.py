@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 import offsets.generated as g
-from offsets import generated
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti, size_of
 from udec_ia.heap.array import MainArray
@@ -95,7 +94,7 @@ def places(array: MainArray) -> np.ndarray:
     found = np.zeros((len(addresses(array)), 2), np.int64)
     for row, (what, _, _) in zip(found, definitions(array), strict=True):
         if what.kind >= COMMON:
-            offset = getattr(generated, what.field.name)
+            offset = getattr(g, what.field.name)
             row[:] = offset[which] if what.group else offset, CODES[what.field.type]
         else:
             row[0] = what.number

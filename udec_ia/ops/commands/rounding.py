@@ -16,6 +16,7 @@ from udec_ia.kernels.map.bridge import flag_all
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.common.memory import all_or_nothing, find_room, keep_spare
 
+STIFFER = "give a greater rounding length, or stiffer joints"
 Point = tuple[float, float]
 STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
 
@@ -82,11 +83,6 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
     if ip != 0:
         place = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP))
         raise _too_deep(h, iget(h, ip, g.KNB), iget(h, iq, g.KNB), overlap, place, advice)
-    if h.ci[g.NERR] == OVERLAP_TOO_GREAT:  # found when the domains were updated
-        ip = int(h.ci[g.IERAD])
-        place = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP))
-        detail = f"with {h.cr[g.DTOL]:g} block@{iget(h, ip, g.KNB)} at ({place[0]:g}, {place[1]:g})"
-        raise UdecError(14, f"{detail} would lie in another block without a contact", advice, parameter="d")
 
 
 def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice: str) -> UdecError:
@@ -98,18 +94,34 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
     return UdecError(14, detail, advice, parameter="d")
 
 
-def refresh(array: MainArray) -> None:
-    """Bring all contacts and domains up to date with a changed rounding length."""
+def refresh(array: MainArray, advice: str = "") -> None:
+    """Bring contacts and domains up to date with a changed rounding length (advice: as below)."""
     settle_all(array.h)
     flag_all(array.h)
-    update_flagged(array)
+    update_flagged(array, advice)
 
 
-def update_flagged(array: MainArray) -> None:
-    """Update every flagged domain, finding memory as needed."""
+def update_flagged(array: MainArray, advice: str = "") -> None:
+    """Update every flagged domain, finding memory as needed.
+
+    Error 15 if there are blocks in each other that can have no contact; 14 with an `advice` on what has just
+    changed their outlines.
+    """
+    array.h.ci[g.NERR] = array.h.ci[g.IERAD] = 0
     keep_spare(array)
     while not update_all(array.h):
         find_room(array)
+    h = array.h
+    if h.ci[g.NERR] != OVERLAP_TOO_GREAT or h.ci[g.MCTOT] == 0:  # blocks that have not moved fit
+        return
+    ip = int(h.ci[g.IERAD])
+    x, y = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP))
+    detail = f"block@{iget(h, ip, g.KNB)} at ({x:g}, {y:g})"
+    if advice:
+        detail = f"with {h.cr[g.DTOL]:g} {detail} would lie in another block without a contact"
+        raise UdecError(14, detail, advice, parameter="d")
+    advice = "put back what was moved, or RESTART from a sound file"
+    raise UdecError(OVERLAP_TOO_GREAT, f"{detail} lies in another block without a contact", advice)
 
 
 def round_corners(array: MainArray, d: float) -> None:
@@ -122,12 +134,10 @@ def round_corners(array: MainArray, d: float) -> None:
     with all_or_nothing(array):
         h = array.h
         h.ci[g.LROUND] = 1
-        hidden = 2.5 * float(
-            h.cr[g.DTOL]
-        )  # a tip stands out of its rounding by less than DTOL; two, and DTOL2
+        hidden = 2.5 * float(h.cr[g.DTOL])  # a tip stands out by less than DTOL; two, and DTOL2
         set_rounding(h, h.cr.dtype.type(d))
-        refresh(array)
-        check_overlaps(array, hidden, "give a greater rounding length, or stiffer joints")
+        refresh(array, STIFFER)
+        check_overlaps(array, hidden, STIFFER)
 
 
 def settle_default(array: MainArray) -> None:

@@ -14,10 +14,11 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
 from udec_ia.heap.memory import lose
 from udec_ia.kernels.contact.ford import restart
+from udec_ia.kernels.detect.gaps import give_up
 from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import crad, is_edge_point
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
-from udec_ia.kernels.map.bridge import delc, flag, to_virtual
+from udec_ia.kernels.map.bridge import flag
 from udec_ia.kernels.map.segments import on_arc
 from udec_ia.ops.common.lists import items
 
@@ -84,21 +85,12 @@ def _take_point_out(h: Memory, ib: int, ip: int) -> None:
         if iget(h, ic, g.KCCOD) == CORNER_CORNER:
             puti(h, ic, g.KCCOD, EDGE_CORNER if iget(h, ic, g.KB1) == ib else CORNER_EDGE)
         elif on_arc(h, ib, ic):
-            _give_up(h, ic)
+            give_up(h, iget(h, ic, g.KD1), ic)
     take_out(h, ib, ip)
     puti(h, iq, g.KR, iget(h, ip, g.KR))
     puti(h, ib, g.KP, iq)
     puti(h, ip, HEAD, 0)
     lose(h, ip, g.NVCR)
-
-
-def _give_up(h: Memory, ic: int) -> None:
-    """Delete contact `ic`, or make it virtual if it is a bridge of the map."""
-    h.ci[g.NBROKE] += 1
-    if iget(h, ic, g.KD1) == iget(h, ic, g.KD2):
-        to_virtual(h, ic)
-    else:
-        delc(h, ic)
 
 
 def flag_around(h: Memory, ib: int) -> None:

@@ -84,11 +84,13 @@ def refit(array: MainArray, mtop: int | None) -> None:
 @contextmanager
 def all_or_nothing(array: MainArray) -> Iterator[None]:
     """Let an error leave the array as it was before the block."""
-    h, before = array.h, array.copy().h
+    h, used = array.h, int(array.h.ci[g.MFREE]) - 1
+    parts = h.ia[:used], h.ci, h.cr, h.cd
+    before = [part.copy() for part in parts]
     try:
         yield
     except UdecError:
-        for part, kept in ((h.ia, before.ia), (h.ci, before.ci), (h.cr, before.cr), (h.cd, before.cd)):
+        for part, kept in zip(parts, before, strict=True):
             part[:] = kept
         array.h = h
         raise

@@ -141,12 +141,12 @@ def _run(
     """`n` cycles, in pieces. Returns how many were completed."""
     if watch is not None:
         watch.begin()
-    done, piece = 0, every or FIRST_PIECE
+    done, piece = 0, FIRST_PIECE
     settled()
     while done < n and not (watch is not None and watch.reached):
         poll()
         start = working_time()
-        before, target = done, min(done + piece, n)
+        before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
             most = min(target - done, runaway.ahead(array.h))
             given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
@@ -154,10 +154,8 @@ def _run(
             settled()
             _raise_error(array, bound.book)
             runaway.look(array)
-        if report is not None:
+        if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
-        if every is not None:
-            continue
         seconds = max(working_time() - start, 1e-6)
         piece = max(1, min(int((done - before) * REPORT_SECONDS / seconds), 4 * piece))
     return done
@@ -257,6 +255,6 @@ def _raise_error(array: MainArray, laws: LawBook) -> None:
     )
     advice = (
         f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
-        "of the critical one: take a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+        "of the critical one: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
     raise UdecError(number, detail, advice, group=group)

@@ -22,10 +22,19 @@ SLIVER = 40  # the mean edge over the shortest, from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
 
-def on_properties(material: int, values: dict[str, float | None]) -> Iterator[str]:
-    """PROPERTY: nothing to set; an angle where a tangent is wanted."""
+def on_properties(array: MainArray, material: int, values: dict[str, float | None]) -> Iterator[str]:
+    """PROPERTY: nothing to set; a density that comes too late; an angle where a tangent is wanted."""
     if all(value is None for value in values.values()):
         yield f"PROPERTY MATERIAL={material} names no property, and none was set"
+    h = array.h
+    if values.get("density") is not None and h.ci[g.MCTOT]:
+        blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+        made = (integers(h, blocks, g.KMAT) == material) & (getr(h, blocks, g.KBM) > 0)
+        if made.any():
+            yield (
+                f"masses were made before the first cycle: the {made.sum()} blocks of material {material} "
+                "keep theirs, and their weight; a new density counts after a new START"
+            )
     for name in TANGENTS:
         value = values.get(name)
         if value is not None and STEEP < value < 90:
