@@ -78,7 +78,7 @@ def test_what_somebody_else_has_changed_is_written_anew(tmp_path: Path, name: st
     if what == "goes":
         file.unlink()
     else:
-        file.write_text("line of somebody else's\n")
+        file.write_text("line 0 and something else\n")
     for _ in range(3):
         text.add()
         assert (tmp_path / "text").read_text() == "".join(text.lines)

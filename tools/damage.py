@@ -24,7 +24,7 @@ import argparse
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -40,6 +40,7 @@ from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import check, check_links
 from udec_ia.inspect.check_codes import allowed
 from udec_ia.inspect.check_groups import TABLE, State
+from udec_ia.ops.run.watch import Series
 from udec_ia.restart import load, save
 
 FILES = 20  # one in so many of the refused changes goes through a file
@@ -216,9 +217,9 @@ def wanted(state: State, word: Word, value: int) -> str:
     return ""
 
 
-def restart_refuses(array: MainArray, file: Path) -> bool:
+def restart_refuses(array: MainArray, series: Sequence[Series], file: Path) -> bool:
     """True if RESTART does not take the array from a sealed file."""
-    save(array, file)
+    save(array, file, series=series)
     try:
         load(file)
     except UdecError as error:
@@ -226,9 +227,9 @@ def restart_refuses(array: MainArray, file: Path) -> bool:
     return False
 
 
-def damage(array: MainArray, changes: int, seed: int, file: Path) -> list[str]:
+def damage(model: Model, changes: int, seed: int, file: Path) -> list[str]:
     """Print what became of the changes, by what the words are. Returns those wrongly taken."""
-    rng = np.random.default_rng(seed)
+    rng, array, series = np.random.default_rng(seed), model.array, model.histories()
     state = State(array)
     by_what: dict[str, list[Word]] = {}
     for word in words(state):
@@ -253,7 +254,7 @@ def damage(array: MainArray, changes: int, seed: int, file: Path) -> list[str]:
         tried[what] += 1
         broken = bool(check_links(changed))
         if not broken or sum(tried.values()) % FILES == 0:
-            assert broken == restart_refuses(changed, file), (word, was, value)
+            assert broken == restart_refuses(changed, series, file), (word, was, value)
         if broken:
             refused[what] += 1
             continue
@@ -280,7 +281,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         model = every_kind(options.build, Path(folder))
         found = model.check()
-        faults = damage(model.array, options.changes, options.seed, Path(folder) / "damaged.h5")
+        faults = damage(model, options.changes, options.seed, Path(folder) / "damaged.h5")
     print(*found, *faults, sep="\n")
     return 1 if faults or found else 0
 

@@ -81,12 +81,15 @@ def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
 
 @kernel
 def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
-    """True if block `ib` holds the point (x, y). ip: a corner near it, iq: the next one; they save time."""
+    """True if block `ib` holds the point (x, y), so deep that it would overlap by FTOL with what comes there.
+
+    ip: a corner near it, iq: the next one; they save time.
+    """
     if not _lies_behind(h, ip, x, y):
         return False
     if not (_lies_behind(h, iq, x, y) or _lies_behind(h, iget(h, ip, g.KR), x, y)):
         return False
-    return bool(depth_in(h, ib, x, y, real(h, 0.0)) > 0)
+    return bool(depth_in(h, ib, x, y, real(h, 0.0)) > h.cr[g.FTOL] * real(h, 0.5))
 
 
 @kernel

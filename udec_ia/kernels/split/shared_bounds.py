@@ -122,11 +122,8 @@ def _share_traction(h: Memory, iu: int, ju: int, z1: float, z2: float) -> None:
     near_start = _copy_after(h, near_end)
     third = real(h, 1.0) / real(h, 3.0)
     for i in range(len(LOADS)):
-        one, two = getr(h, iu, LOADS[i]), getr(h, ju, LOADS[i])
-        t, u = (
-            one + one - two,
-            two + two - one,
-        )  # tractions at the end and at the start, times half the length
+        end, start = getr(h, iu, LOADS[i]), getr(h, ju, LOADS[i])
+        t, u = end + end - start, start + start - end  # tractions there, times half the length
         v = t + (u - t) * one  # and where it is cut
         putr(h, iu, LOADS[i], one * (t + t + v) * third)
         putr(h, near_end, LOADS[i], one * (t + v + v) * third)

@@ -22,7 +22,7 @@ from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.ops.commands.boundary import forget_blocks
-from udec_ia.ops.commands.rounding import check_overlaps, update_flagged
+from udec_ia.ops.commands.rounding import bring_up, check_overlaps
 from udec_ia.ops.commands.straighten import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import constitutive_number, held, material_number
@@ -75,7 +75,7 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
             straighten(array.h, ib)
         _change_all(array, changing, kind)
         if meshed:
-            update_flagged(array, STAYS)
+            bring_up(array)
             check_overlaps(array, float(array.h.cr[g.DTOL]), STAYS)
             if array.h.ci[g.MCTOT] > 0:
                 renew_forces(array)

@@ -83,6 +83,10 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
     if ip != 0:
         place = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP))
         raise _too_deep(h, iget(h, ip, g.KNB), iget(h, iq, g.KNB), overlap, place, advice)
+    found = _found_without_contact(array)
+    if found:
+        detail = f"with {h.cr[g.DTOL]:g} {found} would lie in another block without a contact"
+        raise UdecError(14, detail, advice, parameter="d")
 
 
 def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice: str) -> UdecError:
@@ -94,34 +98,38 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
     return UdecError(14, detail, advice, parameter="d")
 
 
-def refresh(array: MainArray, advice: str = "") -> None:
-    """Bring contacts and domains up to date with a changed rounding length (advice: as below)."""
+def refresh(array: MainArray) -> None:
+    """Bring contacts and domains up to date with a changed rounding length, whatever lies in what."""
     settle_all(array.h)
     flag_all(array.h)
-    update_flagged(array, advice)
+    bring_up(array)
 
 
-def update_flagged(array: MainArray, advice: str = "") -> None:
-    """Update every flagged domain, finding memory as needed.
-
-    Error 15 if there are blocks in each other that can have no contact; 14 with an `advice` on what has just
-    changed their outlines.
-    """
+def bring_up(array: MainArray) -> None:
+    """Update every flagged domain, finding memory as needed. What it may find is left in NERR and IERAD."""
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = 0
     keep_spare(array)
     while not update_all(array.h):
         find_room(array)
+
+
+def update_flagged(array: MainArray) -> None:
+    """Update every flagged domain. Error 15 if there are blocks in each other that can have no contact."""
+    bring_up(array)
+    found = _found_without_contact(array)
+    if found:
+        advice = "put back what was moved, or RESTART from a sound file"
+        raise UdecError(OVERLAP_TOO_GREAT, f"{found} lies in another block without a contact", advice)
+
+
+def _found_without_contact(array: MainArray) -> str:
+    """The block, and where it lies in another one, that updates have found without a contact; "" if none."""
     h = array.h
     if h.ci[g.NERR] != OVERLAP_TOO_GREAT or h.ci[g.MCTOT] == 0:  # blocks that have not moved fit
-        return
+        return ""
     ip = int(h.ci[g.IERAD])
     x, y = float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP))
-    detail = f"block@{iget(h, ip, g.KNB)} at ({x:g}, {y:g})"
-    if advice:
-        detail = f"with {h.cr[g.DTOL]:g} {detail} would lie in another block without a contact"
-        raise UdecError(14, detail, advice, parameter="d")
-    advice = "put back what was moved, or RESTART from a sound file"
-    raise UdecError(OVERLAP_TOO_GREAT, f"{detail} lies in another block without a contact", advice)
+    return f"block@{iget(h, ip, g.KNB)} at ({x:g}, {y:g})"
 
 
 def round_corners(array: MainArray, d: float) -> None:
@@ -136,7 +144,7 @@ def round_corners(array: MainArray, d: float) -> None:
         h.ci[g.LROUND] = 1
         hidden = 2.5 * float(h.cr[g.DTOL])  # a tip stands out by less than DTOL; two, and DTOL2
         set_rounding(h, h.cr.dtype.type(d))
-        refresh(array, STIFFER)
+        refresh(array)
         check_overlaps(array, hidden, STIFFER)
 
 

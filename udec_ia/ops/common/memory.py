@@ -90,6 +90,7 @@ def all_or_nothing(array: MainArray) -> Iterator[None]:
     try:
         yield
     except UdecError:
+        h.ia[used : int(array.h.ci[g.MFREE]) - 1] = 0  # as FIND leaves what it has not handed out
         for part, kept in zip(parts, before, strict=True):
             part[:] = kept
         array.h = h

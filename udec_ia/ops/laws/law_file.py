@@ -27,7 +27,7 @@ from udec_ia.kernels.body.law_call import FIRST, LAST, MATERIAL, STATE, Material
 
 NUMBERS = range(FIRST, LAST + 1)
 RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {f"clj{n}": 2 for n in NUMBERS}  # how many numbers a law returns
-SHIPPED = Path(__file__).parent.parent / "laws"
+SHIPPED = Path(__file__).parents[2] / "laws"
 FORMS = {
     3: "(s11, s12, s22, de11, de12, de22, m) and return ds11, ds12, ds22",
     2: "(fn, fs, dun, dus, un, us, m) and return dfn, dfs",
