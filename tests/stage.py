@@ -13,7 +13,19 @@ from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
-from naive.overlaps import Body, bare, deeper, deepest, depth, outlines, parts, steps_of, touching, within
+from naive.overlaps import (
+    Body,
+    bare,
+    deeper,
+    deepest,
+    depth,
+    outlines,
+    parts,
+    polygons,
+    steps_of,
+    touching,
+    within,
+)
 from shapely.geometry import Polygon
 
 import offsets.generated as g
@@ -197,7 +209,7 @@ class Stage:
         contacts = self.contacts()
         limits = self._limits()
         pressed = [pair for pair, rows in contacts.items() if rows[:, 2].max() > limits[0]]
-        close = [(addresses[i], addresses[j]) for i, j in touching(list(after.values()))]
+        close = [(addresses[i], addresses[j]) for i, j in self._close(list(after.values()))]
         looked_at = sorted(set(chain(*close, *pressed)))
         shapes = dict(zip(looked_at, outlines([after[ib] for ib in looked_at], d), strict=True))
         for pair in pressed:
@@ -217,6 +229,14 @@ class Stage:
             for one, two in combinations(addresses, 2):
                 if frozenset((one, two)) not in contacts:
                     self._crossed(one, two, before, after, limits[1])
+
+    def _close(self, bodies: list[Body]) -> list[tuple[int, int]]:
+        """Rows of the pairs that may overlap; of more than two bodies only those that may do so deeply."""
+        pairs = touching(bodies)
+        if len(bodies) == 2 or not pairs:
+            return pairs
+        deep = deeper(polygons(bodies), pairs, LIMIT * self.d)  # rounded they do not lie deeper
+        return [pair for pair, is_deep in zip(pairs, deep, strict=True) if is_deep]
 
     def _look_at(
         self,

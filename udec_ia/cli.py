@@ -15,12 +15,13 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from threading import current_thread, main_thread
+from typing import Any
 
 import udec_ia
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
 from udec_ia.printable import printable
-from udec_ia.signals import Terminated, hold, passing, terminate
+from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", "check", "info")
@@ -124,20 +125,31 @@ def completed(given: Sequence[str]) -> list[str]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv` (by default that of the process); returns the exit status."""
-    former = None
+    former: dict[int, Any] = {}
     try:
         if current_thread() is main_thread():
-            former = signal.signal(signal.SIGTERM, terminate)
+            former = {number: signal.getsignal(number) for number in SIGNALS}
+            signal.signal(signal.SIGTERM, terminate)
         with hold(), passing():
             return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt as interrupt:
-        saved = interrupt.args[0] if interrupt.args else None
-        told = f": what was computed is saved in {saved}" if saved else ""
-        print(f"\ninterrupted{told}", file=sys.stderr)
+        for number in former:  # nothing is left that a further one could end
+            signal.signal(number, signal.SIG_IGN)
+        print(f"\ninterrupted{_saved(interrupt)}", file=sys.stderr)
         return TERMINATED if isinstance(interrupt, Terminated) else INTERRUPTED
     finally:
-        if former is not None:
-            signal.signal(signal.SIGTERM, former)
+        for number, handler in former.items() if argv is not None else ():  # else the process ends here
+            if handler is not None:  # else it is none of Python's
+                signal.signal(number, handler)
+
+
+def _saved(interrupt: BaseException | None) -> str:
+    """Where a run that was interrupted is saved, however many interrupts came on top of the first."""
+    while interrupt is not None:
+        if isinstance(interrupt, KeyboardInterrupt) and interrupt.args and interrupt.args[0]:
+            return f": what was computed is saved in {interrupt.args[0]}"
+        interrupt = interrupt.__context__
+    return ""
 
 
 def _main(argv: Sequence[str]) -> int:

@@ -123,9 +123,17 @@ def deeper(outlines: Sequence[Polygon], pairs: Sequence[tuple[int, int]], limit:
     return shapely.intersects(whole[i], whole[j]) & reach
 
 
+def polygons(bodies: Sequence[Body]) -> Array:
+    """The outlines of `bodies` as if nothing was rounded, in which the rounded ones lie."""
+    owner = np.repeat(np.arange(len(bodies)), [len(body.corners) for body in bodies])
+    return shapely.polygons(
+        shapely.linearrings(np.concatenate([body.corners for body in bodies]), indices=owner)
+    )
+
+
 def touching(bodies: Sequence[Body]) -> list[tuple[int, int]]:
     """Pairs of bodies whose polygons, not rounded, have points in common: no others can overlap."""
-    whole = [shapely.polygons(body.corners) for body in bodies]
+    whole = polygons(bodies)
     found = shapely.STRtree(whole).query(whole, predicate="intersects").T
     return [(int(i), int(j)) for i, j in found if i < j]
 

@@ -63,23 +63,23 @@ class Monitor:
         Whatever ends it, the state is saved before: UdecError.saved, the argument of KeyboardInterrupt and
         a note to any other exception name the restart file.
         """
-        try:
-            with hold():
+        with hold():  # around all of it: no signal comes between what ends the run and its rescue
+            try:
                 for statement in statements(_awaited(lines), file):
                     self.obey(statement)
                     if self.ended:
                         return
                     poll()
-        except UdecError as error:
-            error.saved = self.rescue(sound=error.number != DAMAGED)
-            raise
-        except KeyboardInterrupt as interrupt:
-            raise type(interrupt)(self.rescue()) from None
-        except BrokenPipeError:
-            raise
-        except BaseException as failure:  # of ours, or of a function of the user's
-            failure.add_note(f"what was computed is saved in {self.rescue()}")
-            raise
+            except UdecError as error:
+                error.saved = self.rescue(sound=error.number != DAMAGED)
+                raise
+            except KeyboardInterrupt as interrupt:
+                raise type(interrupt)(self.rescue()) from None
+            except BrokenPipeError:
+                raise
+            except BaseException as failure:  # of ours, or of a function of the user's
+                failure.add_note(f"what was computed is saved in {self.rescue()}")
+                raise
 
     def obey(self, statement: Statement) -> None:
         """Echo and obey one statement. Raises UdecError with its place."""
@@ -170,7 +170,7 @@ class Monitor:
         """Save the state if it is sound, and end the run. Returns the name of the restart file.
 
         The file is read again and proved before it is named. A failure here must not hide what has gone wrong
-        before; Ctrl-C waits for the file, and then only has the pictures left out.
+        before. However often Ctrl-C is pressed, the file is written; then only the pictures are left out.
         """
         if not self.model.started:
             return None
@@ -178,7 +178,9 @@ class Monitor:
         with suppress(Exception, KeyboardInterrupt), hold():
             if sound:
                 try:
-                    saved = self._proved(self.model.save((self.model.out / RESCUE).absolute()))
+                    with hold(firm=True):
+                        path = self.model.save((self.model.out / RESCUE).absolute())
+                    saved = self._proved(path)
                 except Exception as failure:
                     self._write(f"the state could not be saved: {failure}")
             self.stop()  # which tells what it cannot write
@@ -186,7 +188,12 @@ class Monitor:
 
     def _proved(self, path: Path) -> str:
         """The name of the restart file `path`, which RESTART takes; says what else is wrong in it."""
-        for violation in self.model.check_file(path)[:1]:
+        try:
+            violations = self.model.check_file(path)
+        except KeyboardInterrupt:
+            self._write(f"{path} was written, but not read again and proved: interrupted")
+            raise
+        for violation in violations[:1]:
             self._write(f"the state that is saved is there to be looked at: {violation}")
         return str(path)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 import offsets.generated as g
 from offsets.table import Group, layouts, read_table
+from udec_ia.heap.accessors import size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, groups
 
@@ -68,7 +69,7 @@ class _Reader:
     def addresses(self, kind: str) -> Any:
         """Addresses of all groups of `kind`, in list order; those of blocks block by block."""
         if kind in LISTS:
-            return np.fromiter(groups(self.h, kind), np.int64)
+            return self.listed(kind)
         if kind == "corner":
             return self.corners()
         if kind in SOFT.values():
@@ -86,6 +87,22 @@ class _Reader:
             found = self.field("domain", "KDEX", self.addresses("domain"))
             return self.sound("jointext", found[found != 0])
         return np.empty(0, np.int64)
+
+    def listed(self, kind: str) -> Any:
+        """Addresses along a main list: taken as they come, then tested all at once.
+
+        If that has led astray, the list is followed again with care, which says where it breaks.
+        """
+        (index, link), words, found = LISTS[kind], memoryview(self.h.ia), []
+        iad, step, last = int(self.h.ci[index]), size_of(self.h, link) - 1, self.last_address(kind)
+        while 0 < iad <= last and len(found) < last:
+            found.append(iad)
+            iad = words[iad + step]
+        at = np.array(found, np.int64)
+        good = iad == 0 and not ((at - 1) % self.scheme.ratio).any()
+        if not good or not np.isin(self.h.ia[at - 1], HEADS[kind]).all():
+            return np.fromiter(groups(self.h, kind), np.int64)
+        return at
 
     def chains(self, kind: str, link: str, heads: Any) -> Any:
         """Addresses of the groups of `kind` in the lists that begin at `heads`, linked by `link`."""
