@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from handmade import two_blocks
-from mechanics import box, model
+from mechanics import box, model, on_base
 
 from offsets import generated as g
 from offsets.table import lay_out, read_table
@@ -168,7 +168,7 @@ KILLED = """
 import os, signal, sys
 sys.path.insert(0, sys.argv[2])
 from handmade import two_blocks
-from mechanics import box, model
+from mechanics import box, model, on_base
 from udec_ia.restart import save
 os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)
 save(two_blocks(), sys.argv[1])
@@ -252,3 +252,24 @@ def test_what_rset_has_bent_is_not_cut_after_a_restart(tmp_path: Path) -> None:
         assert refused.value.number == 20
         one.rset(float(corner["KXP"]), int(corner["address"]), offset)
         assert one.split(2, -1, 2, 3) == 2
+
+
+def test_what_an_error_of_the_run_has_spoilt_says_so_when_it_is_taken_up_again(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    m = on_base(b=4, h=2, d=0.1, width=6)
+    m.cycle(1)
+    Model.restore(m.save(tmp_path / "before.h5"))
+    assert "run of this state" not in caplog.text
+    m.boundary(-2, 2, 0.5, 4, yvel=-2 * m.h.cr[g.DTOL] / m.h.cr[g.TDEL])
+    with pytest.raises(UdecError, match="error 15"):
+        m.cycle(100)
+    cycle = m.h.ci[g.MCTOT]
+    again = Model.restore(m.save(tmp_path / "after.h5"))
+    told = f"error 15 in cycle {cycle}, contact overlap too great, has ended a run of this state"
+    assert told in caplog.text
+    assert f"ended     {told}" in info(tmp_path / "after.h5")
+    again.split(0, -2, 0, 4)  # what has happened has happened
+    assert told in info(again.save(tmp_path / "later.h5"))
+    again.start()
+    assert again.h.ci[g.NSPOIL] == 0

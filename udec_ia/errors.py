@@ -89,6 +89,11 @@ ADVICE = {
 }
 
 
+def spoilt(number: int, cycle: int) -> str:
+    """What is to be said of a state that error `number` has ended a run of, in `cycle` (NSPOIL, MCSPOI)."""
+    return f"error {number} in cycle {cycle}, {MESSAGES[number]}, has ended a run of this state"
+
+
 class UdecError(Exception):
     """A numbered error.
 

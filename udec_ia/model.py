@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
 import numba
 import numpy as np
 
-from offsets.generated import DTOL, MCTOT, NBLK, NCON, TIME
-from udec_ia.errors import UdecError
+from offsets.generated import DTOL, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
+from udec_ia.errors import UdecError, spoilt
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -226,6 +226,10 @@ class Model:
             f"{printable(str(source))}: {ci[NBLK]} blocks, {ci[NCON]} contacts, {ci[MCTOT]} cycles, "
             f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
         )
+        if ci[NSPOIL]:
+            self.tell(
+                f"{spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))}: look at it, and go on from one before that"
+            )
         if array.scheme != self.scheme:
             self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
 

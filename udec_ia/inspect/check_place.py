@@ -49,8 +49,12 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
     over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
     facing = np.where(two_arcs[:, None], to_other, -o.e[other])
+    turn = np.maximum(o.turn[k], 0.0)
     angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
-    arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, np.maximum(o.turn[k], 0.0))
+    angle += (
+        2 * np.pi * (angle < turn / 2 - np.pi)
+    )  # what faces away from the arc is nearer to one of its ends
+    arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, turn)
     return Place(
         corner=k,
         on_edge=on_edge,

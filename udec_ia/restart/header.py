@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from offsets.table import read_table
+from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import differences, losses
@@ -64,9 +65,11 @@ def _written(file: Contents) -> str:
 def _state(file: Contents, values: dict[str, Any]) -> list[tuple[str, str]]:
     fixed = file.attribute_numbers("heap/IA", "mtop_fixed", "i1")
     top = f"fixed at {values['MTOP']}" if fixed else "grows as needed"
+    error = int(values.get("NSPOIL", 0))
     blocks = "{NBLK} blocks, {NCON} contacts ({NVIRT} virtual), {NDOM} domains"
     return [
         ("IA()", f"{values['MFREE'] - 1} words in use; its size {top}"),
         ("model", blocks.format(**values)),
         ("run", "{MCTOT} cycles, time {TIME:.6g} s, time-step {TDEL:.6g} s".format(**values)),
+        *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
     ]

@@ -30,11 +30,12 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
-from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
 from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch
 from udec_ia.signals import poll
 
+SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
 Report = Callable[[int], None]
@@ -113,11 +114,16 @@ def cycle(
     runaway = runaway or Runaway()
     runaway.begin(array, bound.own_blocks)
     try:
-        done = _run(array, n, report, every, bound, watch, settled or (lambda: None), runaway)
-    finally:
-        finish(array, watch)
-        runaway.end(array)
-    _check_finite(array)
+        try:
+            done = _run(array, n, report, every, bound, watch, settled or (lambda: None), runaway)
+        finally:
+            finish(array, watch)
+            runaway.end(array)
+        _check_finite(array)
+    except UdecError as error:
+        if error.number in SPOILING:
+            array.h.ci[g.NSPOIL], array.h.ci[g.MCSPOI] = error.number, array.h.ci[g.MCTOT]
+        raise
     return done
 
 
