@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "733a0ea46e4b7c4eedeffaf1777aaf3779607f59ff7626fb3c1078fa90c499aa"
+DIGEST = "11df8e47817e4d1e6d111aabefd4b2d3793e59a079b60f6632565fdd7c9a4e92"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -220,9 +220,7 @@ NWANT = 25  # words that the interrupted routine asks for; 0 when there are enou
 NSPARE = 26  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
 NTIPS = 27  # contacts that the last search refused because a tip stands in their gap
 JPHASE = 28  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = (
-    29  # number of the error that has ended a run of this state and may have left it impossible; 0 for none
-)
+NSPOIL = 29  # number of the error that has ended a run of this state; 0 for none
 MCSPOI = 30  # cycle in which that was; 0 for none
 NCOMI = 31
 

@@ -12,7 +12,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 TABLE = Path(__file__).with_name("groups.table")
@@ -84,7 +84,11 @@ class Table:
 
     def group(self, name: str) -> Group:
         """The group called `name` (block, corner, contact, domain, sdef, zone, gridpoint, jointext)."""
-        return next(g for g in self.groups if g.name == name)
+        return self._by_name[name]
+
+    @cached_property
+    def _by_name(self) -> dict[str, Group]:
+        return {group.name: group for group in self.groups}
 
 
 @dataclass(frozen=True)

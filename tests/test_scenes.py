@@ -19,8 +19,8 @@ from offsets.generated import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIR
 from udec_ia.errors import UdecError
 from udec_ia.model import Model
 
-SCENES = 300
-NARROW = 60  # scenes with the narrowest words
+SCENES = 120
+NARROW = 30  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
 
@@ -86,7 +86,7 @@ def test_contacts_around_small_triangles_are_sound(seed: int, build: str) -> Non
     play(seed, Model(build=build), watch=sound, cycles=SHORT)
 
 
-@pytest.mark.parametrize("first", range(SCENES, SCENES + 30, 5))
+@pytest.mark.parametrize("first", range(SCENES, SCENES + 15, 5))
 def test_contacts_of_random_scenes_are_those_of_brute_force(first: int) -> None:
     for seed in range(first, first + 5):
         play(seed, watch=complete, cycles=(2, 6))

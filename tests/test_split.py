@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from math import hypot
 
 import pytest
@@ -100,3 +102,42 @@ def test_neighbours_agree_whether_a_line_goes_through_their_corner() -> None:
     for end in corners:
         start = before[int(end["KR"])]
         assert hypot(float(end["KXP"] - start["KXP"]), float(end["KYP"] - start["KYP"])) > 0.1
+
+
+# Two blocks have been deleted, what is left of the wall has drifted, and one block hangs beside the one that
+# is cut. The digits count.
+HANGING = """
+from offsets.generated import NVIRT
+from udec_ia import Model
+m = Model("i16r32")
+m.property(1, density=2000.0, kn=491915782.7896072, ks=491915782.7896072, friction=0.0)
+m.block(-0.8407140858875568, 0.8624143440201957, -7.455569719884591, -1.7773446160445632,
+        -11.594716449207512, 8.594760745321626, -4.979860815210477, 11.234519705386383)
+m.split(9.474929731751613, 15.316439443264638, -17.009109822365716, -14.660145567305673)
+m.split(4.564039308449089, 24.568807397148287, -11.669507038251664, -11.98898210125435)
+m.split(6.225720553482501, -15.677360700504071, -9.939530476238028, 20.910679136936242)
+m.split(0.346712357211592, 28.064776676480236, -13.346427063554732, -9.518436767868224)
+m.round(0.021446461627985875)
+m.fix(-8.867829751064301, -8.850584555576324, 7.224007178256988, 7.241252373744965)
+m.gravity(-0.005402126099415442, -7.409758352957441e-06)
+m.damping(0.3360117727876062, 3.313377797975771, "mass")
+m.cycle(0)
+m.delete(-4.3904, -4.3805, 8.9996, 9.0094)
+m.cycle(355)
+m.property(1, friction=0.46526862201502994)
+m.cycle(439)
+m.delete(-4.1999, -4.1838, 2.0550, 2.0711)
+m.cycle(754)
+m.boundary(-2.5028, -2.4955, 0.88386, 0.89105, xvel=0.42255594848208217, yvel=0.0884907033695499)
+m.cycle(378)
+assert m.h.ci[NVIRT] == 1
+assert m.split(-5.976388531794649, 0.23104924243382285, 1.0701375781203333, 1.5631521316201322) == 2
+assert m.check() == []
+m.cycle(100)
+assert m.check() == []
+"""
+
+
+def test_an_update_after_a_cut_may_hang_blocks_elsewhere() -> None:
+    """It went on for ever along the list of the block on which it had found the virtual contact."""
+    subprocess.run([sys.executable, "-W", "ignore", "-c", HANGING], check=True, timeout=300)

@@ -8,6 +8,12 @@ import offsets.generated as g
 from offsets.table import Field
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 
+COMMON = [
+    (field, getattr(g, field.name))
+    for field in TABLE.common
+    if not field.real and field.target is None and field.allowed
+]
+
 
 def check_codes(state: State) -> None:
     """Every integer that routines take as it is, in the groups and in the common block."""
@@ -20,19 +26,17 @@ def check_codes(state: State) -> None:
                 state.report(
                     2, f"{field.name} of {kind}@{addresses[row]} is {values[row]}, not {in_words(field)}"
                 )
-    for field in TABLE.common:
-        if field.real or field.target is not None or not field.allowed:
-            continue
-        value = state.h.ci[getattr(g, field.name)]
-        if not allowed(field, value):
-            state.report(2, f"{field.name} is {value}, not {in_words(field)}")
+    values = state.h.ci.tolist()
+    for field, place in COMMON:
+        if not allowed(field, values[place]):
+            state.report(2, f"{field.name} is {values[place]}, not {in_words(field)}")
 
 
 def allowed(field: Field, values: Numbers) -> Numbers:
     """True for each of `values` that the field may hold."""
-    good = np.zeros(np.shape(values), bool)
-    for low, high in field.allowed or ((-np.inf, None),):
-        good |= (values >= low) & (values <= (np.inf if high is None else high))
+    good = np.asarray(not field.allowed)
+    for low, high in field.allowed:
+        good = good | (values >= low if high is None else (values >= low) & (values <= high))
     return good
 
 

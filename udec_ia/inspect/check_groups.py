@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,7 @@ OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
 TARGETS |= {"item": ("corner", "contact"), "soft": ("sdef", "fdef"), "any": tuple(KIND_CODE)}
 
 
+@cache
 def names(kind: str, role: str) -> tuple[str, ...]:
     """The fields of `kind` that the table gives the role `role`, in table order."""
     return tuple(field.name for field in TABLE.group(kind).fields if field.role == role)
@@ -184,7 +186,7 @@ class State:
             listed.append(iad)
             iad = self.words[iad + step]
         at = np.array(listed, np.int64)
-        good = np.isin(self.h.ia[at - 1], HEADS[kind])
+        good = one_of(self.h.ia[at - 1], HEADS[kind])
         wrong = int(np.argmin(good)) if not good.all() else len(at)
         again = _first_repeated(at[:wrong])
         end = iad if again == len(at) else listed[again]
@@ -398,6 +400,14 @@ class State:
                         chosen = np.flatnonzero(values)
                     for host, value in zip(owner[chosen].tolist(), values[chosen].tolist(), strict=True):
                         yield field.name, host, value
+
+
+def one_of(values: Numbers, few: tuple[int, ...]) -> Numbers:
+    """True for each of `values` that is one of a `few` numbers."""
+    good = values == few[0]
+    for other in few[1:]:
+        good |= values == other
+    return np.asarray(good)
 
 
 def _first_repeated(at: Numbers) -> int:

@@ -119,6 +119,8 @@ def _check_zoned(state: State) -> None:
 
 def _check_cover(state: State) -> None:
     zones, points = state.address["zone"], state.address["gridpoint"]
+    if not len(zones) and not len(points):
+        return
     triples = np.stack([state.column("zone", KZG, i) for i in range(3)], axis=1)
     rows = state.rows("gridpoint", triples)
     known = np.isin(state.owner["zone"], state.rings.block) & (rows >= 0).all(axis=1)

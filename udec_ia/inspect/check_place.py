@@ -51,9 +51,7 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     facing = np.where(two_arcs[:, None], to_other, -o.e[other])
     turn = np.maximum(o.turn[k], 0.0)
     angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
-    angle += (
-        2 * np.pi * (angle < turn / 2 - np.pi)
-    )  # what faces away from the arc is nearer to one of its ends
+    angle += 2 * np.pi * (angle < turn / 2 - np.pi)  # facing away, nearer to the end
     arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, turn)
     return Place(
         corner=k,

@@ -197,8 +197,7 @@ def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
     m = _open_contacts(h, idm, found)
     if m == 0:
         return False, int64(idm)
-    boxes = np.empty((n + m, 4), np.float64)
-    boxes[:n] = ways(h, seg, n)
+    boxes = ways(h, seg, n, m)
     half = h.cr[g.BTOL] * real(h, 0.5)
     for k in range(m):
         _, _, _, x, y, _ = meet(

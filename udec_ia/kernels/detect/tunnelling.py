@@ -207,9 +207,9 @@ def _include(boxes: Any, i: int, x: float, y: float) -> None:
 
 
 @kernel
-def ways(h: Memory, seg: Any, n: int) -> Any:
-    """Boxes of what each segment has passed through in this step."""
-    boxes = np.empty((n, 4), np.float64)
+def ways(h: Memory, seg: Any, n: int, more: int) -> Any:
+    """Boxes of what each segment has passed through in this step, and room for so many `more`."""
+    boxes = np.empty((n + more, 4), np.float64)
     for i in range(n):
         boxes[i, LEFT] = boxes[i, BELOW] = np.inf
         boxes[i, RIGHT] = boxes[i, ABOVE] = -np.inf
@@ -233,7 +233,7 @@ def gone_through(h: Memory, idm: int) -> int:
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
-    pairs = meeting(ways(h, seg, n), n)
+    pairs = meeting(ways(h, seg, n, 0), n)
     for k in range(len(pairs)):
         i, j = pairs[k, 0], pairs[k, 1]
         if seg[i, BLOCK] == seg[j, BLOCK]:

@@ -24,7 +24,7 @@ from udec_ia.kernels.detect.update import update, update_all
 from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
-from udec_ia.kernels.links.lists import idomp, is_corner, nextcp, prevcp
+from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
 from udec_ia.kernels.map.bridge import flag_all
 from udec_ia.kernels.split.crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.shared_bounds import off_grid, share_bounds
@@ -173,18 +173,23 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
 
 @kernel
 def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
-    """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out."""
+    """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out.
+
+    Every domain beside a block follows a contact of it that is not virtual, as the crack's two are not. An
+    update may hang virtual ones on other blocks: none of them is held on to.
+    """
     broken = h.ci[g.NBROKE]
     for k in range(first, n):
         ib = blocks[k]
         ip = iget(h, ib, g.KP)
         item = iget(h, ip, g.KL)
         while item != ip:
-            idm = idomp(h, ib, item)
-            if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not update(h, idm):
-                return False
-            if h.ci[g.NBROKE] != broken:
-                return update_all(h)  # the contact at hand may be gone
+            if is_contact(h, item) and iget(h, item, g.KCCOD) != VIRTUAL:
+                idm = idomp(h, ib, item)
+                if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not update(h, idm):
+                    return False
+                if h.ci[g.NBROKE] != broken:
+                    return update_all(h)  # the contact at hand may be gone
             item = nextcp(h, ib, item)
     return True
 
