@@ -6,9 +6,9 @@ needs a contact of the two blocks nearby; nearer to it than FTOL there is never 
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
-A gap as narrow as that needs no contact if the tip of a third block stands in it, for a contact cannot be
-there. Nor does an overlap of up to FTOL where a third block's tip lies between the two, thinner than the
-overlaps on its two sides: it hands on the force of the one to the other.
+A gap as narrow as that needs no contact if a third block stands in it, for a contact cannot be there; nor
+does an overlap of up to FTOL. The third block may lie in both, deeper than their tips are thick, or have a
+tip between them, thinner than the overlaps on its two sides: it hands on the force of the one to the other.
 """
 
 from __future__ import annotations
@@ -98,8 +98,11 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
         points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []
         if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
             continue
-        reach = -overlap / 2 + o.fine[arc[k]]
-        if overlap > 0 or not _tip_at(o, point[k], reach, state.tolerance("BTOL"), (one, two)):
+        reach = max(-overlap / 2, 0.0) + o.fine[arc[k]]
+        if overlap > state.tolerance("FTOL") or not (
+            _tip_at(o, point[k], reach, state.tolerance("BTOL"), (one, two))
+            or _lies_in_third(o, point[k], (one, two))
+        ):
             state.report(
                 8,
                 f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y}), without "
@@ -117,6 +120,13 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
     from_edge = point - start - along[:, None] * o.t[edge]
     near_arc = np.hypot(*(point - o.c[tip]).T) <= o.r[tip] + reach
     return bool(near_arc.any() or (np.hypot(*from_edge.T) <= reach).any())
+
+
+def _lies_in_third(o: Outlines, point: Numbers, hosts: tuple[int, int]) -> bool:
+    """True if the rounded outline of a third block holds `point`."""
+    near = np.flatnonzero(((o.low <= point) & (point <= o.high)).all(axis=1))
+    thirds = near[~np.isin(near, hosts)]
+    return bool(_in_rounded(o, np.repeat(point[None], len(thirds), axis=0), thirds).any())
 
 
 def _thin_tips(

@@ -14,10 +14,13 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import move_fdef
-from udec_ia.kernels.body.motion import motion
+from udec_ia.kernels.body.motion import FIXED, motion
 from udec_ia.kernels.body.sdef import move_sdef
+from udec_ia.kernels.geometry.shape import keep_circles
 
 TOO_FAR = 36
+KEEP = 16  # cycles from one time to the next that rigid blocks have their circles put back
+FINE = 1e-10  # reals that cannot tell 1 + FINE from 1 need that
 
 
 @inlined
@@ -36,6 +39,8 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
     Error 36 if a block has flown to where nothing can be calculated any more.
     """
     fastest = real(h, 0.0)
+    narrow = real(h, 1.0) + real(h, FINE) == real(h, 1.0)
+    keep = narrow and h.ci[g.MCTOT] % KEEP == 0
     ib = h.ci[g.IBPNT]
     while ib != 0:
         fetch(h, ib, g.NVBL, LEAD)
@@ -49,6 +54,8 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
                 fastest = max(fastest, motion(h, ib))
         else:
             fastest = max(fastest, motion(h, ib))
+        if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != FIXED:
+            keep_circles(h, ib)
         check_place(h, ib)
         ib = iget(h, ib, g.KB)
     return fastest

@@ -18,7 +18,7 @@ import numpy as np
 
 import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.links.lists import next_corner
 
 TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
@@ -111,6 +111,25 @@ def span(h: Memory, ip: int, z: float) -> float:
     return z + z if one or two else z
 
 
+@inlined
+def bent(h: Memory, c1: float, s1: float, c2: float, s2: float) -> bool:
+    """True if edges along (c1, s1) and (c2, s2) make a corner and not a point of one straight edge."""
+    return abs(c2 * s1 - c1 * s2) >= real(h, FLAT)  # sine of the clockwise turn
+
+
+@inlined
+def circle(
+    h: Memory, x: float, y: float, c1: float, s1: float, c2: float, s2: float
+) -> tuple[float, float, float]:
+    """Radius and centre of the circle at the corner (x, y) of the edges along (c1, s1) and (c2, s2).
+
+    The radius in the form with the larger denominator (report 2.3).
+    """
+    d = h.cr[g.DTOL]
+    rad = d * (c1 + c2) / (s1 - s2) if abs(s1 - s2) > abs(c1 - c2) else d * (s1 + s2) / (c2 - c1)
+    return rad, x + (d * c2 + rad * s2), y + (d * s2 - rad * c2)
+
+
 @kernel
 def crad(h: Memory, ib: int) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
@@ -132,22 +151,41 @@ def crad(h: Memory, ib: int) -> int:
                 h.ci[g.LSHORT] = 1
             if span(h, ip, z) - d - d < -h.cr[g.FTOL]:
                 tight = ip
-        turn = c2 * s1 - c1 * s2  # sine of the clockwise turn
         rad = real(h, 0.0)
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        if abs(turn) >= real(h, FLAT) and not on_edge:
-            if abs(s1 - s2) > abs(c1 - c2):  # the form with the larger denominator (report 2.3)
-                rad = d * (c1 + c2) / (s1 - s2)
-            else:
-                rad = d * (s1 + s2) / (c2 - c1)
-            x += d * c2 + rad * s2
-            y += d * s2 - rad * c2
+        if bent(h, c1, s1, c2, s2) and not on_edge:
+            rad, x, y = circle(h, x, y, c1, s1, c2, s2)
         putr(h, ip, g.KRAD, rad)
         putr(h, ip, g.KXCP, x)
         putr(h, ip, g.KYCP, y)
         ip = iq
         if ip == ip0:
             return tight
+
+
+@kernel
+def keep_circles(h: Memory, ib: int) -> None:
+    """Put the circles of block `ib` back to where its corners are.
+
+    Both are moved by themselves. In 32-bit reals far from the origin a block that creeps loses the same part
+    of a digit in each cycle, its circles another part than its corners, and at last it would be told wrongly
+    what stands on an arc and what beside it. A corner with a radius keeps one.
+    """
+    ip0 = iget(h, ib, g.KP)
+    ip = ip0
+    while True:
+        iq = next_corner(h, ib, ip)
+        if getr(h, ip, g.KRAD) != 0:
+            _, c1, s1 = zcs(h, ip)
+            _, c2, s2 = zcs(h, iq)
+            if bent(h, c1, s1, c2, s2):
+                rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
+                putr(h, ip, g.KRAD, rad)
+                putr(h, ip, g.KXCP, x)
+                putr(h, ip, g.KYCP, y)
+        ip = iq
+        if ip == ip0:
+            return
 
 
 @kernel
