@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from offsets import generated as g
 from udec_ia.heap.accessors import puti
+from udec_ia.inspect.check_complete import _lies_in_third
+from udec_ia.inspect.check_geometry import outlines
+from udec_ia.inspect.check_groups import State
 from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.model import Model
 
@@ -48,3 +53,25 @@ def test_what_lies_on_both_sides_of_a_thin_tip() -> None:
     assert not named()
     let_go(wedge, upper)
     assert named()
+
+
+def test_a_point_lies_in_a_third_block_but_not_in_its_rounded_tip() -> None:
+    model = Model()
+    model.block(0, 0, 0, 1, 3, 1, 3, 0)
+    model.split(1, -1, 1, 2)
+    model.split(2, -1, 2, 2)
+    model.round(0.2)
+    with np.errstate(all="ignore"):
+        o = outlines(State(model.array))
+    assert o is not None
+    (third,) = np.flatnonzero((o.low[:, 0] > 0.9) & (o.high[:, 0] < 2.1))
+    others = {0, 1, 2} - {int(third)}
+    one, two = others
+    for point, there in (
+        ((1.5, 0.5), True),
+        ((1.01, 0.5), True),
+        ((1.01, 0.01), False),
+        ((0.99, 0.5), False),
+    ):
+        assert _lies_in_third(o, np.array(point), (one, two)) is there
+    assert not _lies_in_third(o, np.array((1.5, 0.5)), (one, int(third)))
