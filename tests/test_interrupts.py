@@ -572,3 +572,35 @@ def test_ctrl_c_stops_an_animated_run_as_soon(tmp_path: Path) -> None:
         signal.signal(signal.SIGALRM, former)
     assert time.monotonic() - start < 10
     assert m.check() == []
+
+
+def test_numbers_that_were_changed_before_words_are_taken_back_with_them() -> None:
+    m = blocks()
+    before = words(m)
+
+    def action() -> None:
+        m.energy("on")
+        m.gravity(1, 2)
+        m.split(-1, 2, 5, 2.1)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        m.whole(action)
+    assert words(m) == before
+    assert m.split(-1, 2, 5, 2.1) == 2
+
+
+def test_a_restart_and_what_follows_it_are_taken_back(tmp_path: Path) -> None:
+    m, other = blocks(), Model()
+    other.block(0, 0, 0, 1, 1, 1, 1, 0)
+    path, before = other.save(tmp_path / "other.h5"), words(m)
+
+    def action() -> None:
+        m.restart(path)
+        m.split(-1, 0.4, 2, 0.5)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        m.whole(action)
+    assert words(m) == before
+    assert m.check() == []

@@ -3,10 +3,10 @@
     python tools/interrupts.py --lines 2000 --signals 500 --seed 1
 
 First KeyboardInterrupt (Ctrl-C that does not wait) or MemoryError is raised at random lines of Python inside
-every command of a model with blocks of all types, conditions, histories and pictures, typed and in Python.
-Words, common block and what the model holds in Python are compared with those before and after bit for bit; a
-CYCLE may also have ended between two cycles. Lines of signals.py are left out: what holds interrupts back is
-not interrupted itself.
+every command of a model with blocks of all types, conditions, histories and pictures, typed, in Python, and
+two of them obeyed as one. Words, common block and what the model holds in Python are compared with those
+before and after bit for bit; a CYCLE may also have ended between two cycles. Lines of signals.py are left
+out: what holds interrupts back is not interrupted itself.
 
 Then SIGINT or SIGTERM is sent to processes that run random decks, at random moments. The restart file that
 they name has to be sound, and the exit status true. Failures are printed; with one the exit status is 1.
@@ -26,6 +26,7 @@ import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -102,6 +103,10 @@ SAVE other.h5
 RESTART
 START
 STOP""".splitlines()
+
+ALONE = ("BLOCK", "CYCLE", "SOLVE", "PRINT", "DUMP", "PLOT", "SAVE", "RESTART", "START", "STOP")
+PAIRED = [line for line in COMMANDS if not line.startswith(ALONE)]  # of which two may be obeyed as one
+PAIRS = 0.25
 
 
 # ---- what a model holds
@@ -211,7 +216,10 @@ class Lines:
         key = line, typed
         before = state(self.model)
         if key not in self.counts:
-            with Injector() as counter:
+            with (
+                Injector() as counter,
+                suppress(UdecError),
+            ):  # the second of two may refuse what the first left
                 self.obey(line, typed)
             self.counts[key] = counter.count
             self.fresh(line)
@@ -242,7 +250,10 @@ class Lines:
         return wrong and f"{line} ({'typed' if typed else 'Python'}): {injector.raised}: {wrong}"
 
     def obey(self, line: str, typed: bool) -> None:
-        """Obey `line`, as the monitor does or by the method alone."""
+        """Obey `line`, as the monitor does or by the method alone; several lines are obeyed as one."""
+        if "\n" in line:
+            self.model.whole(lambda: [self.obey(one, False) for one in line.split("\n")])
+            return
         model, monitor = self.model, Monitor(self.model, io.StringIO())
         (statement,) = statements([line], "line")
         if typed:
@@ -270,6 +281,8 @@ def interrupt_lines(n: int, seed: int, seconds: float, build: str = "i32r64") ->
             line = COMMANDS[int(rng.integers(len(COMMANDS)))]
             if line.startswith("PLOT 0") and rng.random() < 0.8:
                 line = "PLOT 1"
+            if rng.random() < PAIRS:
+                line = "\n".join(str(one) for one in rng.choice(PAIRED, 2))
             typed, k = bool(rng.integers(2)), int(rng.integers(10**9))
             failure = lines.one(line, typed, k, RAISED[int(rng.integers(2))])
             if failure:

@@ -119,6 +119,7 @@ class Before:
     """
 
     def __init__(self, model: Model) -> None:
+        self.array: MainArray = model.array
         self.h: Memory = model.array.h
         self.numbers = [part.copy() for part in common(self.h)]
         self.parts = [(one, vars(one).copy()) for one in model.parts()]
@@ -203,8 +204,11 @@ class Undo:
         self.doing.append(step if step is not None and step.lasts and not self.doing else None)
 
     def keep(self, array: MainArray) -> None:
-        """See to it that the words of `array` can be had again as they were before what is being done."""
-        if not self.covered:
+        """See to it that the words of `array` can be had again as they were before what is being done.
+
+        Those of an array that has come in its course, by START or RESTART, are not needed again.
+        """
+        if not self.covered and (self.before is None or self.before.array is array):
             follows = self.array is array and image(array.h) == self.left
             if not follows or self.seconds > REPEATED * self.cost:
                 self._copy(array)
@@ -254,7 +258,9 @@ class Undo:
         if len(self.words) < used or self.words.dtype != array.h.ia.dtype:
             self.words = np.empty(2 * used, array.h.ia.dtype)
         self.words[:used] = array.h.ia[:used]
-        self.numbers, self.left = [part.copy() for part in common(array.h)], image(array.h)
+        # what is being done may have changed numbers before it came to words
+        self.numbers = [part.copy() for part in (self.before.numbers if self.before else common(array.h))]
+        self.left = image(array.h)
         self.seconds, self.cost = 0.0, perf_counter() - start
         self.array = array
 
