@@ -93,7 +93,8 @@ class _Reader:
 
         If that has led astray, the list is followed again with care, which says where it breaks.
         """
-        (index, link), words, found = LISTS[kind], memoryview(self.h.ia), []
+        (index, link), words = LISTS[kind], memoryview(self.h.ia)
+        found: list[int] = []
         iad, step, last = int(self.h.ci[index]), size_of(self.h, link) - 1, self.last_address(kind)
         while 0 < iad <= last and len(found) < last:
             found.append(iad)
