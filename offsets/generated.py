@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "11df8e47817e4d1e6d111aabefd4b2d3793e59a079b60f6632565fdd7c9a4e92"
+DIGEST = "93600f2ddacc27b2bd90df877c47458b6738393dcf244c20a4373e6f1dff987b"
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block

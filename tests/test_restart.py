@@ -19,7 +19,7 @@ from mechanics import box, model, on_base
 from offsets import generated as g
 from offsets.table import lay_out, read_table
 from udec_ia import Model
-from udec_ia.errors import UdecError
+from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
@@ -273,3 +273,5 @@ def test_what_an_error_of_the_run_has_spoilt_says_so_when_it_is_taken_up_again(
     assert told in info(again.save(tmp_path / "later.h5"))
     again.start()
     assert again.h.ci[g.NSPOIL] == 0
+    (numbers,) = (field.allowed for field in read_table().common if field.name == "NSPOIL")
+    assert numbers == ((0, max(MESSAGES)),)

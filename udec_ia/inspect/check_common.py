@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 import offsets.generated as g
-from udec_ia.errors import MESSAGES
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check_groups import Violation
 from udec_ia.kernels.drive.cycle import BLOCKS, BROKEN
@@ -22,7 +21,6 @@ def check_common(array: MainArray) -> list[Violation]:
     trusted = [
         (ci[g.MTOP] == size and 1 <= ci[g.MFREE] <= size + 1, 1, f"MFREE and MTOP are not of {size} words"),
         (BLOCKS <= ci[g.JPHASE] <= BROKEN, 5, f"JPHASE is {ci[g.JPHASE]}, not {BLOCKS} to {BROKEN}"),
-        (ci[g.NSPOIL] in (0, *MESSAGES), 5, f"NSPOIL is {ci[g.NSPOIL]}, which is no error"),
         (0 <= d < np.inf and alike, 5, f"tolerances are not those of the rounding length, {d:g}"),
     ]
     return [Violation(number, message) for true, number, message in trusted if not true]
