@@ -71,7 +71,8 @@ def test_a_point_lies_in_a_third_block_but_not_in_its_rounded_tip() -> None:
         ((1.5, 0.5), True),
         ((1.01, 0.5), True),
         ((1.01, 0.01), False),
+        ((1.003, 0.5), False),
         ((0.99, 0.5), False),
     ):
-        assert _lies_in_third(o, np.array(point), (one, two)) is there
-    assert not _lies_in_third(o, np.array((1.5, 0.5)), (one, int(third)))
+        assert _lies_in_third(o, np.array(point), 0.005, (one, two)) is there
+    assert not _lies_in_third(o, np.array((1.5, 0.5)), 0.005, (one, int(third)))

@@ -168,7 +168,7 @@ KILLED = """
 import os, signal, sys
 sys.path.insert(0, sys.argv[2])
 from handmade import two_blocks
-from mechanics import box, model, on_base
+from mechanics import box, model
 from udec_ia.restart import save
 os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)
 save(two_blocks(), sys.argv[1])

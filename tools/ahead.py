@@ -16,7 +16,6 @@ from pathlib import Path
 from time import monotonic
 
 ROOT = Path(__file__).parent.parent
-SCHEMES = ("i32r64", "i16r32", "i16r64", "i32r32", "i64r64")
 RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of tests/scenes.py, and of tests/soft_scenes.py
 
 
@@ -38,9 +37,11 @@ def compile_for(build: str) -> str:
 def main() -> None:
     """Compile for all schemes in as many processes as the first argument says."""
     os.environ.setdefault("UDEC_CACHE", str(ROOT / ".udec_cache"))  # where tests/conftest.py has it
+    from udec_ia.heap.words import ALL_SCHEMES
+
     start = monotonic()
     with multiprocessing.get_context("spawn").Pool(int(sys.argv[1]), maxtasksperchild=1) as pool:
-        for build in pool.imap_unordered(compile_for, SCHEMES):
+        for build in pool.imap_unordered(compile_for, ALL_SCHEMES):
             print(f"{build} is ready after {monotonic() - start:.0f} s", flush=True)
 
 

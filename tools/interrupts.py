@@ -216,10 +216,8 @@ class Lines:
         key = line, typed
         before = state(self.model)
         if key not in self.counts:
-            with (
-                Injector() as counter,
-                suppress(UdecError),
-            ):  # the second of two may refuse what the first left
+            # the second of two may refuse what the first has left
+            with Injector() as counter, suppress(UdecError):
                 self.obey(line, typed)
             self.counts[key] = counter.count
             self.fresh(line)

@@ -227,9 +227,8 @@ class Model:
             f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
         )
         if ci[NSPOIL]:
-            self.tell(
-                f"{spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))}: look at it, and go on from one before that"
-            )
+            told = spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))
+            self.tell(f"{told}: look at it, and go on from one before that")
         if array.scheme != self.scheme:
             self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
 

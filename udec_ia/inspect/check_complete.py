@@ -28,6 +28,7 @@ Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the ot
 CHUNK = 20_000  # pairs of blocks looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
 FAR = 3.0  # rounding lengths that a corner is away from an edge at most, where its arc meets the edge
+AROUND = 8  # directions in which it is looked whether a block holds a point
 AWRY_POINT = 0.2  # the same for a point of an edge: a contact is formed up to an angle of 0.25
 
 
@@ -101,7 +102,7 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
         reach = max(-overlap / 2, 0.0) + o.fine[arc[k]]
         if overlap > state.tolerance("FTOL") or not (
             _tip_at(o, point[k], reach, state.tolerance("BTOL"), (one, two))
-            or _lies_in_third(o, point[k], (one, two))
+            or _lies_in_third(o, point[k], state.tolerance("FTOL") / 2, (one, two))
         ):
             state.report(
                 8,
@@ -122,11 +123,18 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
     return bool(near_arc.any() or (np.hypot(*from_edge.T) <= reach).any())
 
 
-def _lies_in_third(o: Outlines, point: Numbers, hosts: tuple[int, int]) -> bool:
-    """True if the rounded outline of a third block holds `point`."""
+def _lies_in_third(o: Outlines, point: Numbers, depth: float, hosts: tuple[int, int]) -> bool:
+    """True if the rounded outline of a third block holds `point` and all that is nearer to it than `depth`.
+
+    That is the depth from which on the program makes no contact there (detect/gaps.py).
+    """
     near = np.flatnonzero(((o.low <= point) & (point <= o.high)).all(axis=1))
     thirds = near[~np.isin(near, hosts)]
-    return bool(_in_rounded(o, np.repeat(point[None], len(thirds), axis=0), thirds).any())
+    held = np.ones(len(thirds), bool)
+    for angle in np.arange(AROUND) * (2 * np.pi / AROUND):
+        beside = point + depth * np.array([np.cos(angle), np.sin(angle)])
+        held &= _in_rounded(o, np.repeat(beside[None], len(thirds), axis=0), thirds)
+    return bool(held.any())
 
 
 def _thin_tips(

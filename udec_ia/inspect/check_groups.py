@@ -20,7 +20,7 @@ import offsets.generated as g
 from offsets import read_table
 from offsets.table import layouts
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import HEADS, SOFT
+from udec_ia.inspect.walk import HEADS, SOFT, follow, one_of
 
 Numbers = NDArray[Any]
 
@@ -178,13 +178,8 @@ class State:
         head = TABLE.group(kind).list_head
         assert head is not None
         (link,) = names(kind, "next")
-        iad, size, step = self.common(head), self.layout[kind].size, self.offset[link] - 1
-        listed: list[int] = []
-        for _ in range(self.free // size + 1):
-            if not 0 < iad <= self.free - size or (iad - 1) % self.ratio:
-                break
-            listed.append(iad)
-            iad = self.words[iad + step]
+        last = self.free - self.layout[kind].size
+        listed, iad = follow(self.words, self.common(head), self.offset[link] - 1, last, self.ratio)
         at = np.array(listed, np.int64)
         good = one_of(self.h.ia[at - 1], HEADS[kind])
         wrong = int(np.argmin(good)) if not good.all() else len(at)
@@ -400,14 +395,6 @@ class State:
                         chosen = np.flatnonzero(values)
                     for host, value in zip(owner[chosen].tolist(), values[chosen].tolist(), strict=True):
                         yield field.name, host, value
-
-
-def one_of(values: Numbers, few: tuple[int, ...]) -> Numbers:
-    """True for each of `values` that is one of a `few` numbers."""
-    good = values == few[0]
-    for other in few[1:]:
-        good |= values == other
-    return np.asarray(good)
 
 
 def _first_repeated(at: Numbers) -> int:

@@ -12,9 +12,8 @@ import numpy as np
 
 import offsets.generated as g
 from offsets.table import Group, layouts, read_table
-from udec_ia.heap.accessors import size_of
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, groups
+from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, follow, groups, one_of
 
 
 def table(array: MainArray, kind: str) -> Any:
@@ -93,15 +92,12 @@ class _Reader:
 
         If that has led astray, the list is followed again with care, which says where it breaks.
         """
-        (index, link), words = LISTS[kind], memoryview(self.h.ia)
-        found: list[int] = []
-        iad, step, last = int(self.h.ci[index]), size_of(self.h, link) - 1, self.last_address(kind)
-        while 0 < iad <= last and len(found) < last:
-            found.append(iad)
-            iad = words[iad + step]
+        index, _ = LISTS[kind]
+        (link,) = (field.name for field in self.groups[kind].fields if field.role == "next")
+        step, words = self.layouts[kind].offset[link] - 1, memoryview(self.h.ia)
+        found, end = follow(words, int(self.h.ci[index]), step, self.last_address(kind), self.scheme.ratio)
         at = np.array(found, np.int64)
-        good = iad == 0 and not ((at - 1) % self.scheme.ratio).any()
-        if not good or not np.isin(self.h.ia[at - 1], HEADS[kind]).all():
+        if end != 0 or not one_of(self.h.ia[at - 1], HEADS[kind]).all():
             return np.fromiter(groups(self.h, kind), np.int64)
         return at
 
