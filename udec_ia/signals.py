@@ -7,7 +7,8 @@ take long let it through on the way: a run between two pieces of its cycles (`po
 at any time (`passing`). Who presses Ctrl-C twice does not wait: the command is taken back (transaction.py).
 
 An exception that is raised where Python cleans up, in a `__del__` or a callback of a weak reference, is lost.
-So what is let through at any time stays noted until it has ended something, else it is handed on again.
+So what is let through at any time stays noted until it has ended something, else it is handed on again; that
+it was lost on the way is then nothing to tell.
 
 Handlers belong to the main thread of a process. In another one nothing waits, for no signal comes there. A
 signal that kills or is ignored is left alone: SIGTERM waits where the command line has it raise Terminated.
@@ -38,8 +39,8 @@ class _Waiting:
     """What all holds of the process share.
 
     depth: holds that are open. passing: signals are let through all the same. firm: even the second one
-    waits. former: the handlers that `_arrived` stands in for. signals: those that have come, in order.
-    raised: what the last handler has raised.
+    waits. former: the handlers that `_arrived` stands in for. tell_lost: what `_lost` stands in for.
+    signals: those that have come, in order. raised: what the last handler has raised.
     """
 
     def __init__(self) -> None:
@@ -47,12 +48,17 @@ class _Waiting:
         self.passing = False
         self.firm = False
         self.former: dict[int, Any] = {}
+        self.tell_lost = sys.unraisablehook
         self.signals: list[int] = []
         self.raised: BaseException | None = None
 
+    def has_raised(self, error: object) -> bool:
+        """True if `error` comes from a signal."""
+        return isinstance(error, KeyboardInterrupt) or (error is not None and error is self.raised)
+
     def ended(self, error: object) -> None:
         """Something ends by `error`: if a signal has done that, it is not handed on again."""
-        if isinstance(error, KeyboardInterrupt) or (error is not None and error is self.raised):
+        if self.has_raised(error):
             self.signals.clear()
             self.raised = None
 
@@ -75,6 +81,12 @@ def _arrived(number: int, frame: Any) -> None:
     _waiting.signals.clear()
 
 
+def _lost(unraisable: sys.UnraisableHookArgs) -> None:
+    """Tell of an exception that was lost, unless it comes from a signal that is handed on again."""
+    if not (_waiting.signals and _waiting.has_raised(unraisable.exc_value)):
+        _waiting.tell_lost(unraisable)
+
+
 class hold:  # noqa: N801 - a context, which reads as a verb
     """Within, signals wait. firm: also the second one of a kind, which else does not."""
 
@@ -92,6 +104,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                 if callable(handler) and handler is not _arrived:
                     _waiting.former[number] = handler
                     signal.signal(number, _arrived)
+            _waiting.tell_lost, sys.unraisablehook = sys.unraisablehook, _lost
         _waiting.passing, _waiting.firm = False, self.firm or _waiting.firm
         _waiting.depth += 1
 
@@ -105,6 +118,8 @@ class hold:  # noqa: N801 - a context, which reads as a verb
             for number, handler in _waiting.former.items():
                 if signal.getsignal(number) is _arrived:
                     signal.signal(number, handler)
+            if sys.unraisablehook is _lost:
+                sys.unraisablehook = _waiting.tell_lost
         if _waiting.depth == 0 or _waiting.passing:
             poll()
 

@@ -64,26 +64,29 @@ def has_twin(h: Memory, ic: int) -> bool:
 
 
 @inlined
-def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool) -> bool:
-    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other."""
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: float, ny: float) -> bool:
+    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other.
+
+    (nx, ny): normal of the contact, away from the block of the corner.
+    """
     x, y, most = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
-    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y) < -most:
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -most:
         return True
-    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y) > most
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > most
 
 
 @inlined
-def overtaken(h: Memory, ic: int) -> bool:
-    """True if contact `ic` and a neighbour on the same segment have passed each other.
+def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if contact `ic`, of the normal (nx, ny), and a neighbour on the same segment are past each other.
 
     If it is open, something has slipped through its gap.
     """
     code = iget(h, ic, g.KCCOD)
     after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
-    if passed(h, ic, after, before, ip, code != EDGE_CORNER):
+    if passed(h, ic, after, before, ip, code != EDGE_CORNER, nx, ny):
         return True
     after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
-    return passed(h, ic, after, before, ip, code != CORNER_EDGE)
+    return passed(h, ic, after, before, ip, code != CORNER_EDGE, -nx, -ny)
 
 
 @inlined
@@ -102,7 +105,7 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
-    if turned_away(h, ic, nx, ny) or overtaken(h, ic):
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
@@ -123,7 +126,7 @@ def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         code == CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
     ):
         return False
-    return overtaken(h, ic)
+    return overtaken(h, ic, nx, ny)
 
 
 @inlined

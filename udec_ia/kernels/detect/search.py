@@ -16,6 +16,7 @@ import numpy as np
 import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.detect.crossing import would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between
 from udec_ia.kernels.geometry.contact_geometry import (
@@ -133,15 +134,29 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
     return False
 
 
+@inlined
+def _passed(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
+    """What lies `way` beyond contact `ic` of block `ib`: if that is with block `jb`, too, FTOL is too far."""
+    if other(h, ib, ic) == jb and way > h.cr[g.FTOL]:
+        return way + h.cr[g.ETOL]
+    return way
+
+
 @kernel
-def _misplaced(h: Memory, ib: int, ip: int, arc: bool, iad: int, x: float, y: float) -> float:
-    """By how much the point (x, y) lies outside the exposure of a segment that follows item `iad`."""
+def _misplaced(
+    h: Memory, ib: int, ip: int, arc: bool, iad: int, jb: int, x: float, y: float, nx: float, ny: float
+) -> float:
+    """By how much a contact at (x, y) lies outside the exposure of a segment that follows item `iad`.
+
+    (nx, ny): its normal, away from block `ib`. Two contacts with the same block `jb` come out of order only
+    where a tip is inside another: what passes the other one by more than FTOL counts as ETOL further outside.
+    """
     worst = real(h, 0.0)
     before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
     if same_segment(h, before, ip, arc):
-        worst = max(worst, ahead_by(h, ip, arc, before, x, y))
+        worst = max(worst, _passed(h, ib, before, jb, ahead_by(h, ip, arc, before, x, y, nx, ny)))
     if same_segment(h, after, ip, arc):
-        worst = max(worst, -ahead_by(h, ip, arc, after, x, y))
+        worst = max(worst, _passed(h, ib, after, jb, -ahead_by(h, ip, arc, after, x, y, nx, ny)))
     return worst
 
 
@@ -218,11 +233,11 @@ def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     gap = nx, ny, overlap, x, y
     if overlap > h.cr[g.FTOL] and do_not_meet(h, ib, jb, gap):
         return 0, zero
-    if overlap > h.cr[g.CTOL]:
+    if overlap > h.cr[g.CTOL] or would_cross(h, ib, seg[i, ITEM], jb, seg[j, ITEM], x, y):
         return _unless_stray(h, ib, jb, overlap, x, y), zero
     wrong = max(
-        _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], x, y),
-        _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], x, y),
+        _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], jb, x, y, nx, ny),
+        _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], ib, x, y, -nx, -ny),
     )
     if wrong > h.cr[g.ETOL]:
         return _unless_stray(h, ib, jb, overlap, x, y), zero

@@ -21,7 +21,13 @@ import numpy as np
 import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import (
+    CORNER_CORNER,
+    CORNER_EDGE,
+    EDGE_CORNER,
+    VIRTUAL,
+    meet,
+)
 from udec_ia.kernels.geometry.shape import is_edge_point
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, nextcp, prevcp
 from udec_ia.kernels.map.bridge import nextd
@@ -63,27 +69,26 @@ def way_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
 
 
 @kernel
-def _foot(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
-    """Where the arc of corner `ip` is nearest to the point (x, y) outside it; a point inside stays."""
+def _on_the_arc(h: Memory, ip: int, nx: float, ny: float) -> tuple[float, float]:
+    """Point of the circle of corner `ip` in the direction (nx, ny) from its centre."""
     rad = getr(h, ip, g.KRAD)
-    dx, dy = x - getr(h, ip, g.KXCP), y - getr(h, ip, g.KYCP)
-    z = np.sqrt(dx * dx + dy * dy)
-    if z <= rad:
-        return x, y
-    return getr(h, ip, g.KXCP) + dx / z * rad, getr(h, ip, g.KYCP) + dy / z * rad
+    return getr(h, ip, g.KXCP) + nx * rad, getr(h, ip, g.KYCP) + ny * rad
 
 
 @kernel
-def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float) -> float:
-    """How far contact `ic` on a segment of corner `ip` lies ahead of the point (x, y), clockwise.
+def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
+    """How far contact `ic` on a segment of corner `ip` lies ahead of a contact at (x, y), clockwise.
 
-    On an arc it is the two places on the arc that count, along its chord: an open contact lies off the arc by
-    half of its gap, and where the arc is narrow that is far to one side.
+    (nx, ny): normal of the latter, away from the block of the corner. On an arc it is the two places on the
+    arc that count, along its chord. A contact point lies in the middle of gap or overlap: where the arc is
+    narrow, a gap takes it far to one side, and an overlap beyond the circle's centre to the other side.
     """
     ax, ay, bx, by = x, y, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
     if arc and getr(h, ip, g.KRAD) > 0:
-        ax, ay = _foot(h, ip, ax, ay)
-        bx, by = _foot(h, ip, bx, by)
+        iq = iget(h, ic, g.KCP1)
+        mx, my, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iq, iget(h, ic, g.KCP2))
+        ax, ay = _on_the_arc(h, ip, nx, ny)
+        bx, by = _on_the_arc(h, ip, mx, my) if iq == ip else _on_the_arc(h, ip, -mx, -my)
     tx, ty, z = way_along(h, ip, arc)
     return ((bx - ax) * tx + (by - ay) * ty) / z
 
