@@ -19,7 +19,7 @@ from soft_scenes import play, types
 from offsets.generated import JUNK, MRIG, NSOFT
 from udec_ia.model import Model
 
-SCENES = 50
+SCENES = 20
 BATCH = 10
 SHORT = (2, 8)
 SEEDS = [3, 24, 40]

@@ -192,17 +192,19 @@ def test_what_the_search_has_found(deck: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "number"),
+    ("kind", "seed", "number"),
     [
-        ("extreme", 52),  # two tips in a gap that one of them fills, overlaps included
-        ("extreme", 879),
-        ("extreme", 1143),
-        ("long", 564),  # the far side of a blunt corner's circle
+        ("extreme", 2000, 52),  # two tips in a gap that one of them fills, overlaps included
+        ("extreme", 2000, 879),
+        ("extreme", 2000, 1143),
+        ("long", 2000, 564),  # the far side of a blunt corner's circle
+        ("needles", 1000, 406),  # a contact that crossed another one of two tips that have crossed
+        ("needles", 1000, 671),  # two contacts on an arc, deeper than its circle is wide
     ],
 )
-def test_long_scenes_that_the_search_has_found(kind: str, number: int) -> None:
-    found = impacts.play(kind, 2000, number, "i32r64")
-    assert not found.failure, f"{impacts.describe(found, 2000)}\n{found.snippet}"
+def test_scenes_that_the_search_has_found(kind: str, seed: int, number: int) -> None:
+    found = impacts.play(kind, seed, number, "i32r64")
+    assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"
 
 
 def test_an_update_after_a_long_step_comes_to_an_end(tmp_path: Path) -> None:

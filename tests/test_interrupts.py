@@ -449,17 +449,17 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
     """After the cycle was completed with more memory, or at once if there is none."""
     m = blocks(mtop=mtop)
     m.cycle(3)
-    run, calls = running.run_cycles, []
+    run, calls = running.run_unwatched, []
 
-    def run_short(h: object, n: int, *given: object) -> int:
+    def run_short(h: object, n: int, given: object) -> int:
         calls.append(n)
         if len(calls) > 1:
-            return int(run(h, n, *given))  # type: ignore[call-arg,arg-type]
+            return run(h, n, given)  # type: ignore[arg-type]
         m.array.h.ci[NERR], m.array.h.ci[JPHASE] = 15, 3
         room(m.array.h, len(m.array.h.ia) + 1)
         return 0
 
-    monkeypatch.setattr(running, "run_cycles", run_short)
+    monkeypatch.setattr(running, "run_unwatched", run_short)
     with pytest.raises(UdecError) as caught:
         m.cycle(5)
     assert caught.value.number == 15
@@ -580,7 +580,7 @@ def test_no_memory_left_in_a_run_does_not_say_that_nothing_was_done(
     def none_left(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("udec_ia.ops.run.cycle.run_cycles", none_left)
+    monkeypatch.setattr("udec_ia.ops.run.cycle.run_unwatched", none_left)
     with pytest.raises(UdecError, match="what was computed is kept") as caught:
         m.run("CYCLE 5\n")
     assert caught.value.number == 1

@@ -19,8 +19,8 @@ from offsets.generated import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIR
 from udec_ia.errors import UdecError
 from udec_ia.model import Model
 
-SCENES = 120
-NARROW = 30  # scenes with the narrowest words
+SCENES = 60
+NARROW = 20  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
 

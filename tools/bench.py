@@ -28,8 +28,8 @@ from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.inspect.table import table
 from udec_ia.kernels.body.law_call import MATERIAL_SIZE, _jump
-from udec_ia.kernels.drive.cycle import run_cycles
 from udec_ia.ops.laws.law_file import read_laws
+from udec_ia.ops.run.watch import run_unwatched
 
 ROOT = Path(__file__).parent.parent
 TURNS = 15
@@ -39,6 +39,7 @@ WORK = 2_000_000  # contacts that one turn passes through
 SETTLE = 40  # cycles before a measurement
 OVERLAP = 0.001  # that a slab is squeezed to at every joint, in rounding lengths
 FAR = 1e9
+RIGID = (None, None, None, None)  # what a run of rigid blocks needs beside them: nothing
 
 
 def slab(blocks: int, skew: float = 0.0) -> Model:
@@ -69,7 +70,7 @@ def squeeze(model: Model) -> None:
     for ib, x, y in zip(rows["address"], xs, ys, strict=True):
         putr(h, int(ib), KXD, -rate * float(x - middle[0]))
         putr(h, int(ib), KYD, -rate * float(y - middle[1]))
-    run_cycles(h, 1, None, None, None, None)
+    run_unwatched(h, 1, RIGID)
     for frame in (
         (-FAR, xs.min() + 0.5, -FAR, FAR),
         (xs.max() - 0.5, FAR, -FAR, FAR),
@@ -120,7 +121,7 @@ def turns(model: Model, s: Slab) -> tuple[float, float, float]:
     times = []
     for _ in range(TURNS):
         start = process_time()
-        done = run_cycles(model.h, n, None, None, None, None)
+        done = run_unwatched(model.h, n, RIGID)
         between = process_time()
         run_soa(s, n)
         times.append((between - start, process_time() - between))
@@ -148,7 +149,7 @@ def bench_cycles(sizes: list[int], skew: float) -> None:
             model.array = rest.copy()
             if prepare is not None:
                 prepare(model)
-            run_cycles(model.h, 2, None, None, None, None)
+            run_unwatched(model.h, 2, RIGID)
             print(f"| {model.h.ci[NBLK]} | {model.h.ci[NCON]} | {name} | {measure(model)} |", flush=True)
 
 

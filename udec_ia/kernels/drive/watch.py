@@ -95,17 +95,19 @@ def run_watched(
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
-    laws: the last four arguments of run_cycles. Stops early when NERR is set, when `rows` is full, and at
-    rest, which is looked at every CHECK cycles of the run; to within a negative ratio it never is.
+    laws: the last four arguments of run_cycles. places: without rows if nothing is recorded. Stops early when
+    NERR is set, when `rows` is full, and at rest, which is looked at every CHECK cycles of the run; to within
+    a negative ratio it never is.
     """
+    recorded = len(places) > 0
     done = 0
     while done < n and count[0] < len(rows):
         ahead = min(int64(n - done), CHECK - h.ci[g.MCTOT] % CHECK) if ratio >= 0 else int64(n - done)
         before = h.ci[g.MCTOT]
-        asked = until_due(h, ahead)
+        asked = until_due(h, ahead) if recorded else ahead
         completed = run_cycles(h, asked, laws[0], laws[1], laws[2], laws[3])
         done += completed
-        if h.ci[g.MCTOT] > before:
+        if recorded and h.ci[g.MCTOT] > before:
             record(h, laws[0], places, rows, count)
         if completed < asked or h.ci[g.NERR] != 0:
             return done, False

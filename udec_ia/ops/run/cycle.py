@@ -18,7 +18,7 @@ from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.body.blocks import TOO_FAR
 from udec_ia.kernels.body.laws import LAW_FAILED
 from udec_ia.kernels.body.masses import make_masses
-from udec_ia.kernels.drive.cycle import BLOCKS, run_cycles
+from udec_ia.kernels.drive.cycle import BLOCKS
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import TOO_SHORT
@@ -32,7 +32,7 @@ from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
 from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
 from udec_ia.ops.run.timestep import kind_of, time_step
-from udec_ia.ops.run.watch import Watch
+from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
@@ -156,7 +156,7 @@ def _run(
         while done < target and not (watch is not None and watch.reached):
             most = min(target - done, runaway.ahead(array.h))
             given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
-            done += int(run_cycles(array.h, most, *given)) if watch is None else watch.run(most, given)
+            done += run_unwatched(array.h, most, given) if watch is None else watch.run(most, given)
             settled()
             _raise_error(array, bound.book)
             runaway.look(array)
