@@ -34,7 +34,11 @@ def compile_for(build: str) -> str:
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]
     soft = [soft_scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in SOFT]
     if build in MOST_USED:
-        on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build).cycle(1)
+        model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)
+        model.cycle(1)
+        model.property(1, bulk=1e9, g=1e9)
+        model.change(-99, 99, -99, 99, type="sdef")
+        model.cycle(1)
         for model in rigid[-1], soft[-1]:
             model.energy("on")
             with suppress(UdecError):  # a scene may have ended in one

@@ -26,9 +26,9 @@ BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
-    soft: None if all blocks are rigid and free of boundary conditions, else True. laws, joints: None if no
-    deformable block, no contact follows a law of the user's, else the laws (body.law_call). energy: None if
-    no account of the energy is kept, else True.
+    soft: None if all blocks are rigid and free of boundary conditions, else True. laws: of blocks, None if
+    `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). energy:
+    None if no account of the energy is kept, else True.
     """
     done = 0
     while done < n:

@@ -16,6 +16,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.law_call import ARRAYS, Laws, Material
 from udec_ia.kernels.body.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.ops.common.limits import NCONS, NMAT
+from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.printable import printable
 
@@ -25,8 +26,8 @@ Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 
 class Bound(NamedTuple):
     """The laws as kernels take them.
 
-    blocks: None if there is no deformable block. joints: None if no contact follows one of the laws.
-    book: where they come from.
+    blocks: None if all blocks are rigid and no condition acts on them, as in `soft`, so that they need no
+    machine code of their own. joints: None if no contact follows one of the laws. book: where they come from.
     own_blocks: True if a deformable block follows one.
     """
 
@@ -88,7 +89,7 @@ class LawBook:
         for one in self.given.values():
             one.noted[:] = np.nan
         own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
-        return Bound(laws if user[IN_BLOCKS].any() else None, laws if followed else None, self, own_blocks)
+        return Bound(laws if soft(array) else None, laws if followed else None, self, own_blocks)
 
     def pack(self, array: MainArray) -> Laws:
         """The laws as kernels take them, with the materials of `array` as they are now.
