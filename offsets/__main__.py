@@ -5,10 +5,13 @@ from __future__ import annotations
 import sys
 
 from offsets.generate import stale, write
+from udec_ia.layout.table import TableError
 
-if "--check" not in sys.argv[1:]:
-    write()
-else:
-    for name in stale():
-        print(f"offsets/{name} is not current: run python -m offsets")
-    sys.exit(1 if stale() else 0)
+try:
+    if "--check" not in sys.argv[1:]:
+        write()
+    elif names := stale():
+        print("\n".join(f"{name} is not current: run python -m offsets" for name in names))
+        sys.exit(1)
+except TableError as error:
+    sys.exit(str(error))

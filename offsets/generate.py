@@ -1,28 +1,23 @@
-"""Write what follows from groups.table: `generated.py` and the tables of offsets a person reads.
+"""Write what follows from groups.table: `udec_ia/layout`, and the tables of offsets that a person reads.
 
-`generated.py` gives every offset as a tuple (for 1, 2 and 4 integers to a real); the accessors pick
-the element by the array types at hand, so one kernel source serves all word schemes.
+`udec_ia/layout/offsets.py` gives every offset as a tuple (for 1, 2 and 4 integers to a real); the accessors
+pick the element by the array types at hand, so one kernel source serves all word schemes.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from offsets.table import COMMON_TYPES, RATIOS, Group, Table, lay_out, read_table
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, lay_out, parse
 
 HERE = Path(__file__).parent
-SCHEMES = {  # name: (integer bits, real bits), report 3.5
-    "i16r32": (16, 32),
-    "i32r32": (32, 32),
-    "i16r64": (16, 64),
-    "i32r64": (32, 64),
-    "i64r64": (64, 64),
-}
+TABLE = HERE / "groups.table"
+LAYOUT = HERE.parent / "udec_ia" / "layout"
 BANNER = "AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do not edit."
 
 
 def python_text(table: Table) -> str:
-    """The text of generated.py."""
+    """The text of udec_ia/layout/offsets.py."""
     lines = [
         f'"""{BANNER}',
         "",
@@ -30,8 +25,10 @@ def python_text(table: Table) -> str:
         '"""',
         "",
     ]
-    lines += [f'DIGEST = "{table.digest}"', ""]
+    lines += ["from udec_ia.layout.table import require_current", ""]
+    lines += [f'DIGEST = "{table.digest}"', "require_current(DIGEST)", ""]
     lines += [f"{head.name} = {head.value}  # {head.text}" for head in table.heads]
+    lines += ["", *(f"{code.name} = {code.value}  # {code.field}: {code.text}" for code in table.codes)]
     for group in table.groups:
         layouts = [lay_out(group, ratio) for ratio in RATIOS]
         lines += ["", f"# {group.text} (page {group.page})"]
@@ -78,20 +75,26 @@ def _group_lines(group: Group, ratio: int) -> list[str]:
     return lines
 
 
-def files(table: Table) -> dict[Path, str]:
+def files() -> dict[Path, str]:
     """Every generated file and its text."""
-    texts = {HERE / "generated.py": python_text(table)}
+    text = TABLE.read_text()
+    table = parse(text)
+    texts = {LAYOUT / "offsets.py": python_text(table), LAYOUT / "groups.table": text}
     for scheme in SCHEMES:
         texts[HERE / f"{scheme}.txt"] = scheme_text(table, scheme)
     return texts
 
 
 def stale() -> list[str]:
-    """Names of the generated files that do not follow from the table as it stands."""
-    return [p.name for p, text in files(read_table()).items() if not p.exists() or p.read_text() != text]
+    """Names of the generated files that do not follow from the table as it stands, in the checkout."""
+    return [
+        str(path.relative_to(HERE.parent))
+        for path, text in files().items()
+        if not path.exists() or path.read_text() != text
+    ]
 
 
 def write() -> None:
     """Write every generated file."""
-    for path, text in files(read_table()).items():
+    for path, text in files().items():
         path.write_text(text)

@@ -15,10 +15,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from offsets import generated as g
 from udec_ia.heap.accessors import HEAD, Memory, Offset, puti, putr, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
+from udec_ia.layout import offsets as g
 
 SIDE = 1.0
 ROUNDING = 0.1

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mechanics import box, model
 
-from offsets.table import read_table
 from udec_ia import Model
+from udec_ia.layout.table import read_table
 
 GROUPS = [group for group in read_table().groups if group.name != "jointext"]  # nothing makes joint data yet
 

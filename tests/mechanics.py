@@ -9,8 +9,8 @@ from __future__ import annotations
 from itertools import chain
 from typing import Any
 
-from offsets.generated import KTD, KXD, KYD, TDEL
 from udec_ia import Model
+from udec_ia.layout.offsets import KTD, KXD, KYD, TDEL
 
 G = 10.0
 Row = Any  # one row of Model.table

@@ -13,8 +13,8 @@ import numpy as np
 from stage import Stage
 from strikes import drive, edges, moved, near
 
-from offsets.generated import AKN, KBM
 from udec_ia.heap.accessors import getr
+from udec_ia.layout.offsets import AKN, KBM
 
 Rng = np.random.Generator
 

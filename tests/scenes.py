@@ -18,7 +18,9 @@ from typing import Any
 import numpy as np
 from naive.geometry import Outline, Point
 
-from offsets.generated import (
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget, putr
+from udec_ia.layout.offsets import (
     DTOL,
     IBPNT,
     KB,
@@ -37,8 +39,6 @@ from offsets.generated import (
     NBLK,
     TDEL,
 )
-from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget, putr
 from udec_ia.model import Model
 
 MOST_BLOCKS = 30

@@ -14,8 +14,8 @@ import scenes
 from naive.triangulate import triangulate
 from scenes import Scene, blocks, outline
 
-from offsets.generated import DTOL, KBM, KX, KY, MFDEF, MRIG, NBLK, TDEL
 from udec_ia.heap.accessors import HEAD, getr, iget
+from udec_ia.layout.offsets import DTOL, KBM, KX, KY, MFDEF, MRIG, NBLK, TDEL
 from udec_ia.model import Model
 
 MOST_BLOCKS = 10

@@ -28,9 +28,9 @@ from naive.overlaps import (
 )
 from shapely.geometry import Polygon
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget
+from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 
 LIMIT = 0.05  # of the rounding length: an overlap that needs a contact

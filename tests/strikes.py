@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from stage import Stage
 
-from offsets.generated import KBEX, KFG, KG, KXG, KYG, MFDEF
 from udec_ia.heap.accessors import HEAD, getr, iget
+from udec_ia.layout.offsets import KBEX, KFG, KG, KXG, KYG, MFDEF
 
 Rng = np.random.Generator
 Outline = list[tuple[float, float]]

@@ -11,9 +11,9 @@ from kinds import GROUPS, every_kind
 from naive import relocate as naive
 from naive.relocate import differences, essence
 
-from offsets.generated import MFREE
 from udec_ia import Model
 from udec_ia.heap.relocate import relocate
+from udec_ia.layout.offsets import MFREE
 from udec_ia.ops.run.arrange import arrange
 from udec_ia.output.outline import snapshot
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from mechanics import block, model, sound
 
-import offsets.generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.layout import offsets as g
 
 K, G, D = 2e8, 1e8, 0.05
 EPS = float(np.finfo(float).eps)

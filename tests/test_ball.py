@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 from mechanics import sound
 
-from offsets import read_table
 from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.layout.table import read_table
 
 DECK = Path(__file__).parent.parent / "examples" / "ball-rolling.dat"
 RADIUS, EDGE, DOWN = 1.115, 5**0.5, (-2 / 5**0.5, -1 / 5**0.5)

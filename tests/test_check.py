@@ -12,14 +12,14 @@ from handmade import ROUNDING, SIDE, two_blocks
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from offsets import generated as g
-from offsets.table import Field, read_table
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
 from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.walk import corners, groups
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, read_table
 
 SCHEMES = tuple(ALL_SCHEMES)
 TABLE = read_table()

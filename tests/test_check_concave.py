@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from offsets import generated as g
 from udec_ia.heap.accessors import getr, puti, putr
 from udec_ia.inspect.walk import corners, groups
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 
 # A funnel that narrows towards a thin slab: circles of its concave corners reach into what lies beside them.
@@ -44,7 +43,7 @@ def place_tip(model: Model, x: float) -> tuple[int, int]:
         for field in fields:
             putr(model.h, group, field, float(getr(model.h, group, field)) + x - tip)
     for contact in groups(model.h, "contact"):
-        puti(model.h, contact, g.KCCOD, VIRTUAL)
+        puti(model.h, contact, g.KCCOD, g.VIRTUAL)
     return body, wedge
 
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import pytest
 
-from offsets import generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE
+from udec_ia.layout import offsets as g
 
 D = 0.1
 POINTS = [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0), (4.0, 2.0), (4.0, 0.0)]  # numbered from the last one
@@ -50,7 +49,7 @@ def contact_of(model: Model, corner: int) -> int:
     (contact,) = (
         int(row["address"])
         for row in model.table("contact")
-        if corner == row["KCP1" if row["KCCOD"] == CORNER_EDGE else "KCP2"]
+        if corner == row["KCP1" if row["KCCOD"] == g.CORNER_EDGE else "KCP2"]
     )
     return contact
 

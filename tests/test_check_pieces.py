@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from offsets import generated as g
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.inspect.check import check
 from udec_ia.inspect.walk import corners, groups
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.kernels.links.lists import idomp
 from udec_ia.kernels.map.virtual import hook, take_contact_out
+from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 
 # A box with a closed room; of what was in it one block is left, which hangs in the room.
@@ -78,7 +77,7 @@ def test_a_block_tied_to_the_wrong_side_of_a_wall_is_named() -> None:
     """The same block, tied to the outside of the wall: all lists are sound, but it lies in the room."""
     model, block = room("i32r64")
     h = model.h
-    (tie,) = [c for c in groups(h, "contact") if iget(h, c, g.KCCOD) == VIRTUAL]
+    (tie,) = [c for c in groups(h, "contact") if iget(h, c, g.KCCOD) == g.VIRTUAL]
     room_domain, outside = iget(h, tie, g.KD1), h.ci[g.IODPNT]
     take_contact_out(h, tie)
     sides = {c: (iget(h, c, g.KD1), iget(h, c, g.KD2)) for c in groups(h, "contact") if c != tie}

@@ -9,7 +9,7 @@ from udec_ia import Model
 from udec_ia.inspect.check_geometry import Touches, outlines
 from udec_ia.inspect.check_groups import State
 from udec_ia.inspect.check_place import place
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE
+from udec_ia.layout import offsets as g
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.3, 2.0, 4.0])
@@ -25,7 +25,7 @@ def test_what_faces_away_from_an_arc_stands_at_its_nearer_end(turn: float) -> No
     right = np.flatnonzero(np.abs(o.e - (c, s)).max(axis=1) < 1e-9)  # corners at the end of the right edges
     assert len(right) == 2
     one = np.zeros(1, np.int64)
-    touch = Touches(one, one + CORNER_EDGE, right[:1], right[1:], one * 0.0, o.p[right[:1]], one * 0.0)
+    touch = Touches(one, one + g.CORNER_EDGE, right[:1], right[1:], one * 0.0, o.p[right[:1]], one * 0.0)
     (along,) = place(o, touch, 0).along
     (k,) = touch.i
     assert along == pytest.approx(o.end[k] + o.r[k] * np.pi / 2)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from offsets import generated as g
 from udec_ia.heap.accessors import puti
 from udec_ia.inspect.check_complete import _lies_in_third
 from udec_ia.inspect.check_geometry import outlines
 from udec_ia.inspect.check_groups import State
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 
 # A block sinks by some millimetres into a wedge of 1.4 degrees, whose rounded tip is 1.3 mm thick, on a slab.
@@ -41,7 +40,7 @@ def test_what_lies_on_both_sides_of_a_thin_tip() -> None:
         """Take the contact of two blocks at the tip for a virtual one."""
         for contact in model.table("contact"):
             if {int(contact["KB1"]), int(contact["KB2"])} == {one, two} and contact["KXC"] < 0.1:
-                puti(h, int(contact["address"]), g.KCCOD, VIRTUAL)
+                puti(h, int(contact["address"]), g.KCCOD, g.VIRTUAL)
 
     def named() -> bool:
         return any(

@@ -9,9 +9,9 @@ import pytest
 from mechanics import G, sound
 from naive.relocate import differences, essence
 
-from offsets.generated import ALPHA, MCTOT, TIME
 from udec_ia import Model
 from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
 
 DECK = Path(__file__).parent.parent / "examples" / "collapse-rigid.dat"
 GAP = (20.0, 40.0, 10.0, 20.0)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-import offsets.generated as g
 from udec_ia import Model
+from udec_ia.layout import offsets as g
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 BUILDS = ["i32r64", "i32r32", "i64r64"]

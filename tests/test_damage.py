@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from kinds import every_kind
 
-from offsets import generated as g
-from offsets.table import read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check import check, check_links
 from udec_ia.inspect.table import table
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.restart import load, save
 
 DAMAGE = Path(__file__).parent.parent / "tools" / "damage.py"

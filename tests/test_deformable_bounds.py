@@ -14,10 +14,10 @@ from mechanics import at, block, box, model, push, sound
 from naive.bodies import area_and_moments, by_address, momentum, outlines, points_of
 from naive.relocate import differences, essence
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 
 EPS = float(np.finfo(float).eps)
 RHO, K, G, D = 2000.0, 2e8, 1e8, 0.05

@@ -20,11 +20,11 @@ from naive.bodies import (
     zone_forces,
 )
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
+from udec_ia.layout import offsets as g
 
 KINDS = ("rigid", "sdef", "fdef", "zoned")
 CHANGES = [(old, new) for old in KINDS for new in KINDS if (old, new) != ("zoned", "zoned")]

@@ -10,9 +10,9 @@ import pytest
 from continua import energies, pulsed
 from grids import generate, rectangle
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr
+from udec_ia.layout import offsets as g
 
 RHO, K, G = 2000.0, 2e8, 1e8
 CP = math.sqrt((K + 4 * G / 3) / RHO)

@@ -12,9 +12,9 @@ from mechanics import block, box, model, push, sound
 from naive.bodies import contact_forces, momentum, outlines
 from naive.contacts import contacts
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 
 TYPES = ("rigid", "sdef", "zoned")
 PAIRS = list(combinations_with_replacement(TYPES, 2))

@@ -16,7 +16,7 @@ from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, replay
 from soft_scenes import play, types
 
-from offsets.generated import JUNK, MRIG, NSOFT
+from udec_ia.layout.offsets import JUNK, MRIG, NSOFT
 from udec_ia.model import Model
 
 SCENES = 20

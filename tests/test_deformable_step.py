@@ -12,10 +12,10 @@ from mechanics import box, model, sound
 from naive.bodies import points_of
 from naive.stiffness import Scene
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 from udec_ia.ops.run.timestep import Limit, bound, estimate
 
 D = 0.05

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from mechanics import G, at, block, box, model, on_base, push, sound, step
 
-from offsets.generated import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND
 from udec_ia import Model
+from udec_ia.layout.offsets import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND
 from udec_ia.ops.commands.energy import Balance
 
 EXAMPLES = Path(__file__).parent.parent / "examples"

@@ -13,9 +13,9 @@ from kinds import every_kind
 from mechanics import box, model
 from naive.relocate import differences, essence
 
-import offsets.generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy import Balance
 
 EXAMPLES = Path(__file__).parent.parent / "examples"

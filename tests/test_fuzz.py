@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from mechanics import box, model
 
-from offsets import generated
-from offsets.table import Field, read_table
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import variable
+from udec_ia.layout import offsets
+from udec_ia.layout.table import Field, read_table
 from udec_ia.restart import save
 
 FUZZ = Path(__file__).parent.parent / "tools" / "fuzz.py"
@@ -86,7 +86,7 @@ def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Pa
 def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: Path, tmp_path: Path) -> None:
     """In any other, CYCLE would count cycles and do nothing."""
     array = Model.restore(wall).array
-    array.h.ci[generated.JPHASE] = 7
+    array.h.ci[offsets.JPHASE] = 7
     path = save(array, tmp_path / "mad.h5", [])
     with pytest.raises(UdecError, match="JPHASE is 7, not 0 to 3"):
         Model.restore(path)

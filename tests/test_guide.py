@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from offsets import read_table
 from udec_ia import Model
 from udec_ia.errors import MESSAGES
+from udec_ia.layout.table import read_table
 
 ROOT = Path(__file__).parent.parent
 GUIDE = ROOT / "docs" / "program-guide.md"

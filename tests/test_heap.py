@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 from naive.memory import Memory as NaiveMemory
 
-from offsets import generated as g
-from offsets.table import read_table
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import LINE, MainArray
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import OVERFLOW, find, lose, room
 from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
 SCHEMES = tuple(ALL_SCHEMES)
 SIZES: tuple[Offset, ...] = (g.NVBL, g.NVCR, g.NVCN, g.NVDO, g.NVZO, g.NVDE)

@@ -18,12 +18,12 @@ from kinds import GROUPS, every_kind
 from mechanics import at, block, on_base, push
 from naive.relocate import relocate
 
-from offsets import generated as g
-from offsets.table import read_table
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import getr, iget, puti
 from udec_ia.heap.memory import find, lose
 from udec_ia.inspect.check import check, check_links
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.history import define, definitions, named
 from udec_ia.ops.commands.recordable import recordable
 from udec_ia.ops.run.watch import ROWS, Watch

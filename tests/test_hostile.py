@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from hostile import base, new_table, packed_names
 
-from offsets.table import TABLE
 from udec_ia import Model
 from udec_ia.errors import UdecError
+from udec_ia.layout.table import TABLE
 from udec_ia.printable import printable
 from udec_ia.restart import info
 from udec_ia.restart.layout import text

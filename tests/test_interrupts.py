@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 from interrupts import SCENE, interrupt_lines, state
 
-import offsets.generated as g
-from offsets.generated import JPHASE, KX, MCTOT, MTOP, NERR, NWANT, TDEL
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import room
 from udec_ia.heap.words import scheme
+from udec_ia.layout import offsets as g
+from udec_ia.layout.offsets import JPHASE, KX, MCTOT, MTOP, NERR, NWANT, TDEL
 from udec_ia.ops.run import cycle as running
 from udec_ia.signals import Terminated, hold, passing, poll, terminate
 from udec_ia.transaction import Undo
@@ -148,7 +148,7 @@ def test_a_run_ends_between_two_cycles_with_an_interpreted_law(tmp_path: Path) -
         "      state(m)['integers'] == state(twin)['integers'], state(m)['reals'] == state(twin)['reals'],\n"
         "      state(m)['series'] == state(twin)['series'])\n"
     )
-    code = "from offsets.generated import MCTOT, NCYC\n" + code
+    code = "from udec_ia.layout.offsets import MCTOT, NCYC\n" + code
     path = os.pathsep.join(map(str, (ROOT, ROOT / "tools")))
     env = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path}
     command = [sys.executable, "-W", "ignore", "-c", code]

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 from numba.core import config
 
-from offsets import generated as g
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
@@ -19,6 +18,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
 from udec_ia.kernels.body.law_call import ARRAYS, Material
 from udec_ia.kernels.body.laws import stress_increment
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import settings
 from udec_ia.ops.laws.law_file import _compiled, read_laws
 from udec_ia.ops.laws.laws import LawBook

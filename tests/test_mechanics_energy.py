@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from mechanics import G, at, block, box, model, no_damping, on_base, push, sound, step
 
-from offsets.generated import AKN, AKS, GRAVX, GRAVY, WFRIC
 from udec_ia import Model
+from udec_ia.layout.offsets import AKN, AKS, GRAVX, GRAVY, WFRIC
 
 
 def cycle_and_energy(m: Model) -> float:

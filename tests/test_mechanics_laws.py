@@ -14,9 +14,9 @@ import pytest
 from mechanics import G, at, block, no_damping, on_base, push, sound, step
 from test_mechanics_energy import cycle_and_energy
 
-from offsets.generated import NERR, WFRIC
 from udec_ia import Model
 from udec_ia.errors import UdecError
+from udec_ia.layout.offsets import NERR, WFRIC
 
 ROOT = Path(__file__).parent.parent
 B, H, D = 2.0, 1.0, 0.1

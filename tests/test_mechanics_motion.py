@@ -9,9 +9,9 @@ import pytest
 from mechanics import G, at, block, box, model, on_base, push, sound, step
 from naive.dynamics import angle_between, bounce, peaks
 
-from offsets.generated import ALPHA, BETA, DTOL
 from udec_ia import Model
 from udec_ia.errors import UdecError
+from udec_ia.layout.offsets import ALPHA, BETA, DTOL
 
 EPS = np.finfo(float).eps
 

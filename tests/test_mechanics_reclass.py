@@ -11,8 +11,8 @@ import pytest
 from mechanics import at, block, box, model, push, sound, step
 from naive import contacts as naive
 
-from offsets.generated import GTOL
 from udec_ia import Model
+from udec_ia.layout.offsets import GTOL
 
 KN, D = 1.0, 0.3
 DENSITY = 1e12

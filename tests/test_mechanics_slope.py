@@ -24,9 +24,9 @@ import pytest
 from mechanics import G, Row, at, block, box, model, sound, step
 from naive.dynamics import slide, slide_two
 
-from offsets.generated import AKN
 from udec_ia import Model
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER
+from udec_ia.layout import offsets as g
+from udec_ia.layout.offsets import AKN
 
 LOWER, UPPER = atan(6 / 20), atan(6 / 15)
 MASSES = 2000 * 138.75, 2000 * 75.0
@@ -69,8 +69,8 @@ def lean(m: Model, one: int, two: int, given: float) -> float:
     """By how much the joint of two blocks is steeper than `given`: the edges it touches on, by their load."""
     rows = m.table("contact")
     rows = rows[np.isin(rows["KB1"], (one, two)) & np.isin(rows["KB2"], (one, two))]
-    assert set(rows["KCCOD"]) <= {CORNER_EDGE, EDGE_CORNER}
-    on = np.where(rows["KCCOD"] == CORNER_EDGE, rows["KB2"], rows["KB1"])
+    assert set(rows["KCCOD"]) <= {g.CORNER_EDGE, g.EDGE_CORNER}
+    on = np.where(rows["KCCOD"] == g.CORNER_EDGE, rows["KB2"], rows["KB1"])
     edges = [inclination(m, int(ib), given) for ib in on]
     return float(np.average(edges, weights=rows["KCFN"])) - given
 

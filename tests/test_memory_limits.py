@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from offsets.generated import MFREE, MTOP, NSPARE
 from udec_ia import Model, UdecError
 from udec_ia.heap.array import MainArray
+from udec_ia.layout.offsets import MFREE, MTOP, NSPARE
 
 SCENE = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5 BULK=1E9 G=6E8

@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_words
 
-import offsets
-from offsets import RATIOS, Group, TableError, generated, lay_out, read_table
+from offsets.generate import TABLE as SOURCE
 from offsets.generate import files, stale
-from offsets.table import COMMON_TYPES, parse
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.layout import offsets
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, TableError, lay_out, parse, read_table
 
 TABLE = read_table()
 GROUPS = pytest.mark.parametrize("group", TABLE.groups, ids=lambda group: group.name)
@@ -40,7 +40,7 @@ def test_corner_offsets_are_those_of_the_report(ratio: int, printed: dict[str, i
 def test_generated_corner_offsets_are_those_of_the_report(ratio: int, printed: dict[str, int]) -> None:
     for name, k in printed.items():
         if name != "<head code>":
-            assert getattr(generated, name)[ratio >> 1] == k, name
+            assert getattr(offsets, name)[ratio >> 1] == k, name
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
@@ -50,7 +50,7 @@ def test_layout_is_the_count_on_ones_fingers(group: Group, ratio: int) -> None:
     layout = lay_out(group, ratio)
     assert layout.offset == counted
     assert layout.size == size
-    assert getattr(generated, group.size_name)[ratio >> 1] == size
+    assert getattr(offsets, group.size_name)[ratio >> 1] == size
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
@@ -72,7 +72,7 @@ def test_alignment_and_no_overlap(group: Group, ratio: int) -> None:
 def test_addresses_are_aligned_whatever_is_found(name: str) -> None:
     array = MainArray(ALL_SCHEMES[name])
     for group in TABLE.groups:
-        address = int(find(array.h, getattr(generated, group.size_name)))
+        address = int(find(array.h, getattr(offsets, group.size_name)))
         assert address > 0
         assert (address - 1) * array.h.ia.itemsize % array.h.ra.itemsize == 0
 
@@ -107,9 +107,9 @@ def test_names_are_unique() -> None:
 def test_common_block_indices_do_not_overlap() -> None:
     for kind, size in COMMON_TYPES.items():
         places = [
-            getattr(generated, f.name) + i for f in TABLE.common if f.type == kind for i in range(f.count)
+            getattr(offsets, f.name) + i for f in TABLE.common if f.type == kind for i in range(f.count)
         ]
-        assert places == list(range(getattr(generated, size)))
+        assert places == list(range(getattr(offsets, size)))
 
 
 def test_pointers_name_a_kind_of_group() -> None:
@@ -121,8 +121,8 @@ def test_pointers_name_a_kind_of_group() -> None:
 
 def test_generated_files_are_current() -> None:
     assert stale() == []
-    assert TABLE.digest == generated.DIGEST
-    assert len(files(TABLE)) == 1 + len(ALL_SCHEMES)
+    assert TABLE.digest == offsets.DIGEST
+    assert len(files()) == 2 + len(ALL_SCHEMES)
 
 
 @pytest.mark.parametrize(
@@ -134,14 +134,37 @@ def test_generated_files_are_current() -> None:
         "KZZ  int*x  -  data  -  53 | not a number",
         "GROUP  short  NVSH | columns are missing",
         "HEAD  MBAD",
+        "CODE  OPEN  four  KCCOD | not a number",
     ],
 )
 def test_bad_lines_are_named(bad: str) -> None:
-    text = offsets.TABLE.read_text()
+    text = SOURCE.read_text()
     line = len(text.splitlines()) + 1
     with pytest.raises(TableError, match=rf"groups\.table:{line}: ") as caught:
         parse(text + bad + "\n")
     assert bad.strip() in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("CODE  OPEN  1  KNONE | of no field", "there is no field for the code OPEN"),
+        ("CODE  VIRTUAL  5  KCCOD | twice", "two fields or codes are called VIRTUAL"),
+        ("CODE  KX  5  KCCOD | a field's name", "two fields or codes are called KX"),
+    ],
+)
+def test_a_code_has_a_field_and_a_name_of_its_own(line: str, said: str) -> None:
+    with pytest.raises(TableError, match=said):
+        parse(SOURCE.read_text() + line + "\n")
+
+
+def test_codes_are_in_the_range_of_their_field() -> None:
+    fields = {field.name: field for group in TABLE.groups for field in group.fields}
+    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX"}
+    for code in TABLE.codes:
+        assert any(low <= code.value <= high for low, high in fields[code.field].allowed if high is not None)
+        assert getattr(offsets, code.name) == code.value
+    assert fields["KUFIX"].allowed == fields["KGFIX"].allowed  # which have the same codes
 
 
 def test_a_field_before_the_first_group_is_refused() -> None:
@@ -150,7 +173,7 @@ def test_a_field_before_the_first_group_is_refused() -> None:
 
 
 PROBE = """
-from offsets.generated import KX
+from udec_ia.layout.offsets import KX
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.jit import kernel
 
@@ -160,7 +183,7 @@ def probe(h, iad):
 """
 
 SCRIPT = """
-from offsets import generated as g
+from udec_ia.layout import offsets as g
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import CACHE
@@ -196,10 +219,24 @@ def run_probe(tree: Path, cache: Path) -> tuple[bool, float, int, int, int]:
     return kept == "True", float(value), int(taken), int(size), int(kx)
 
 
-def test_a_changed_table_changes_the_very_next_run(tmp_path: Path) -> None:
+def python_in(tree: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run Python in the checkout `tree`."""
+    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=tree,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+
+
+def test_a_changed_table_is_told_and_changes_the_run_after_it_was_written_out(tmp_path: Path) -> None:
     """With the same cache folder: kernels are kept as long as the table stays, and never a run longer."""
     tree, cache = tmp_path / "tree", tmp_path / "cache"
-    here = offsets.TABLE.parent.parent
+    here = SOURCE.parent.parent
     for package in ("offsets", "udec_ia"):
         shutil.copytree(here / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
     (tree / "udec_ia" / "heap" / "probe.py").write_text(PROBE)
@@ -215,6 +252,21 @@ def test_a_changed_table_changes_the_very_next_run(tmp_path: Path) -> None:
     at = next(i for i, line in enumerate(lines) if line.startswith("KX "))
     lines.insert(at, "KXNEW  real  -  data  m  ours | a field before KX")
     table.write_text("\n".join(lines) + "\n")
+    layout = {path: path.read_bytes() for path in (tree / "udec_ia" / "layout").glob("*.*")}
+    for command in (["-c", "from udec_ia import Model"], ["-m", "udec_ia", "run", "no.dat"]):
+        refused = python_in(tree, *command)
+        assert refused.returncode == 1
+        last = refused.stderr.splitlines()[-1]
+        assert last.endswith(
+            f"{table} has changed since udec_ia/layout was made from it: run python -m offsets"
+        )
+        assert ("Traceback" in refused.stderr) == (command[0] == "-c")
+    told = python_in(tree, "-m", "offsets", "--check")
+    assert told.returncode == 1
+    assert "udec_ia/layout/offsets.py is not current: run python -m offsets" in told.stdout
+    assert {path: path.read_bytes() for path in layout} == layout  # nothing is written but by the command
+    assert python_in(tree, "-m", "offsets").returncode == 0
+    assert python_in(tree, "-m", "offsets", "--check").returncode == 0
     changed = run_probe(tree, cache)
     assert changed[4] == first[4] + 1
     assert changed[3] > first[3]

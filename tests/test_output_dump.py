@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from handmade import two_blocks
 
-import offsets.generated as g
-from offsets.table import lay_out, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, puti, putr
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import corners, groups
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import lay_out, read_table
 from udec_ia.output.dump import dump, reach
 
 

@@ -10,9 +10,9 @@ import pytest
 from grids import generate, rectangle
 from matplotlib import colormaps
 
-import offsets.generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 from udec_ia.output.field import field, measure
 from udec_ia.output.outline import snapshot
 from udec_ia.output.plot import Frame, What

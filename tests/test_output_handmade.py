@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from handmade import two_blocks
 
-from offsets import generated as g
-from offsets.table import read_table
 from udec_ia.heap.accessors import Memory, iget
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import boundary, corners, groups, kind_of, loop, reverse
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
 SCHEMES = tuple(ALL_SCHEMES)
 

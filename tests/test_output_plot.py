@@ -18,12 +18,12 @@ from matplotlib.path import Path as Curve
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import corners, groups
+from udec_ia.layout import offsets as g
 from udec_ia.output.animate import MOST, Animation
 from udec_ia.output.draw import LARGEST, limits, moved_blocks, scale_for, to_draw
 from udec_ia.output.outline import (

@@ -7,12 +7,12 @@ from grids import fan
 from handmade import two_blocks
 from mechanics import box, model
 
-import offsets.generated as g
-from offsets.table import read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import boundary, corners, groups, loop
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.output.printout import LINE, printout
 
 EVERYTHING = ("blocks", "contacts", "corners", "domains", "list", "dlist")

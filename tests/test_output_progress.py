@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from handmade import two_blocks
 
-from offsets.generated import MCTOT
+from udec_ia.layout.offsets import MCTOT
 from udec_ia.output import progress
 from udec_ia.output.progress import LINES, Progress, summary
 from udec_ia.output.report import Report

@@ -27,7 +27,6 @@ from packaging.utils import canonicalize_name
 from packaging.version import Version
 
 import udec_ia
-from udec_ia.heap.words import ALL_SCHEMES
 
 ROOT = Path(__file__).parent.parent
 START = ROOT / "tools" / "start.py"
@@ -94,14 +93,12 @@ def test_what_is_in_the_wheel(built: tuple[Path, Path]) -> None:
         names = set(wheel.namelist())
     sources = {
         str(path.relative_to(ROOT))
-        for package in ("udec_ia", "offsets")
-        for path in (ROOT / package).rglob("*")
+        for path in (ROOT / "udec_ia").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
     info = f"udec_ia-{udec_ia.__version__}.dist-info/"
     assert {name for name in names if not name.startswith(info)} == sources
-    assert {"offsets/groups.table", "offsets/generated.py", "udec_ia/py.typed"} <= names
-    assert {f"offsets/{scheme}.txt" for scheme in ALL_SCHEMES} <= names
+    assert {"udec_ia/layout/groups.table", "udec_ia/layout/offsets.py", "udec_ia/py.typed"} <= names
     assert {info + "entry_points.txt", info + "licenses/LICENSE"} <= names
 
 
@@ -115,6 +112,7 @@ def test_what_is_in_the_sdist(built: tuple[Path, Path]) -> None:
         "tools/start.py",
         "tools/constraints.txt",
         "docs/map.md",
+        "offsets/groups.table",
     ):
         assert name in names
     for folder in ("tests", "examples", "docs/images"):
@@ -141,7 +139,7 @@ def test_compiled_kernels_are_kept_outside_the_package(installed: Path, tmp_path
     before = files(installed)
     find = (
         "from udec_ia.heap import accessors, array, memory, words\n"
-        "from offsets.generated import NVCR\n"
+        "from udec_ia.layout.offsets import NVCR\n"
         "print(accessors.__file__, memory.find(array.MainArray(words.scheme('i32r64')).h, NVCR))"
     )
     cache = tmp_path / "cache"

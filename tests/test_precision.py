@@ -7,7 +7,6 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from offsets import generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, putr
 from udec_ia.heap.words import ALL_SCHEMES
@@ -15,6 +14,7 @@ from udec_ia.inspect.walk import corners, groups
 from udec_ia.kernels.body.blocks import KEEP
 from udec_ia.kernels.detect.search import arc_on_arc, arc_on_edge
 from udec_ia.kernels.geometry.shape import crad
+from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.ops.common.limits import EDGE_DIGITS, ROUNDING_DIGITS, last_digit
 

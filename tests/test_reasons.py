@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from offsets.generated import TIME
 from udec_ia import Model, UdecError
 from udec_ia.deck.language import ALSO_CALLED, COMMANDS, match
 from udec_ia.deck.monitor import run_deck
+from udec_ia.layout.offsets import TIME
 
 U = (0, 0, 0, 3, 1, 3, 1, 1, 2, 1, 2, 3, 3, 3, 3, 0)  # a notch from above
 

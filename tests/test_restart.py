@@ -16,13 +16,13 @@ import pytest
 from handmade import two_blocks
 from mechanics import box, model, on_base
 
-from offsets import generated as g
-from offsets.table import lay_out, read_table
 from udec_ia import Model
 from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import lay_out, read_table
 from udec_ia.restart import info, load, save
 from udec_ia.restart import writer as writing
 

@@ -15,14 +15,14 @@ from handmade import two_blocks
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from offsets import generated as g
-from offsets.table import COMMON_TYPES, TABLE, parse
 from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, scheme
 from udec_ia.inspect.walk import groups
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import COMMON_TYPES, TABLE, parse
 from udec_ia.restart import info, load, save
 from udec_ia.restart.layout import text
 from udec_ia.restart.seal import SIZE, seal
@@ -310,6 +310,16 @@ def test_the_other_table_names_the_version_to_use(good: Path) -> None:
         load(good)
     assert caught.value.advice == f"read it with the version that wrote it, udec_ia {__version__}"
     assert "not that of this program: group block has KNEW in the file only" in info(good)
+
+
+def test_a_code_that_means_something_else_is_another_layout(good: Path) -> None:
+    """A table without names of codes, as they were before, is no other."""
+    plain = "\n".join(line for line in TABLE.read_text().splitlines() if not line.startswith("CODE"))
+    edit(good, new_table(plain + "\n"))
+    assert load(good).deck == ["START"]
+    edit(good, new_table(TABLE.read_text().replace("CODE   VIRTUAL        4", "CODE   VIRTUAL        5")))
+    with pytest.raises(UdecError, match="the code VIRTUAL of KCCOD is 5 in the file, 4 here"):
+        load(good)
 
 
 @pytest.mark.parametrize("name", SCHEMES)

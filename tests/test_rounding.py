@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from mechanics import on_base, sound
 
-from offsets.generated import KXD, KYD, MFREE, TDEL
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
+from udec_ia.layout.offsets import KXD, KYD, MFREE, TDEL
 
 LONG = 0.1  # rounding length; the blocks are 1 by 1
 

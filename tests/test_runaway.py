@@ -15,9 +15,9 @@ import pytest
 from kinds import every_kind
 from mechanics import block, on_base, push
 
-from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
+from udec_ia.layout import offsets as g
 from udec_ia.ops.run import runaway
 
 STACK = """START

@@ -15,8 +15,8 @@ from naive.compare import disagreements
 from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, blocks, outline, play, replay
 
-from offsets.generated import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.errors import UdecError
+from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
 SCENES = 60

@@ -12,10 +12,10 @@ import pytest
 from kinds import every_kind
 from mechanics import block, on_base, push
 
-from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
 from udec_ia.kernels.drive.unbalanced import force_ratio
+from udec_ia.layout import offsets as g
 
 CHECK = 10  # cycles between two looks, as docs/histories.md says
 

@@ -107,7 +107,7 @@ def test_neighbours_agree_whether_a_line_goes_through_their_corner() -> None:
 # Two blocks have been deleted, what is left of the wall has drifted, and one block hangs beside the one that
 # is cut. The digits count.
 HANGING = """
-from offsets.generated import NVIRT
+from udec_ia.layout.offsets import NVIRT
 from udec_ia import Model
 m = Model("i16r32")
 m.property(1, density=2000.0, kn=491915782.7896072, ks=491915782.7896072, friction=0.0)

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from mechanics import G
 
-from offsets.generated import TDEL
 from udec_ia import Model
 from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.layout.offsets import TDEL
 
 DECK = Path(__file__).parent.parent / "examples" / "collapse-rigid.dat"
 RAYLEIGH = "DAMP 0.25 1.0"

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from offsets.generated import NSPARE, TDEL, WFRIC
 from udec_ia import Model, UdecError
+from udec_ia.layout.offsets import NSPARE, TDEL, WFRIC
 
 EVERYWHERE = (-1.0, 99.0, -1.0, 99.0)
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from offsets import generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import getr, iget
 from udec_ia.kernels.body.bounds import _function, set_signals
+from udec_ia.layout import offsets as g
 
 EXACT = 1e-9
 LATE = 12345 + 1 / 3  # s; no 32-bit real is nearer to it than 3e-4

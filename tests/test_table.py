@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from handmade import two_blocks
 
-from offsets import generated as g
-from offsets.table import read_table
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES, scheme
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import LISTS, Unsound, corners, groups
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
 SCHEMES = tuple(ALL_SCHEMES)
 KINDS = [group.name for group in read_table().groups]

@@ -7,11 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from offsets import generated as g
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.kernels.body.sdef import put_stress
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 
 D = 0.02
 KN = 1e9
@@ -158,7 +157,7 @@ def test_a_corner_slides_over_such_an_edge_without_a_break_in_force(stress: floa
     for _ in range(int(0.12 / speed / dt)):
         model.cycle(1)
         rows = model.table("contact")
-        rows = rows[((rows["KB1"] == heavy) | (rows["KB2"] == heavy)) & (rows["KCCOD"] != VIRTUAL)]
+        rows = rows[((rows["KB1"] == heavy) | (rows["KB2"] == heavy)) & (rows["KCCOD"] != g.VIRTUAL)]
         assert len(rows) <= 1
         force.append(float(rows["KCFN"].sum()))
         codes.update(rows["KCCOD"].tolist())

@@ -28,9 +28,9 @@ from typing import Any, NamedTuple
 
 from bench import FAR, slab
 
-from offsets.generated import IBPNT, KXD, MFREE
 from udec_ia import Model
 from udec_ia.heap.array import MainArray
+from udec_ia.layout.offsets import IBPNT, KXD, MFREE
 
 ALL = (-FAR, FAR, -FAR, FAR)
 STEEP = 1.2  # exponent of the growth that is marked

@@ -9,9 +9,9 @@ import numpy as np
 from figure import RHO, Figure, cycle_for, deform
 from grids import generate, outline, quarter_ring, rectangle
 
-import offsets.generated as g
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 
 GRAVITY = 10.0
 BULK, SHEAR = 2e8, 1e8

@@ -30,8 +30,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from offsets import generated
-from offsets.table import Field
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
@@ -40,6 +38,8 @@ from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import check, check_links
 from udec_ia.inspect.check_codes import allowed
 from udec_ia.inspect.check_groups import TABLE, State
+from udec_ia.layout import offsets
+from udec_ia.layout.table import Field
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart import load, save
 
@@ -101,7 +101,7 @@ class Word(NamedTuple):
 def words(state: State) -> list[Word]:
     """All words below MFREE, and the integers of the common block."""
     found = [
-        Word(_what(field), getattr(generated, field.name), field) for field in TABLE.common if not field.real
+        Word(_what(field), getattr(offsets, field.name), field) for field in TABLE.common if not field.real
     ]
     taken: set[int] = set()
     for kind, addresses in state.address.items():

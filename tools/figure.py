@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import offsets.generated as g
 from udec_ia import Model
+from udec_ia.layout import offsets as g
 
 RHO = 2000.0  # density of all blocks, kg/m3
 CROSS = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]  # four zones about grid-point 5

@@ -33,8 +33,8 @@ import h5py
 import numpy as np
 from h5py import h5d, h5p, h5s, h5t
 
-from offsets.table import TABLE
 from udec_ia.errors import UdecError
+from udec_ia.layout.table import TABLE
 from udec_ia.model import Model
 from udec_ia.restart import info, save
 from udec_ia.restart.layout import text
@@ -308,7 +308,7 @@ def commons(rng: Rng, file: File, secret: Path) -> bool:
 
 def seal_commons(file: File) -> None:
     """Give the common block its checksum."""
-    from offsets.table import read_table
+    from udec_ia.layout.table import read_table
 
     fields = read_table().common
     content = b"".join(

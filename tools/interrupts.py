@@ -33,11 +33,11 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generated import MCTOT, MFREE, NCYC
 from udec_ia import Model, UdecError
 from udec_ia.cli import main as udec
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
+from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
 
 PACKAGE = str(Path(sys.modules["udec_ia"].__file__ or "").parent)
 NOT_COUNTED = str(Path(PACKAGE) / "signals.py")

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from figure import RHO, Figure, cycle_for, deform
 
-import offsets.generated as g
 from udec_ia import Model
+from udec_ia.layout import offsets as g
 
 GRAVITY = 10.0
 TYPES = ("rigid", "sdef", "fdef")

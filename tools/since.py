@@ -23,7 +23,10 @@ TURNS = 5
 SLAB = """
 import json
 from time import process_time
-from offsets.generated import HTOL, KXD, MFREE, NBLK, NCON, TDEL
+try:
+    from udec_ia.layout.offsets import HTOL, KXD, MFREE, NBLK, NCON, TDEL
+except ImportError:  # the older commit may have them elsewhere
+    from offsets.generated import HTOL, KXD, MFREE, NBLK, NCON, TDEL
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 

@@ -12,9 +12,9 @@ from math import hypot
 from pathlib import Path
 from typing import NamedTuple
 
-from offsets.generated import MFREE, NBLK
 from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.layout.offsets import MFREE, NBLK
 
 DECK = Path(__file__).parent.parent / "examples" / "ball-rolling.dat"
 SIDE, RADIUS, DENSITY, KN, STEP = 5**0.5, 1.115, 2000.0, 1e8, 0.002  # of the deck; s, m, kg/m3, N/m

@@ -20,6 +20,7 @@ from typing import Any
 import udec_ia
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
+from udec_ia.layout.table import StaleLayout
 from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 
@@ -163,6 +164,9 @@ def _main(argv: Sequence[str]) -> int:
     except UdecError as error:
         sys.stdout.flush()
         print(error, file=sys.stderr)
+        return ERROR
+    except StaleLayout as error:
+        print(f"udec: {error}", file=sys.stderr)
         return ERROR
     except BrokenPipeError:  # the reader of our output has gone: nobody is left to tell
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

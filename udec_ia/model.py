@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
 import numba
 import numpy as np
 
-from offsets.generated import DTOL, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.errors import UdecError, spoilt
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
@@ -33,6 +32,7 @@ from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
+from udec_ia.layout.offsets import DTOL, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
 from udec_ia.ops.commands.change import change

@@ -28,10 +28,10 @@ from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, TypeV
 import numpy as np
 from numba import config
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.layout import offsets as g
 from udec_ia.signals import hold, passing
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from offsets import generated, read_table
-from offsets.table import lay_out
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.inspect.table import table
+from udec_ia.layout import offsets
+from udec_ia.layout.table import lay_out, read_table
 
 TABLE = read_table()
 KINDS = [group.name for group in TABLE.groups]
@@ -48,10 +48,10 @@ def relocate(array: MainArray, rng: np.random.Generator) -> MainArray:
                     moved.h.ia[word] = new[int(moved.h.ia[word])]
     for field in TABLE.common:
         if field.target is not None:
-            at = getattr(generated, field.name)
+            at = getattr(offsets, field.name)
             moved.h.ci[at] = new[int(moved.h.ci[at])]
-    moved.h.ci[generated.JUNK] = 0
-    moved.h.ci[generated.MFREE] = free
+    moved.h.ci[offsets.JUNK] = 0
+    moved.h.ci[offsets.MFREE] = free
     return moved
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from naive.bodies import FULLY, ON_CORNERS, SIMPLY, VIRTUAL, by_address, zone_area
+from naive.bodies import FULLY, ON_CORNERS, SIMPLY, by_address, zone_area
+from udec_ia.layout import offsets as g
 
 Model = Any
 Moduli = tuple[float, float]  # bulk and shear modulus
@@ -125,7 +126,7 @@ class Scene:
     def _contacts(self, model: Model, kn: float, ks: float) -> None:
         for row in model.table("contact"):
             code = int(row["KCCOD"])
-            if code == VIRTUAL:
+            if code == g.VIRTUAL:
                 continue
             x, y = float(row["KXC"]), float(row["KYC"])
             one, two = int(row["KCP1"]), int(row["KCP2"])

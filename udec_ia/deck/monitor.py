@@ -16,12 +16,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-import offsets.generated as g
 from udec_ia.deck.advice import at
 from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.errors import UdecError
+from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Field
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.words import Scheme
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling

@@ -17,8 +17,8 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.core import config
 
-import offsets.generated as g
 from udec_ia.heap.linking import Kernel
+from udec_ia.layout import offsets as g
 
 F = TypeVar("F", bound=Callable[..., Any])
 PACKAGE = Path(__file__).parent.parent
@@ -35,7 +35,7 @@ def _cache_home() -> Path:
 def source_digest() -> str:
     """Hash of the field table and of the sources that compiled kernels can depend on."""
     digest = hashlib.sha256(g.DIGEST.encode())
-    for folder in ("heap", "kernels"):
+    for folder in ("layout", "heap", "kernels"):
         for path in sorted((PACKAGE / folder).rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.hexdigest()

@@ -21,10 +21,10 @@ does, is told when the group is given back.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.array import OVERFLOW
 from udec_ia.heap.jit import kernel
+from udec_ia.layout import offsets as g
 
 JNEXT: Offset = HEAD
 JSIZE: Offset = (1, 1, 1)

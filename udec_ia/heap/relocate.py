@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Group, Layout, layouts, read_table
 from udec_ia.heap.array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Group, Layout, layouts, read_table
 
 
 def relocate(array: MainArray, order: dict[str, Any]) -> Any:

@@ -30,7 +30,7 @@ class Memory(NamedTuple):
     """All that a kernel sees.
 
     ia: IA() as integers; ra: the same bytes as reals; ci, cr, cd: integers, reals and doubles of the common
-    block, indexed by the names of `offsets.generated`.
+    block, indexed by the names of `udec_ia.layout.offsets`.
     """
 
     ia: Any

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from offsets.generate import SCHEMES
+from udec_ia.layout.table import SCHEMES
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.inspect.check_groups import KR, State
 from udec_ia.inspect.check_members import zoned
-from udec_ia.kernels.body.motion import FIXED, GIVEN_X
+from udec_ia.layout import offsets as g
 
 
 def check_bounds(state: State) -> None:
@@ -73,7 +73,7 @@ def _check_held(state: State) -> None:
     """Velocities that are given are not calculated."""
     bounds, given = state.address["bound"], state.column("bound", "KUFIX")
     fixed = state.column("block", "KBFIX")
-    held = np.where(fixed == FIXED, 3, fixed // GIVEN_X)  # of a block, in the code of a grid-point
+    held = np.where(fixed == g.FIXED, 3, fixed // g.GIVEN_X)  # of a block, in the code of a grid-point
     for kind, name, field, values in (
         ("gridpoint", "KUG", "KGFIX", state.column("gridpoint", "KGFIX")),
         ("block", "KUB", "KBFIX", held),

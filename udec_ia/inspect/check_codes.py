@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Field
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field
 
 COMMON = [
     (field, getattr(g, field.name))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check_groups import Violation
 from udec_ia.kernels.drive.cycle import BLOCKS, BROKEN
 from udec_ia.kernels.geometry.tolerances import tolset
+from udec_ia.layout import offsets as g
 
 
 def check_common(array: MainArray) -> list[Violation]:

@@ -19,8 +19,8 @@ from udec_ia.heap.array import variable
 from udec_ia.inspect.check_codes import allowed
 from udec_ia.inspect.check_groups import TABLE, Numbers, State
 from udec_ia.inspect.check_map import AHEAD
-from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import FLAT
+from udec_ia.layout import offsets as g
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
@@ -315,12 +315,12 @@ def touches(state: State, o: Outlines) -> Touches:
     index[state.rows("corner", o.corner)] = np.arange(len(o.corner))
     code = state.column("contact", "KCCOD")
     ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
-    comparable = (code >= CORNER_CORNER) & (code < VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
+    comparable = (code >= g.CORNER_CORNER) & (code < g.VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
     at = np.flatnonzero(comparable)
     code, i, j = code[at], ends[0][at], ends[1][at]
     between = o.c[j] - o.c[i]
     distance = np.hypot(*between.T)
-    cases = [code == CORNER_CORNER, code == CORNER_EDGE]
+    cases = [code == g.CORNER_CORNER, code == g.CORNER_EDGE]
     overlap = np.select(
         cases,
         [o.r[i] + o.r[j] - distance, o.r[i] - dot(o.c[i] - o.p[j], o.e[j])],
@@ -330,7 +330,7 @@ def touches(state: State, o: Outlines) -> Touches:
         [case[:, None] for case in cases], [between / distance[:, None], -o.e[j]], o.e[i]
     )  # from block KB1 to block KB2
     point = np.where(
-        (code == EDGE_CORNER)[:, None],
+        (code == g.EDGE_CORNER)[:, None],
         o.c[j] - (o.r[j] - overlap / 2)[:, None] * normal,
         o.c[i] + (o.r[i] - overlap / 2)[:, None] * normal,
     )

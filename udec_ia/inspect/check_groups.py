@@ -16,11 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import offsets.generated as g
-from offsets import read_table
-from offsets.table import layouts
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, SOFT, follow, one_of
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import layouts, read_table
 
 Numbers = NDArray[Any]
 

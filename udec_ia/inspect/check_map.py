@@ -14,9 +14,8 @@ from collections import Counter
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.inspect.check_groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 
 (KNB,) = names("corner", "host")
 (KLB,) = names("corner", "clockback")
@@ -105,7 +104,7 @@ def _check_contacts(state: State) -> None:
 
 def _check_virtual(state: State) -> None:
     """Invariants 4 and 9: a virtual contact is a bridge of the map and carries no force."""
-    virtual = state.column("contact", "KCCOD") == VIRTUAL
+    virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     left, right = (state.column("contact", side) for side in SIDES)
     for row in np.flatnonzero(virtual & (left != right)):
         contact = state.address["contact"][row]
@@ -228,7 +227,7 @@ def _check_counts(state: State) -> None:
         state.report(5, f"{blocks} blocks - {contacts} contacts + {domains} domains is not 2")
     if not blocks and contacts + domains:
         state.report(5, f"there are no blocks, but {contacts} contacts and {domains} domains")
-    virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == VIRTUAL))
+    virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == g.VIRTUAL))
     soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != g.MRIG))
     counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
     for name, count in counts.items():

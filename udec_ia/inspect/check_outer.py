@@ -14,7 +14,7 @@ import numpy as np
 
 from udec_ia.inspect.check_groups import State
 from udec_ia.inspect.check_map import SIDES
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 
 
 def check_outer(state: State) -> None:
@@ -47,7 +47,7 @@ def _along(state: State, corner: str, contact: str) -> np.ndarray:
     place[rings.contact] = state.read(rings.item[rings.contact], contact)
     real = np.arange(len(rings.item))
     row = rings.row[rings.contact]
-    real[np.flatnonzero(rings.contact)[state.column("contact", "KCCOD")[row] == VIRTUAL]] = 0
+    real[np.flatnonzero(rings.contact)[state.column("contact", "KCCOD")[row] == g.VIRTUAL]] = 0
     return place[np.maximum.accumulate(real)]  # a list begins with a corner
 
 

@@ -15,12 +15,12 @@ import numpy as np
 from udec_ia.inspect.check_geometry import Outlines, cross
 from udec_ia.inspect.check_groups import Numbers, State
 from udec_ia.inspect.check_map import SIDES
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 
 
 def check_pieces(state: State, o: Outlines) -> None:
     """Invariant 4, for the pieces that virtual contacts tie."""
-    virtual = np.flatnonzero(state.column("contact", "KCCOD") == VIRTUAL)
+    virtual = np.flatnonzero(state.column("contact", "KCCOD") == g.VIRTUAL)
     if not len(virtual) or len(o.block) < len(state.address["block"]):
         return
     rings = state.rings

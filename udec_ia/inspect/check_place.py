@@ -15,7 +15,7 @@ import numpy as np
 from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check_groups import HOSTS, Numbers, State
 from udec_ia.inspect.check_map import neighbours
-from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.layout import offsets as g
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     that meet in a point without a radius part the ground between them at their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
-    on_edge = touch.code == (EDGE_CORNER if side == 0 else CORNER_EDGE)
-    two_arcs = touch.code == CORNER_CORNER
+    on_edge = touch.code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
+    two_arcs = touch.code == g.CORNER_CORNER
     from_start = dot(o.c[other] - o.p[o.before[k]], o.t[k])
     to_other = o.c[other] - o.c[k]
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
@@ -120,7 +120,7 @@ def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
     to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
     an open contact would be given up.
     """
-    virtual = np.flatnonzero(state.column("contact", "KCCOD") == VIRTUAL)
+    virtual = np.flatnonzero(state.column("contact", "KCCOD") == g.VIRTUAL)
     block, before, after = neighbours(state, virtual)
     index = np.full(len(state.address["contact"]), -1)
     index[touch.row] = np.arange(len(touch.row))

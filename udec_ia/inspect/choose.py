@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import finite
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
@@ -84,7 +83,7 @@ def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
     if kind in POINTS:
         return rows["address"], np.column_stack([rows[name] for name in POINTS[kind]])
     if kind == "contact":
-        rows = rows[rows["KCCOD"] != VIRTUAL]
+        rows = rows[rows["KCCOD"] != g.VIRTUAL]
         return rows["address"], np.column_stack([rows["KXC"], rows["KYC"]])
     if kind == "zone":
         return rows["address"], _middles(array, rows)
@@ -112,7 +111,7 @@ def _subjects(array: MainArray, bounds: Any) -> Any:
 
 def _domains(array: MainArray, address: Any) -> tuple[Any, Any]:
     contacts = table(array, "contact")
-    contacts = contacts[contacts["KCCOD"] != VIRTUAL]
+    contacts = contacts[contacts["KCCOD"] != g.VIRTUAL]
     order = np.argsort(address)
     count, total = np.zeros(len(address)), np.zeros((len(address), 2))
     for side in ("KD1", "KD2"):

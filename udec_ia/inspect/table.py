@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Group, layouts, read_table
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.walk import HEADS, LISTS, SOFT, Unsound, follow, groups, one_of
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Group, layouts, read_table
 
 
 def table(array: MainArray, kind: str) -> Any:

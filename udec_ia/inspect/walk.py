@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
+from udec_ia.layout import offsets as g
 
 LISTS: dict[str, tuple[int, Offset]] = {
     "block": (g.IBPNT, g.KB),

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.files import put_in_place
 from udec_ia.heap.accessors import Memory
+from udec_ia.layout import offsets as g
 from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title
 from udec_ia.output.outline import State, snapshot
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import offsets.generated as g
+from udec_ia.layout import offsets as g
 from udec_ia.output.field import CONTOURS, Field, measure
 from udec_ia.output.outline import Outlines, curves
 

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Field, Group, layouts, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
 from udec_ia.inspect.walk import HEADS, SOFT
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, Group, layouts, read_table
 
 TABLE = read_table()
 POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
 from udec_ia.inspect.walk import groups, members
+from udec_ia.layout import offsets as g
 
 CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
     "s11": "stress 11 (Pa)",

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL, meet
+from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.layout import offsets as g
 from udec_ia.output.field import Field, field
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
@@ -231,7 +231,7 @@ def contact_forces(h: Memory) -> Contacts:
     pairs = [(iget(h, contact, g.KCP1), iget(h, contact, g.KCP2)) for contact in addresses]
     normal = np.array(
         [
-            (0.0, 0.0) if code == VIRTUAL else meet(h, code, *pair)[:2]
+            (0.0, 0.0) if code == g.VIRTUAL else meet(h, code, *pair)[:2]
             for code, pair in zip(codes, pairs, strict=True)
         ]
     ).reshape(-1, 2)
@@ -241,7 +241,7 @@ def contact_forces(h: Memory) -> Contacts:
     return Contacts(
         place=_points(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
-        virtual=np.array([code == VIRTUAL for code in codes], bool),
+        virtual=np.array([code == g.VIRTUAL for code in codes], bool),
         link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
         address=iads,
     )
@@ -284,8 +284,8 @@ def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
     first = iget(h, item, g.KB1) == block
     corner = iget(h, item, g.KCP1 if first else g.KCP2)
     code = iget(h, item, g.KCCOD)
-    on_arc = getr(h, corner, g.KRAD) > 0.0 and code != (EDGE_CORNER if first else CORNER_EDGE)
-    place = tuple(_apex(h, np.int64(corner))) if code == VIRTUAL else point(h, item, g.KXC, g.KYC)
+    on_arc = getr(h, corner, g.KRAD) > 0.0 and code != (g.EDGE_CORNER if first else g.CORNER_EDGE)
+    place = tuple(_apex(h, np.int64(corner))) if code == g.VIRTUAL else point(h, item, g.KXC, g.KYC)
     return corner if on_arc else 0, place
 
 

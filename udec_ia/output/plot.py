@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
+from udec_ia.layout import offsets as g
 from udec_ia.output.draw import (
     HATCH_WIDTH,
     INK,

@@ -17,8 +17,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-import offsets.generated as g
-from offsets.table import Field, read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.inspect.walk import (
@@ -34,6 +32,8 @@ from udec_ia.inspect.walk import (
     point,
 )
 from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, read_table
 from udec_ia.ops.commands.energy import Balance, balance
 from udec_ia.ops.run.watch import Series
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft_in
 
 if TYPE_CHECKING:

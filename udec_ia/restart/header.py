@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from offsets.table import read_table
 from udec_ia.errors import MESSAGES, spoilt
+from udec_ia.layout.table import read_table
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import differences, losses

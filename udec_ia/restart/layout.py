@@ -12,7 +12,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from offsets.table import COMMON_TYPES, Field, Group, Table, lay_out
+from udec_ia.layout.table import COMMON_TYPES, Field, Group, Table, lay_out
 
 TEXT_COLUMNS = ("name", "type", "refers_to", "role", "unit", "page", "text")
 NUMBER_COLUMNS = ("count", "offset", "word")
@@ -62,6 +62,12 @@ def differences(ours: Table, theirs: Table) -> list[str]:
         f"{what} has {name} as {other[what, name]} in the file, as {place} here"
         for (what, name), place in mine.items()
         if other.get((what, name), place) != place
+    ]
+    codes = {code.name: code.value for code in ours.codes}
+    found += [
+        f"the code {code.name} of {code.field} is {code.value} in the file, {codes[code.name]} here"
+        for code in theirs.codes
+        if codes.get(code.name, code.value) != code.value
     ]
     return found or ([] if list(mine) == list(other) else ["its groups or fields come in another order"])
 

@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from offsets.table import Table, TableError, parse, read_table
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.check_common import check_common
+from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.ops.run.watch import Series
 from udec_ia.printable import printable

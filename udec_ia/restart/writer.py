@@ -18,11 +18,11 @@ import h5py
 import numba
 import numpy as np
 
-import offsets.generated as g
 import udec_ia
-from offsets.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import CHUNK
 from udec_ia.restart.layout import common_places, field_rows, text

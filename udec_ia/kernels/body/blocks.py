@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import move_fdef
-from udec_ia.kernels.body.motion import FIXED, motion
+from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.geometry.shape import keep_circles
+from udec_ia.layout import offsets as g
 
 TOO_FAR = 36
 KEEP = 16  # cycles from one time to the next that rigid blocks have their circles put back
@@ -54,7 +54,7 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
                 fastest = max(fastest, motion(h, ib))
         else:
             fastest = max(fastest, motion(h, ib))
-        if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != FIXED:
+        if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
             keep_circles(h, ib)
         check_place(h, ib)
         ib = iget(h, ib, g.KB)

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
 from udec_ia.kernels.links.lists import corner_of
 from udec_ia.kernels.map.segments import on_arc
+from udec_ia.layout import offsets as g
 
 
 @inlined

@@ -20,12 +20,11 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import putfdf
-from udec_ia.kernels.body.motion import FIXED, GIVEN_X, GIVEN_Y
 from udec_ia.kernels.body.sdef import putstr
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -121,9 +120,9 @@ def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) ->
 def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
     """Set the velocities that condition `iu` gives; what that takes from those before is its work."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         return
-    if iget(h, ib, g.KBFIX) == GIVEN_X + GIVEN_Y:
+    if iget(h, ib, g.KBFIX) == g.GIVEN_X + g.GIVEN_Y:
         if energy is not None:
             td = np.float64(getr(h, ib, g.KTD))
             h.cd[g.WBOUND] -= td * (getr(h, ib, g.KBI) * td + getr(h, ib, g.KBFT) * h.cr[g.TDEL]) * 0.5
@@ -133,9 +132,9 @@ def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
     else:
         vx, vy = getr(h, ib, g.KXD), getr(h, ib, g.KYD)
     ux, uy = vx, vy
-    if fix & 1 != 0:
+    if fix & g.ALONG_X != 0:
         vx = getr(h, iu, g.KUVX) * factor
-    if fix & 2 != 0:
+    if fix & g.ALONG_Y != 0:
         vy = getr(h, iu, g.KUVY) * factor
     if ig != 0:
         putr(h, ig, g.KXDG, vx)
@@ -169,7 +168,7 @@ def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
 @kernel
 def power_of_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> float:
     """What the load (fx, fy) of condition `iu` puts in at the velocities of now; 0 if it takes."""
-    if iget(h, iget(h, iu, g.KUB), g.KBFIX) == FIXED:
+    if iget(h, iget(h, iu, g.KUB), g.KBFIX) == g.FIXED:
         return 0.0
     vx, vy = velocity_of(h, iu, x, y)
     return max(np.float64(fx) * vx + np.float64(fy) * vy, 0.0)
@@ -207,16 +206,16 @@ def push_loads(h: Memory, dt: float) -> None:
 def drive(h: Memory, iu: int) -> None:
     """Add to WDRIVE what the velocities that condition `iu` gives put in during the step that begins."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         return
     _, fx, fy = mass_and_force(h, ig, ib)
     vx, vy = (
         (getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)) if ig != 0 else (getr(h, ib, g.KXD), getr(h, ib, g.KYD))
     )
     power = 0.0
-    if fix & 1 != 0:
+    if fix & g.ALONG_X != 0:
         power -= fx * vx
-    if fix & 2 != 0:
+    if fix & g.ALONG_Y != 0:
         power -= fy * vy
     h.cd[g.WDRIVE] += max(power, 0.0) * h.cr[g.TDEL]
 

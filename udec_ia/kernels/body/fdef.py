@@ -24,13 +24,12 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.laws import stress_increment
-from udec_ia.kernels.body.motion import FIXED
 from udec_ia.kernels.geometry.shape import round_anew
 from udec_ia.kernels.geometry.tensor import INSIDE_OUT, cayley, turned
+from udec_ia.layout import offsets as g
 
 
 @inlined
@@ -49,9 +48,9 @@ def next_point_velocity(h: Memory, ig: int) -> tuple[float, float]:
     dt, con1, con2, m = h.cr[g.TDEL], h.cr[g.CON1], h.cr[g.CON2], getr(h, ig, g.KGPM)
     fx, fy = getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX], getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
     xd, yd, fix = getr(h, ig, g.KXDG), getr(h, ig, g.KYDG), iget(h, ig, g.KGFIX)
-    if fix & 1 == 0:
+    if fix & g.ALONG_X == 0:
         xd = (con1 * xd + fx / m * dt) * con2
-    if fix & 2 == 0:
+    if fix & g.ALONG_Y == 0:
         yd = (con1 * yd + fy / m * dt) * con2
     return xd, yd
 
@@ -270,7 +269,7 @@ def move_fdef(h: Memory, ib: int, laws: Any) -> float:
     putr(h, ib, g.KBFX, zero)
     putr(h, ib, g.KBFY, zero)
     putr(h, ib, g.KBFT, zero)
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         stand_still(h, ib)
         return zero
     fastest = zero

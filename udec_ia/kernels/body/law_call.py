@@ -26,7 +26,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-import offsets.generated as g
+from udec_ia.layout import offsets as g
 
 FIRST, LAST = 2, 5  # constitutive numbers of the user's laws
 JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws

@@ -14,12 +14,10 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import kernel
-
-FIXED, GIVEN_X, GIVEN_Y = 1, 2, 4  # KBFIX: FIX; velocities that BOUNDARY gives
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -75,11 +73,11 @@ def next_velocity(h: Memory, ib: int) -> tuple[float, float, float]:
     xd, yd, td, fix = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD), iget(h, ib, g.KBFIX)
     dt, con1, con2 = h.cr[g.TDEL], h.cr[g.CON1], h.cr[g.CON2]
     bm = getr(h, ib, g.KBM)
-    if fix & GIVEN_X == 0:
+    if fix & g.GIVEN_X == 0:
         xd = (con1 * xd + (getr(h, ib, g.KBFX) / bm + h.cr[g.GRAVX]) * dt) * con2
-    if fix & GIVEN_Y == 0:
+    if fix & g.GIVEN_Y == 0:
         yd = (con1 * yd + (getr(h, ib, g.KBFY) / bm + h.cr[g.GRAVY]) * dt) * con2
-    if fix != GIVEN_X + GIVEN_Y:
+    if fix != g.GIVEN_X + g.GIVEN_Y:
         td = (con1 * td + getr(h, ib, g.KBFT) / getr(h, ib, g.KBI) * dt) * con2
     return xd, yd, td
 
@@ -88,7 +86,7 @@ def next_velocity(h: Memory, ib: int) -> tuple[float, float, float]:
 def accelerate(h: Memory, ib: int) -> None:
     """Velocities of block `ib` := those at the end of the step; its force sums are reset."""
     zero = real(h, 0.0)
-    if iget(h, ib, g.KBFIX) != FIXED:
+    if iget(h, ib, g.KBFIX) != g.FIXED:
         xd, yd, td = next_velocity(h, ib)
         putr(h, ib, g.KXD, xd)
         putr(h, ib, g.KYD, yd)
@@ -105,7 +103,7 @@ def motion(h: Memory, ib: int) -> float:
     Returns a bound on the velocity, in x or in y, of any point of the block.
     """
     accelerate(h, ib)
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         return real(h, 0.0)
     dt = h.cr[g.TDEL]
     xd, yd, td = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD)

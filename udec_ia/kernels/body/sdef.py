@@ -21,13 +21,13 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.laws import stress_increment
-from udec_ia.kernels.body.motion import FIXED, accelerate
+from udec_ia.kernels.body.motion import accelerate
 from udec_ia.kernels.geometry.shape import round_anew
 from udec_ia.kernels.geometry.tensor import INSIDE_OUT, cayley, turned
+from udec_ia.layout import offsets as g
 
 
 @inlined
@@ -155,7 +155,7 @@ def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) 
 def move_sdef(h: Memory, ib: int, laws: Any) -> float:
     """One step of simply-deformable block `ib`; returns a bound on the velocity of any of its points."""
     ie = iget(h, ib, g.KBEX)
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         accelerate(h, ib)
         reset_applied(h, ie)
         return real(h, 0.0)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.boundary_point import putfce
 from udec_ia.kernels.body.fdef import stand_still, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.geometry.contact_geometry import coord
+from udec_ia.layout import offsets as g
 
 
 @kernel

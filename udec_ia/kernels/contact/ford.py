@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
@@ -24,17 +23,12 @@ from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
 from udec_ia.kernels.energy.works import note_corners, note_damping, note_law_damping, note_opening
-from udec_ia.kernels.geometry.contact_geometry import (
-    CORNER_EDGE,
-    EDGE_CORNER,
-    OVERLAP_TOO_GREAT,
-    VIRTUAL,
-    faces,
-)
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
 from udec_ia.kernels.links.lists import is_contact
 from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.map.reclass import settle
 from udec_ia.kernels.map.segments import ahead_by, same_segment
+from udec_ia.layout import offsets as g
 
 TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
 
@@ -53,7 +47,7 @@ def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
     if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
         return False
     dx, dy = getr(h, jc, g.KXC) - getr(h, ic, g.KXC), getr(h, jc, g.KYC) - getr(h, ic, g.KYC)
-    return dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL] and iget(h, jc, g.KCCOD) != VIRTUAL
+    return dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL] and iget(h, jc, g.KCCOD) != g.VIRTUAL
 
 
 @inlined
@@ -83,10 +77,10 @@ def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """
     code = iget(h, ic, g.KCCOD)
     after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
-    if passed(h, ic, after, before, ip, code != EDGE_CORNER, nx, ny):
+    if passed(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
         return True
     after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
-    return passed(h, ic, after, before, ip, code != CORNER_EDGE, -nx, -ny)
+    return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
 
 
 @inlined
@@ -97,9 +91,9 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
     normal.
     """
     code = iget(h, ic, g.KCCOD)
-    if code == CORNER_EDGE:
+    if code == g.CORNER_EDGE:
         return not faces(h, iget(h, ic, g.KCP1), nx, ny, real(h, TURNED))
-    return code == EDGE_CORNER and not faces(h, iget(h, ic, g.KCP2), -nx, -ny, real(h, TURNED))
+    return code == g.EDGE_CORNER and not faces(h, iget(h, ic, g.KCP2), -nx, -ny, real(h, TURNED))
 
 
 @inlined
@@ -122,8 +116,8 @@ def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     if do_not_meet(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), gap):
         return True
     code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
-    if (code == EDGE_CORNER or getr(h, ip, g.KRAD) >= overlap) and (
-        code == CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
+    if (code == g.EDGE_CORNER or getr(h, ip, g.KRAD) >= overlap) and (
+        code == g.CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
     ):
         return False
     return overtaken(h, ic, nx, ny)
@@ -271,7 +265,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, energy: Any) -> None:
     while ic != 0:
         ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
         following = iget(h, ic, g.KC)
-        if iget(h, ic, g.KCCOD) != VIRTUAL:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             ford(h, ic, soft, joints, energy)
         ic = following
 
@@ -282,7 +276,7 @@ def settle_all(h: Memory) -> None:
     ic = h.ci[g.ICPNT]
     while ic != 0:
         following = iget(h, ic, g.KC)
-        if iget(h, ic, g.KCCOD) != VIRTUAL:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             nx, ny, overlap = restart(h, ic)
             drop(h, ic, nx, ny, overlap)
         ic = following

@@ -6,12 +6,12 @@ holds its blocks apart. It closes when blocks overlap, and it bears no tension.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined
 from udec_ia.kernels.body.law_call import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.kernels.body.laws import failed
 from udec_ia.kernels.map.bridge import no_force
+from udec_ia.layout import offsets as g
 
 
 @inlined

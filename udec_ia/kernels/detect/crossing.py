@@ -10,11 +10,10 @@ outside of one block, and none the space between.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.kernels.links.lists import is_contact, is_corner, nextcp, other, prevcp
+from udec_ia.layout import offsets as g
 
 AROUND = 6  # items looked at on either side
 TURNS = 1  # corners passed on the way to a contact that lies beside another: the way round has two at least
@@ -48,7 +47,7 @@ def would_cross(h: Memory, ib: int, iad: int, jb: int, jad: int, x: float, y: fl
                 turns += 1
             if turns > TURNS:
                 break
-            if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, g.KCCOD) != VIRTUAL:
+            if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, g.KCCOD) != g.VIRTUAL:
                 dx, dy = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
                 if dx * dx + dy * dy < near * near and _comes(h, jb, jad, item, ahead):
                     return True

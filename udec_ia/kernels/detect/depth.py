@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.contact_geometry import lean
+from udec_ia.layout import offsets as g
 
 
 @inlined

@@ -23,15 +23,15 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import velocity_at
 from udec_ia.kernels.detect.tunnelling import gone_through
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.kernels.map.segments import loop_start
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -46,7 +46,7 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
     one, two = iget(h, item, g.KB1), iget(h, item, g.KB2)
     all_real = h.ci[g.NVIRT] == 0  # saves a look at the far end of every contact
     while True:
-        if all_real or iget(h, item, g.KCCOD) != VIRTUAL:
+        if all_real or iget(h, item, g.KCCOD) != g.VIRTUAL:
             x, y = getr(h, item, g.KXC), getr(h, item, g.KYC)
             vx, vy = velocity_at(h, one, item, x, y, soft)
             wx, wy = velocity_at(h, two, item, x, y, soft)

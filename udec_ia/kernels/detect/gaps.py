@@ -16,16 +16,16 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.detect.tunnelling import arc_point, carried, was_at, ways
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL, meet
+from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, nextcp, other, prevcp
 from udec_ia.kernels.map.bridge import delc, nextd, to_virtual
 from udec_ia.kernels.map.segments import ARC, BLOCK, CORNER, loop_start
+from udec_ia.layout import offsets as g
 
 BESIDE = 3  # items looked at in a list for a neighbour: there may be a corner between
 
@@ -112,7 +112,7 @@ def beside(h: Memory, ib: int, iad: int, forwards: bool) -> int:
     """The first real contact of block `ib` at item `iad` or a little further on in its list; 0 for none."""
     item = int64(iad)
     for _ in range(BESIDE):
-        if not is_corner(h, item) and iget(h, item, g.KCCOD) != VIRTUAL:
+        if not is_corner(h, item) and iget(h, item, g.KCCOD) != g.VIRTUAL:
             return item
         item = nextcp(h, ib, item) if forwards else prevcp(h, ib, item)
     return int64(0)
@@ -169,7 +169,7 @@ def _open_contacts(h: Memory, idm: int, found: Any) -> int:
     n = 0
     while True:
         item, block = nextd(h, item, block)
-        if not is_corner(h, item) and iget(h, item, g.KCCOD) != VIRTUAL and getr(h, item, g.KCN) < 0:
+        if not is_corner(h, item) and iget(h, item, g.KCCOD) != g.VIRTUAL and getr(h, item, g.KCN) < 0:
             found[n] = item
             n += 1
         if item == start and block == first:

@@ -13,24 +13,12 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.crossing import would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between
-from udec_ia.kernels.geometry.contact_geometry import (
-    CORNER_CORNER,
-    CORNER_EDGE,
-    EDGE_CORNER,
-    VIRTUAL,
-    cc,
-    ce,
-    faces,
-    lean,
-    meet,
-    past,
-)
+from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, lean, meet, past
 from udec_ia.kernels.geometry.sorting import stable_order
 from udec_ia.kernels.links.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.segments import (
@@ -44,6 +32,7 @@ from udec_ia.kernels.map.segments import (
     on_arc,
     same_segment,
 )
+from udec_ia.layout import offsets as g
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 AROUND = 6  # items looked at on either side for a contact of the same two blocks
@@ -110,7 +99,7 @@ def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
     """True if a contact on the arc of corner `ip` of block `ib` stands on segment (jp, jarc) already."""
     ic = prevcp(h, ib, ip)
     while is_contact(h, ic):
-        if iget(h, ic, g.KCCOD) != VIRTUAL:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             if not on_arc(h, ib, ic):
                 return False
             jb = other(h, ib, ic)
@@ -126,7 +115,7 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
     ahead, behind = nextcp(h, ib, iad), int64(iad)
     for _ in range(AROUND):
         for ic in (ahead, behind):
-            if is_contact(h, ic) and other(h, ib, ic) == jb and iget(h, ic, g.KCCOD) != VIRTUAL:
+            if is_contact(h, ic) and other(h, ib, ic) == jb and iget(h, ic, g.KCCOD) != g.VIRTUAL:
                 dx, dy = getr(h, ic, g.KXC) - x, getr(h, ic, g.KYC) - y
                 if dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL]:
                     return True
@@ -168,13 +157,13 @@ def facing(h: Memory, seg: Any, i: int, j: int, most: float) -> tuple[int, float
     """
     ip, jp = seg[i, CORNER], seg[j, CORNER]
     if seg[i, ARC] + seg[j, ARC] == 2:
-        code = CORNER_CORNER
+        code = g.CORNER_CORNER
         can, overlap = arc_on_arc(h, ip, jp, most)
     elif seg[i, ARC] == 1:
-        code = CORNER_EDGE
+        code = g.CORNER_EDGE
         can, overlap = arc_on_edge(h, ip, jp, most)
     else:
-        code = EDGE_CORNER
+        code = g.EDGE_CORNER
         can, overlap = arc_on_edge(h, jp, ip, most)
     return (code if can else 0), overlap
 
@@ -188,7 +177,7 @@ def _unless_stray(h: Memory, ib: int, jb: int, overlap: float, x: float, y: floa
     ip = iget(h, ib, g.KP)
     item = nextcp(h, ib, ip)
     while item != ip:
-        if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, g.KCCOD) != VIRTUAL:
+        if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, g.KCCOD) != g.VIRTUAL:
             dx, dy = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
             if dx * dx + dy * dy <= near * near:
                 return 0

@@ -28,7 +28,6 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.boundary_point import lever
@@ -36,6 +35,7 @@ from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.geometry.contact_geometry import tangents
 from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
+from udec_ia.layout import offsets as g
 
 POINTS = 3  # of an arc that are followed
 STEPS = 8  # places looked at while a point goes by CTOL in x or in y

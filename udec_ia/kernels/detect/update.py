@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room_for_two
@@ -38,6 +37,7 @@ from udec_ia.kernels.map.segments import (
     settle_loop,
 )
 from udec_ia.kernels.map.virtual import cut_among_pieces, rehook
+from udec_ia.layout import offsets as g
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
 SEARCHED = (

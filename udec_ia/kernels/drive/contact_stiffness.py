@@ -16,10 +16,9 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL
+from udec_ia.layout import offsets as g
 
 DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12; a grid-point has the first two
 X, Y = 0, 1
@@ -82,7 +81,7 @@ def add_contacts(h: Memory, row: Any, length: Any, free: Any, total: Any) -> Non
     ic = h.ci[g.ICPNT]
     while ic != 0:
         code = iget(h, ic, g.KCCOD)
-        if code != VIRTUAL:
+        if code != g.VIRTUAL:
             x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
             moves[:] = 0.0
             at[:] = 0
@@ -90,7 +89,7 @@ def add_contacts(h: Memory, row: Any, length: Any, free: Any, total: Any) -> Non
                 ib = iget(h, ic, g.KB1 if side == 0 else g.KB2)
                 if iget(h, ib, HEAD) == g.MFDEF:
                     ip = iget(h, ic, g.KCP1 if side == 0 else g.KCP2)
-                    on_edge = code == (EDGE_CORNER if side == 0 else CORNER_EDGE)
+                    on_edge = code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
                     part = _part(h, ip, x, y) if on_edge else 1.0
                     _enter_edge(h, ip, part, row, at[side], moves[side])
                 else:

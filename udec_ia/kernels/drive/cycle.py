@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
@@ -18,6 +17,7 @@ from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
 from udec_ia.kernels.detect.update import update_all
 from udec_ia.kernels.energy.works import note_forces, note_stresses
+from udec_ia.layout import offsets as g
 
 BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 

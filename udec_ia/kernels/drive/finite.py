@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
-from offsets import read_table
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
 from udec_ia.heap.jit import kernel
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
 # Offsets of all reals of a kind of group, from the field table.
 REALS = {

@@ -12,13 +12,11 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.fdef import gradient
-from udec_ia.kernels.body.motion import FIXED
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.kernels.links.lists import corner_of
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -84,19 +82,20 @@ def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
     least, at = real(h, np.inf), int64(0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED and iget(h, ib, HEAD) == g.MFDEF:
+        kind, fixed = iget(h, ib, HEAD), iget(h, ib, g.KBFIX) == g.FIXED
+        if kind == g.MFDEF and not fixed:
             zone_stiffness(h, ib, stiffness)
-        elif iget(h, ib, g.KBFIX) != FIXED and iget(h, ib, HEAD) == g.MSDEF and internal_mode(h, ib) < least:
+        elif kind == g.MSDEF and not fixed and internal_mode(h, ib) < least:
             least, at = internal_mode(h, ib), ib
         ib = iget(h, ib, g.KB)
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        if iget(h, ic, g.KCCOD) != VIRTUAL:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             contact_stiffness(h, ic, stiffness)
         ic = iget(h, ic, g.KC)
     ib = h.ci[g.IBPNT]
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED and iget(h, ib, HEAD) == g.MFDEF:
+        if iget(h, ib, g.KBFIX) != g.FIXED and iget(h, ib, HEAD) == g.MFDEF:
             ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
             while ig != 0:
                 if getr(h, ig, g.KGPM) < least * stiffness[ig]:

@@ -17,14 +17,13 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.bounds import load, push_load
 from udec_ia.kernels.body.fdef import zone_area
-from udec_ia.kernels.body.motion import FIXED, GIVEN_X, GIVEN_Y
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.stored import liveliest, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
 
 BLOCK_SUMS = (g.KBFX, g.KBFY, g.KBFT)
 POINT_SUMS = (g.KGFX, g.KGFY)
@@ -36,18 +35,18 @@ SUMS = len(BLOCK_SUMS) + len(APPLIED)  # that a load can change; those of a grid
 def block_force(h: Memory, ib: int) -> float:
     """Unbalanced force on block `ib` as a whole; its moment counts as a force on the farthest corner."""
     fix, bm, zero = iget(h, ib, g.KBFIX), getr(h, ib, g.KBM), real(h, 0.0)
-    if fix == FIXED:
+    if fix == g.FIXED:
         return zero
-    fx = zero if fix & GIVEN_X else getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX]
-    fy = zero if fix & GIVEN_Y else getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
-    ft = zero if fix == GIVEN_X + GIVEN_Y else getr(h, ib, g.KBFT) / getr(h, ib, g.KBRO)
+    fx = zero if fix & g.GIVEN_X else getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX]
+    fy = zero if fix & g.GIVEN_Y else getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
+    ft = zero if fix == g.GIVEN_X + g.GIVEN_Y else getr(h, ib, g.KBFT) / getr(h, ib, g.KBRO)
     return max(np.sqrt(fx * fx + fy * fy), abs(ft))
 
 
 @kernel
 def strain_force(h: Memory, ib: int) -> float:
     """What strains simply-deformable block `ib`, as a force on its farthest corner."""
-    if iget(h, ib, g.KBFIX) == FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED:
         return real(h, 0.0)
     f11, f12, f22 = straining_force(h, iget(h, ib, g.KBEX))
     return max(abs(f11), max(abs(f12), abs(f22))) / getr(h, ib, g.KBRO)
@@ -57,11 +56,11 @@ def strain_force(h: Memory, ib: int) -> float:
 def point_force(h: Memory, ib: int) -> tuple[float, int]:
     """Greatest unbalanced force on a grid-point of block `ib`, and the grid-point; 0 if there is none."""
     most, at = real(h, 0.0), int64(0)
-    ig = int64(0) if iget(h, ib, g.KBFIX) == FIXED else iget(h, iget(h, ib, g.KBEX), g.KFG)
+    ig = int64(0) if iget(h, ib, g.KBFIX) == g.FIXED else iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
-        fx = real(h, 0.0) if fix & 1 else getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX]
-        fy = real(h, 0.0) if fix & 2 else getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
+        fx = real(h, 0.0) if fix & g.ALONG_X else getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX]
+        fy = real(h, 0.0) if fix & g.ALONG_Y else getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
         force = np.sqrt(fx * fx + fy * fy)
         if force > most:
             most, at = force, ig

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.drive.cycle import run_cycles
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, unbalanced
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
 
 CHECK = 10  # cycles between two looks at the force ratio
 COMMON_BLOCK = 0

@@ -18,12 +18,11 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import zone_area
-from udec_ia.kernels.body.motion import FIXED
 from udec_ia.kernels.body.sdef import straining_force
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -78,7 +77,7 @@ def kinetic(h: Memory, soft: Any) -> float:
     twice = 0.0
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
             if soft is not None and iget(h, ib, HEAD) == g.MFDEF:
                 twice += _kinetic_of_points(h, ib)
             else:
@@ -143,7 +142,7 @@ def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
     total, most, at = 0.0, 0.0, int64(0)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
             if soft is not None and iget(h, ib, HEAD) == g.MFDEF:
                 energy, best, on = _motion_of_points(h, ib)
             else:
@@ -220,7 +219,7 @@ def height(h: Memory) -> float:
     total = 0.0
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
             total -= getr(h, ib, g.KBM) * (gx * getr(h, ib, g.KX) + gy * getr(h, ib, g.KY))
         ib = iget(h, ib, g.KB)
     return total

@@ -27,14 +27,14 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.bounds import load, velocity_of
 from udec_ia.kernels.body.fdef import gradient, next_point_velocity
-from udec_ia.kernels.body.motion import FIXED, GIVEN_X, GIVEN_Y, next_velocity
+from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain
 from udec_ia.kernels.energy.stored import inertia, strain_of_block
+from udec_ia.layout import offsets as g
 
 
 @inlined
@@ -55,9 +55,9 @@ def note_block(h: Memory, ib: int) -> None:
     fix, bm = iget(h, ib, g.KBFIX), getr(h, ib, g.KBM)
     xd, yd, td = next_velocity(h, ib)
     fx, fy = getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX], getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
-    note(h, fix & GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
-    note(h, fix & GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
-    note(h, fix == GIVEN_X + GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
+    note(h, fix & g.GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
+    note(h, fix & g.GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
+    note(h, fix == g.GIVEN_X + g.GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
 
 
 @kernel
@@ -67,8 +67,8 @@ def note_points(h: Memory, ib: int) -> None:
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
         xd, yd = next_point_velocity(h, ig)
-        note(h, fix & 1 != 0, m, getr(h, ig, g.KXDG), xd, getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX])
-        note(h, fix & 2 != 0, m, getr(h, ig, g.KYDG), yd, getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY])
+        note(h, fix & g.ALONG_X != 0, m, getr(h, ig, g.KXDG), xd, getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX])
+        note(h, fix & g.ALONG_Y != 0, m, getr(h, ig, g.KYDG), yd, getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY])
         ig = iget(h, ig, g.KG)
 
 
@@ -152,7 +152,7 @@ def note_loads(h: Memory) -> None:
             if iget(h, ib, HEAD) == g.MSDEF:
                 e11, e12, e22 = strain(h, iget(h, ib, g.KBEX))
                 ux, uy = ux + e11 * rx + e12 * ry, uy + e12 * rx + e22 * ry
-        if iget(h, ib, g.KBFIX) != FIXED:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
             h.cd[g.WBOUND] += (np.float64(fx) * (vx + ux) + fy * (vy + uy)) * h.cr[g.TDEL] * 0.5
         iu = iget(h, iu, g.KU)
 
@@ -162,7 +162,7 @@ def note_forces(h: Memory, soft: Any) -> None:
     """Before the block pass: what is done with the forces of now."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
-        if iget(h, ib, g.KBFIX) != FIXED:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
             kind = iget(h, ib, HEAD)
             if soft is not None and kind == g.MFDEF:
                 note_points(h, ib)
@@ -185,7 +185,7 @@ def note_stresses(h: Memory, soft: Any) -> None:
     ib = int64(h.ci[g.IBPNT])
     while soft is not None and ib != 0:
         kind = iget(h, ib, HEAD)
-        if kind != g.MRIG and iget(h, ib, g.KBFIX) != FIXED:
+        if kind != g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
             now = np.float64(stress_power(h, ib, False))
             h.cd[g.WYIELD] += now * h.cr[g.TDEL] * 0.5 - strain_of_block(h, ib)
             if kind == g.MSDEF:

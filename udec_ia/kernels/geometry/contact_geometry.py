@@ -18,16 +18,11 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.lists import next_corner
-
-CORNER_CORNER = 1
-CORNER_EDGE = 2
-EDGE_CORNER = 3
-VIRTUAL = 4
+from udec_ia.layout import offsets as g
 
 OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
 
@@ -123,12 +118,12 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
     The last number is the margin of the code: below zero, the normal has left an arc or the contact
     point has left the straight part of an edge, and the contact may have to be re-classified.
     """
-    if code == CORNER_CORNER:
+    if code == g.CORNER_CORNER:
         nx, ny, overlap = cc(h, ip, iq)
         x, y = point_on(h, ip, nx, ny, overlap)
         dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
         margin = h.cr[g.GTOL] - max(max(lean(h, ip, dx, dy)), max(lean(h, iq, -dx, -dy)))
-    elif code == CORNER_EDGE:
+    elif code == g.CORNER_EDGE:
         ex, ey, overlap, along, z = ce(h, ip, iq)
         nx, ny = -ex, -ey
         x, y = point_on(h, ip, nx, ny, overlap)

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import next_corner
+from udec_ia.layout import offsets as g
 
 
 @kernel

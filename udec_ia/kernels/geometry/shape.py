@@ -16,10 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.links.lists import next_corner
+from udec_ia.layout import offsets as g
 
 TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
 FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a straight edge

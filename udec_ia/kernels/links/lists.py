@@ -10,9 +10,9 @@ between two successive items of its list: it is named by the block and the item 
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti
 from udec_ia.heap.jit import kernel
+from udec_ia.layout import offsets as g
 
 
 @kernel

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, iget
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import is_corner, nextcp, other
+from udec_ia.layout import offsets as g
 
 
 @kernel

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64
 from udec_ia.heap.jit import kernel
+from udec_ia.layout import offsets as g
 
 NOBODY, BLOCK, STRAIN, GRIDPOINT, ZONE = 0, 1, 2, 3, 4
 

@@ -8,11 +8,10 @@ or broken on a large domain costs as much as its small side.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import find, lose
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL, begin
+from udec_ia.kernels.geometry.contact_geometry import begin
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import (
     dellst,
@@ -24,6 +23,7 @@ from udec_ia.kernels.links.lists import (
     take_out,
     to_front,
 )
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -88,7 +88,7 @@ def makec(h: Memory, ib: int, jb: int, icod: int, idleft: int, idright: int) -> 
 @kernel
 def losec(h: Memory, ic: int) -> None:
     """Take contact `ic`, which stands in no block's list any more, off the contact list and lose it."""
-    if iget(h, ic, g.KCCOD) == VIRTUAL:
+    if iget(h, ic, g.KCCOD) == g.VIRTUAL:
         h.ci[g.NVIRT] -= 1
     dellst(h, g.ICPNT, g.KC, g.KCB, ic)
     puti(h, ic, HEAD, 0)
@@ -109,7 +109,7 @@ def no_force(h: Memory, ic: int) -> None:
 def to_virtual(h: Memory, ic: int) -> None:
     """Contact `ic`, a bridge of the map, has opened: it stays as a virtual contact."""
     no_force(h, ic)
-    puti(h, ic, g.KCCOD, VIRTUAL)
+    puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
 
 
@@ -156,7 +156,7 @@ def loop_area(h: Memory, iad: int, ib: int) -> float:
     first = True
     item, block = int64(iad), int64(ib)
     while True:
-        if is_corner(h, item) or iget(h, item, g.KCCOD) != VIRTUAL:
+        if is_corner(h, item) or iget(h, item, g.KCCOD) != g.VIRTUAL:
             if is_corner(h, item):
                 bx, by = getr(h, item, g.KXP), getr(h, item, g.KYP)
             else:

@@ -17,19 +17,9 @@ other. Each of these stands in the way of the other, so they pass together.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import (
-    CORNER_CORNER,
-    CORNER_EDGE,
-    EDGE_CORNER,
-    VIRTUAL,
-    ce,
-    coord,
-    lean,
-    past,
-)
+from udec_ia.kernels.geometry.contact_geometry import ce, coord, lean, past
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.lists import (
     corner_of,
@@ -44,6 +34,7 @@ from udec_ia.kernels.links.lists import (
     set_corner_of,
     take_out,
 )
+from udec_ia.layout import offsets as g
 
 RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
 
@@ -58,7 +49,7 @@ def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
     ip = corner_of(h, ib, ic)
     item = nextcp(h, ib, ic)
     while item != ip:
-        if iget(h, item, g.KCCOD) != VIRTUAL:
+        if iget(h, item, g.KCCOD) != g.VIRTUAL:
             return False
         item = nextcp(h, ib, item)
     iq = next_corner(h, ib, ip)
@@ -78,7 +69,7 @@ def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
     """
     ip = prevcp(h, ib, ic)
     while not is_corner(h, ip):
-        if iget(h, ip, g.KCCOD) != VIRTUAL:
+        if iget(h, ip, g.KCCOD) != g.VIRTUAL:
             return False
         ip = prevcp(h, ib, ip)
     first, after = nextcp(h, ib, ip), nextcp(h, ib, ic)
@@ -104,7 +95,7 @@ def _is_of_point(h: Memory, ic: int, ib: int, jb: int, iq: int) -> bool:
     """True if item `ic` of block `ib` is the contact of its corner `iq` with an edge of block `jb`."""
     if is_corner(h, ic) or corner_of(h, ib, ic) != iq or other(h, ib, ic) != jb:
         return False
-    return iget(h, ic, g.KCCOD) == (CORNER_EDGE if iget(h, ic, g.KB1) == ib else EDGE_CORNER)
+    return iget(h, ic, g.KCCOD) == (g.CORNER_EDGE if iget(h, ic, g.KB1) == ib else g.EDGE_CORNER)
 
 
 @kernel
@@ -180,12 +171,12 @@ def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z
     ia = iget(h, iq, g.KR)
     rad = getr(h, ia, g.KRAD)
     if rad > 0 and along < border:
-        return mvbak(h, ic, ib, CORNER_CORNER)
+        return mvbak(h, ic, ib, g.CORNER_CORNER)
     if rad == 0 and past(h, ia, ip) < -h.cr[g.GTOL]:
         return _pass_backwards(h, ic, ib, ia, ip) or mvbak(h, ic, ib, code)
     rad = getr(h, iq, g.KRAD)
     if rad > 0 and z - along < border:
-        puti(h, ic, g.KCCOD, CORNER_CORNER)
+        puti(h, ic, g.KCCOD, g.CORNER_CORNER)
         return True
     if rad != 0 or past(h, iq, ip) <= h.cr[g.GTOL]:
         return False
@@ -225,10 +216,10 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     if most <= h.cr[g.GTOL]:
         return False
     if most == ahead1:
-        return mvfor(h, ic, iget(h, ic, g.KB1), EDGE_CORNER)
+        return mvfor(h, ic, iget(h, ic, g.KB1), g.EDGE_CORNER)
     if most == ahead2:
-        return mvfor(h, ic, iget(h, ic, g.KB2), CORNER_EDGE)
-    puti(h, ic, g.KCCOD, EDGE_CORNER if most == behind1 else CORNER_EDGE)
+        return mvfor(h, ic, iget(h, ic, g.KB2), g.CORNER_EDGE)
+    puti(h, ic, g.KCCOD, g.EDGE_CORNER if most == behind1 else g.CORNER_EDGE)
     return True
 
 
@@ -236,9 +227,9 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
 def reclass(h: Memory, ic: int) -> bool:
     """Give contact `ic` the code that its geometry asks for; True if code or place changed."""
     code = iget(h, ic, g.KCCOD)
-    if code == CORNER_CORNER:
+    if code == g.CORNER_CORNER:
         return _off_the_corner(h, ic)
-    if code == CORNER_EDGE:
+    if code == g.CORNER_EDGE:
         ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
         ip, iq = iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
     else:

@@ -8,11 +8,9 @@ one goes with the block.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import lose
-from udec_ia.kernels.geometry.contact_geometry import VIRTUAL
 from udec_ia.kernels.links.lists import (
     dellst,
     insert_after,
@@ -23,6 +21,7 @@ from udec_ia.kernels.links.lists import (
     take_out,
 )
 from udec_ia.kernels.map.bridge import delc, flag, losec, to_virtual
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -43,7 +42,7 @@ def _pass_on(h: Memory, ib: int, ic: int, jb: int, after: int) -> None:
     take_out(h, ib, ic)
     puti(h, ic, g.KB1 if iget(h, ic, g.KB1) == ib else g.KB2, jb)
     insert_after(h, jb, after, ic)
-    if iget(h, ic, g.KCCOD) != VIRTUAL:
+    if iget(h, ic, g.KCCOD) != g.VIRTUAL:
         to_virtual(h, ic)
 
 

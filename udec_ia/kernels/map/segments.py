@@ -18,20 +18,14 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import (
-    CORNER_CORNER,
-    CORNER_EDGE,
-    EDGE_CORNER,
-    VIRTUAL,
-    meet,
-)
+from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.geometry.shape import is_edge_point
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, nextcp, prevcp
 from udec_ia.kernels.map.bridge import nextd
 from udec_ia.kernels.map.reclass import settle
+from udec_ia.layout import offsets as g
 
 BLOCK, CORNER, ARC, ITEM, PIECE = 0, 1, 2, 3, 4
 COLUMNS = 5
@@ -41,9 +35,9 @@ COLUMNS = 5
 def on_arc(h: Memory, ib: int, ic: int) -> bool:
     """True if contact `ic` stands on the arc of its corner on block `ib` (QUERY)."""
     code = iget(h, ic, g.KCCOD)
-    if code == CORNER_CORNER:
+    if code == g.CORNER_CORNER:
         return True
-    return code == (CORNER_EDGE if iget(h, ic, g.KB1) == ib else EDGE_CORNER)
+    return code == (g.CORNER_EDGE if iget(h, ic, g.KB1) == ib else g.EDGE_CORNER)
 
 
 @inlined
@@ -52,8 +46,8 @@ def same_segment(h: Memory, iad: int, ip: int, arc: bool) -> bool:
     if is_corner(h, iad):
         return False
     first, second, code = iget(h, iad, g.KCP1) == ip, iget(h, iad, g.KCP2) == ip, iget(h, iad, g.KCCOD)
-    one, two = (CORNER_EDGE, EDGE_CORNER) if arc else (EDGE_CORNER, CORNER_EDGE)
-    both = arc and code == CORNER_CORNER
+    one, two = (g.CORNER_EDGE, g.EDGE_CORNER) if arc else (g.EDGE_CORNER, g.CORNER_EDGE)
+    both = arc and code == g.CORNER_CORNER
     return (first and (code == one or both)) or (second and (code == two or both))
 
 
@@ -97,7 +91,7 @@ def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: flo
 def not_virtual(h: Memory, ib: int, iad: int) -> int:
     """Item `iad` of block `ib`, or the nearest one before it that is not a virtual contact."""
     item = int64(iad)
-    while not is_corner(h, item) and iget(h, item, g.KCCOD) == VIRTUAL:
+    while not is_corner(h, item) and iget(h, item, g.KCCOD) == g.VIRTUAL:
         item = prevcp(h, ib, item)
     return item
 
@@ -106,7 +100,7 @@ def not_virtual(h: Memory, ib: int, iad: int) -> int:
 def next_not_virtual(h: Memory, ib: int, iad: int) -> int:
     """The nearest item after item `iad` of block `ib` that is not a virtual contact."""
     item = nextcp(h, ib, iad)
-    while not is_corner(h, item) and iget(h, item, g.KCCOD) == VIRTUAL:
+    while not is_corner(h, item) and iget(h, item, g.KCCOD) == g.VIRTUAL:
         item = nextcp(h, ib, item)
     return item
 
@@ -189,7 +183,7 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
             n = _note_arc(h, seg, n, before, corner, last, piece)
         if item == start and block == first:
             return n, nties
-        if iget(h, item, g.KCCOD) == VIRTUAL:
+        if iget(h, item, g.KCCOD) == g.VIRTUAL:
             if depth > 0 and ties[way_back[depth - 1], 0] == item:
                 depth -= 1
                 piece = ties[way_back[depth], 1]
@@ -222,7 +216,7 @@ def settle_loop(h: Memory, idm: int) -> None:
     n = 0
     while True:
         item, block = nextd(h, item, block)
-        if not is_corner(h, item) and iget(h, item, g.KCCOD) != VIRTUAL:
+        if not is_corner(h, item) and iget(h, item, g.KCCOD) != g.VIRTUAL:
             contacts[n] = item
             n += 1
         if item == start and block == first:

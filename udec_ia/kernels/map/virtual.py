@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.geometry.contact_geometry import begin
@@ -33,6 +32,7 @@ from udec_ia.kernels.map.bridge import (
     relabel,
 )
 from udec_ia.kernels.map.segments import not_virtual
+from udec_ia.layout import offsets as g
 
 MINE = 2  # column of the pieces
 

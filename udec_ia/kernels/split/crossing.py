@@ -24,10 +24,10 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import next_corner
+from udec_ia.layout import offsets as g
 
 OK, TOO_CLOSE, TOO_SHORT, TOO_MANY = 0, 1, 2, 3
 GRAZING = 0.01  # sine of the smallest angle between a cut and an edge

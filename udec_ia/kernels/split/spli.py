@@ -14,11 +14,9 @@ contacts cA and cB; the domains outside A and B stay as they are and are flagged
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find
-from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import density_of, geo, makeb
 from udec_ia.kernels.links.lists import (
     idomp,
@@ -33,6 +31,7 @@ from udec_ia.kernels.links.lists import (
 )
 from udec_ia.kernels.map.bridge import flag, makec, maked
 from udec_ia.kernels.map.segments import on_arc
+from udec_ia.layout import offsets as g
 
 
 @kernel
@@ -92,7 +91,7 @@ def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
     """
     item = prevcp(h, ib, ip)
     while is_contact(h, item):
-        if iget(h, item, g.KCCOD) != VIRTUAL:
+        if iget(h, item, g.KCCOD) != g.VIRTUAL:
             dx, dy = getr(h, item, g.KXC) - getr(h, ip, g.KXP), getr(h, item, g.KYC) - getr(h, ip, g.KYP)
             if not on_arc(h, ib, item) or dx * nx + dy * ny < 0:
                 break
@@ -191,8 +190,8 @@ def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     ta = makep(h, ib, getr(h, ia, g.KXP), getr(h, ia, g.KYP))
     tz = makep(h, ib, getr(h, iz, g.KXP), getr(h, iz, g.KYP))
     crack = maked(h)
-    ca = makec(h, jb, ib, CORNER_CORNER, crack, ida)
-    cz = makec(h, jb, ib, CORNER_CORNER, idz, crack)
+    ca = makec(h, jb, ib, g.CORNER_CORNER, crack, ida)
+    cz = makec(h, jb, ib, g.CORNER_CORNER, idz, crack)
     _claim(h, ib, jb, wa, uz)
     if firsta != 0:
         _claim(h, ib, jb, firsta, lasta)

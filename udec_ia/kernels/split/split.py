@@ -14,14 +14,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.masses import share_extension
 from udec_ia.kernels.contact.ford import restart, settle_all
 from udec_ia.kernels.detect.update import update, update_all
-from udec_ia.kernels.geometry.contact_geometry import CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
@@ -29,6 +27,7 @@ from udec_ia.kernels.map.bridge import flag_all
 from udec_ia.kernels.split.crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.shared_bounds import off_grid, share_bounds
 from udec_ia.kernels.split.spli import corner_on_edge, spli
+from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
 
@@ -104,9 +103,9 @@ def path(
 def _settle_crack(h: Memory, ic: int) -> None:
     """A crack contact stands on the arcs of both corners, or on the edge where one is not convex."""
     if getr(h, iget(h, ic, g.KCP1), g.KRAD) <= 0:
-        puti(h, ic, g.KCCOD, EDGE_CORNER)
+        puti(h, ic, g.KCCOD, g.EDGE_CORNER)
     elif getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0:
-        puti(h, ic, g.KCCOD, CORNER_EDGE)
+        puti(h, ic, g.KCCOD, g.CORNER_EDGE)
     restart(h, ic)
 
 
@@ -122,7 +121,7 @@ def _settle_around(h: Memory, ib: int, ip: int) -> None:
         item = nextcp(h, ib, ip) if forwards else prevcp(h, ib, ip)
         while not is_corner(h, item):
             following = nextcp(h, ib, item) if forwards else prevcp(h, ib, item)
-            if iget(h, item, g.KCCOD) != VIRTUAL:
+            if iget(h, item, g.KCCOD) != g.VIRTUAL:
                 if abs(getr(h, item, g.KXC) - x) + abs(getr(h, item, g.KYC) - y) > reach + reach:
                     break
                 restart(h, item)
@@ -184,7 +183,7 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
         ip = iget(h, ib, g.KP)
         item = iget(h, ip, g.KL)
         while item != ip:
-            if is_contact(h, item) and iget(h, item, g.KCCOD) != VIRTUAL:
+            if is_contact(h, item) and iget(h, item, g.KCCOD) != g.VIRTUAL:
                 idm = idomp(h, ib, item)
                 if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not update(h, idm):
                     return False

@@ -17,14 +17,13 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
-from udec_ia.kernels.body.motion import FIXED
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.ranges import edges_between, points_between
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import finite, held, not_negative, positive, whole
 from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import require
@@ -90,7 +89,7 @@ def boundary(
     _check_asked(moves or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where)
-    fix = (xvel is not None) + 2 * (yvel is not None)
+    fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
     loads: dict[Target, Load] = {}
     if moves:
         for ib, ig in points_between(array.h, *map(float, where)).tolist():
@@ -216,8 +215,13 @@ def _make(
     h.ci[g.IBNPNT] = iu
     if fix and ig:
         puti(h, ig, g.KGFIX, iget(h, ig, g.KGFIX) | fix)
-    elif fix and iget(h, ib, g.KBFIX) != FIXED:
-        puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) | 2 * fix)
+    elif fix and iget(h, ib, g.KBFIX) != g.FIXED:
+        puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) | _of_block(fix))
+
+
+def _of_block(fix: int) -> int:
+    """The codes of KBFIX for the velocities `fix` that a condition on a block gives (KUFIX)."""
+    return (g.GIVEN_X if fix & g.ALONG_X else 0) | (g.GIVEN_Y if fix & g.ALONG_Y else 0)
 
 
 def _release(h: Memory, points: set[tuple[int, int]], fix: int) -> None:
@@ -286,7 +290,7 @@ def given_velocities(h: Memory) -> dict[int, int]:
     fix: dict[int, int] = {}
     for iu in bounds[(integers(h, bounds, g.KUFIX) != 0) & (integers(h, bounds, g.KUG) == 0)].tolist():
         ib = iget(h, iu, g.KUB)
-        fix[ib] = fix.get(ib, 0) | 2 * iget(h, iu, g.KUFIX)
+        fix[ib] = fix.get(ib, 0) | _of_block(iget(h, iu, g.KUFIX))
     return fix
 
 
@@ -302,8 +306,8 @@ def _free(h: Memory, gone: list[int]) -> None:
         ib, ig = iget(h, iu, g.KUB), iget(h, iu, g.KUG)
         if ig:
             puti(h, ig, g.KGFIX, iget(h, ig, g.KGFIX) & ~iget(h, iu, g.KUFIX))
-        elif iget(h, ib, g.KBFIX) != FIXED:
-            puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) & ~(2 * iget(h, iu, g.KUFIX)))
+        elif iget(h, ib, g.KBFIX) != g.FIXED:
+            puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) & ~_of_block(iget(h, iu, g.KUFIX)))
     _drop(h, gone)
 
 

@@ -10,7 +10,6 @@ has put on its edges. Masses never change after the first cycle.
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import MainArray
@@ -21,6 +20,7 @@ from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import is_corner
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import forget_blocks
 from udec_ia.ops.commands.rounding import bring_up, check_overlaps
 from udec_ia.ops.commands.straighten import check_straight, edge_points, renew_reach, straighten

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.array import MainArray
@@ -16,6 +15,7 @@ from udec_ia.kernels.geometry.shape import density_of, makeb
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.rounding import check_rounding
 from udec_ia.ops.common.limits import (
     EDGE_DIGITS,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.map.remove import delb
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import forget_blocks
 from udec_ia.ops.commands.change import become
 from udec_ia.ops.commands.rounding import update_flagged

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import MainArray
@@ -26,6 +25,7 @@ from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.geometry.shape import crad
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.kernels.split.spli import corner_on_edge
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change import change_types
 from udec_ia.ops.commands.rounding import update_flagged
 from udec_ia.ops.commands.straighten import flag_around

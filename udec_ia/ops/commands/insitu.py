@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.sdef import put_stress
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import ZERO, Triple
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import finite, held

@@ -13,7 +13,7 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
-from offsets.table import Field, read_table
+from udec_ia.layout.table import Field, read_table
 
 COMMON, MODEL = 0, -1
 HISTORY = "history"

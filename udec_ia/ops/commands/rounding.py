@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.contact.ford import settle_all
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
 from udec_ia.kernels.detect.update import update_all
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, VIRTUAL
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
 from udec_ia.kernels.map.bridge import flag_all
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.common.memory import all_or_nothing, find_room, keep_spare
 
@@ -73,7 +73,7 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
     ic = int(h.ci[g.ICPNT])
     while ic != 0:
         overlap = getr(h, ic, g.KCN)
-        if overlap > h.cr[g.DTOL2] and iget(h, ic, g.KCCOD) != VIRTUAL:
+        if overlap > h.cr[g.DTOL2] and iget(h, ic, g.KCCOD) != g.VIRTUAL:
             place = float(getr(h, ic, g.KXC)), float(getr(h, ic, g.KYC))
             raise _too_deep(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), overlap, place, advice)
         ic = iget(h, ic, g.KC)

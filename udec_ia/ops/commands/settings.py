@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.masses import greatest_block
-from udec_ia.kernels.body.motion import FIXED, carry_corners
+from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import given_velocities
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import bearable, finite, material_number, not_negative, positive, whole
@@ -113,7 +113,7 @@ def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
     blocks = blocks_in(array, where)
     given = {} if fixed else given_velocities(h)
     for ib in blocks:
-        puti(h, ib, g.KBFIX, FIXED if fixed else given.get(ib, 0))
+        puti(h, ib, g.KBFIX, g.FIXED if fixed else given.get(ib, 0))
         if fixed:
             _stop(h, ib)
     if not fixed and h.ci[g.MCTOT] > 0 and any(iget(h, ib, HEAD) == g.MFDEF for ib in blocks):

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.split.crossing import LEAST, X, Y, rounding_is_open
 from udec_ia.kernels.split.split import DONE, NO_MEMORY, NO_ROWS, REFUSED_SHORT, cut_path, enter_boxes, path
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.rounding import update_flagged
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import EDGE_DIGITS, finite, last_digit

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import math
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
 from udec_ia.heap.memory import lose
 from udec_ia.kernels.contact.ford import restart
 from udec_ia.kernels.detect.gaps import give_up
-from udec_ia.kernels.geometry.contact_geometry import CORNER_CORNER, CORNER_EDGE, EDGE_CORNER, VIRTUAL
 from udec_ia.kernels.geometry.shape import crad, is_edge_point
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
 from udec_ia.kernels.map.bridge import flag
 from udec_ia.kernels.map.segments import on_arc
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.lists import items
 
 
@@ -82,8 +81,8 @@ def _take_point_out(h: Memory, ib: int, ip: int) -> None:
     iq = next_corner(h, ib, ip)
     for ic in [item for item in items(h, ib) if not is_corner(h, item) and corner_of(h, ib, item) == ip]:
         set_corner_of(h, ib, ic, iq)
-        if iget(h, ic, g.KCCOD) == CORNER_CORNER:
-            puti(h, ic, g.KCCOD, EDGE_CORNER if iget(h, ic, g.KB1) == ib else CORNER_EDGE)
+        if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
+            puti(h, ic, g.KCCOD, g.EDGE_CORNER if iget(h, ic, g.KB1) == ib else g.CORNER_EDGE)
         elif on_arc(h, ib, ic):
             give_up(h, iget(h, ic, g.KD1), ic)
     take_out(h, ib, ip)
@@ -97,7 +96,7 @@ def flag_around(h: Memory, ib: int) -> None:
     """Bring the contacts of block `ib` up to date with its new corners, and flag the domains around it."""
     for ic in items(h, ib):
         if not is_corner(h, ic):
-            if iget(h, ic, g.KCCOD) != VIRTUAL:
+            if iget(h, ic, g.KCCOD) != g.VIRTUAL:
                 restart(h, ic)
             flag(h, iget(h, ic, g.KD1))
             flag(h, iget(h, ic, g.KD2))

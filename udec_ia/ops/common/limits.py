@@ -13,9 +13,9 @@ from typing import Any, SupportsIndex
 
 import numpy as np
 
-from offsets import read_table
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
+from udec_ia.layout.table import read_table
 
 NMAT = next(field.count for field in read_table().common if field.name == "AKN")
 NCONS = 5

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory, Offset, iget
 from udec_ia.kernels.links.lists import nextcp
+from udec_ia.layout import offsets as g
 
 
 def items(h: Memory, ib: int) -> Iterator[int]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import size_of
 from udec_ia.heap.array import OVERFLOW, MainArray
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.layout import offsets as g
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
 

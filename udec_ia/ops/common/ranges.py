@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import hypot
 
-import offsets.generated as g
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.geometry.ranges import blocks_between
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import finite
 from udec_ia.ops.common.lists import chain
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import offsets.generated as g
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.layout import offsets as g
 
 
 def soft(array: MainArray) -> Any:

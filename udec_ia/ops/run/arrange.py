@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.relocate import relocate
 from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.lists import chain
 
 LARGE = 500  # blocks from which on it pays

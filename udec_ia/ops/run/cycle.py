@@ -10,7 +10,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import OVERFLOW, MainArray
@@ -23,6 +22,7 @@ from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import TOO_SHORT
 from udec_ia.kernels.geometry.tensor import INSIDE_OUT
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy
 from udec_ia.ops.commands.rounding import check_strained_edges, crowded, settle_default
 from udec_ia.ops.common.limits import last_digit

@@ -11,11 +11,11 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
+from udec_ia.layout import offsets as g
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 SLIVER = 40  # the mean edge over the shortest, from which on it is said

@@ -29,13 +29,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.bounds import power_of_loads
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.timestep import Limit, bound, damped, instability, kind_of, safe_fraction

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-import offsets.generated as g
 from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.heap.array import MainArray
@@ -29,6 +28,7 @@ from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.extremes import greatest_stiffness, least_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
+from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
@@ -76,10 +76,10 @@ class _Rows:
         self.length[rows] = np.sqrt(_reals(h, blocks, g.KBI) / mass)
         self.mass[rows] = mass[:, None]
         fix = integers(h, blocks, g.KBFIX)
-        self.free[rows, 0] = fix & 3 == 0
-        self.free[rows, 1] = fix & 5 == 0
-        self.free[rows, 2] = (fix != 1) & (fix != 6)
-        soft = blocks[(integers(h, blocks, HEAD) == g.MSDEF) & (fix != 1)]
+        self.free[rows, 0] = fix & (g.FIXED | g.GIVEN_X) == 0
+        self.free[rows, 1] = fix & (g.FIXED | g.GIVEN_Y) == 0
+        self.free[rows, 2] = (fix != g.FIXED) & (fix != g.GIVEN_X | g.GIVEN_Y)
+        soft = blocks[(integers(h, blocks, HEAD) == g.MSDEF) & (fix != g.FIXED)]
         if not len(soft):
             return
         rows, ext, mat = self.row(soft), integers(h, soft, g.KBEX), integers(h, soft, g.KMAT) - 1
@@ -97,10 +97,10 @@ class _Rows:
         """Masses of the grid-points of `blocks`, those of each block in a row."""
         h, own = self.h, np.concatenate(points)
         rows, fix = self.row(own), integers(h, own, g.KGFIX)
-        held = np.repeat(integers(h, blocks, g.KBFIX) == 1, [len(row) for row in points])
+        held = np.repeat(integers(h, blocks, g.KBFIX) == g.FIXED, [len(row) for row in points])
         self.mass[rows] = _reals(h, own, g.KGPM)[:, None]
-        self.free[rows, 0] = (fix & 1 == 0) & ~held
-        self.free[rows, 1] = (fix & 2 == 0) & ~held
+        self.free[rows, 0] = (fix & g.ALONG_X == 0) & ~held
+        self.free[rows, 1] = (fix & g.ALONG_Y == 0) & ~held
 
     def _enter_zones(self, blocks: Array) -> None:
         """The stiffness of the zones of `blocks`."""

@@ -3,7 +3,10 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-DIGEST = "93600f2ddacc27b2bd90df877c47458b6738393dcf244c20a4373e6f1dff987b"
+from udec_ia.layout.table import require_current
+
+DIGEST = "52b6c98129101b81984ef06ff91a8f4076eac3655b76976815e7131cff3614f5"
+require_current(DIGEST)
 
 MRIG = 1  # rigid block
 MSDEF = 2  # simply-deformable block
@@ -14,6 +17,16 @@ MDOM = 6  # domain
 MHIS = 7  # history
 MBND = 8  # boundary condition
 MSIG = 9  # signal
+
+FIXED = 1  # KBFIX: fixed
+GIVEN_X = 2  # KBFIX: its x velocity is given
+GIVEN_Y = 4  # KBFIX: its y velocity is given
+CORNER_CORNER = 1  # KCCOD: the arcs of two corners
+CORNER_EDGE = 2  # KCCOD: an arc of block KB1 and an edge of block KB2
+EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
+VIRTUAL = 4  # KCCOD: no contact: it keeps the map together
+ALONG_X = 1  # KGFIX: its x velocity is given; KUFIX has the same codes
+ALONG_Y = 2  # KGFIX: its y velocity is given
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list

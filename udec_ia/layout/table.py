@@ -16,6 +16,16 @@ from functools import cache, cached_property
 from pathlib import Path
 
 TABLE = Path(__file__).with_name("groups.table")
+SOURCE = (
+    Path(__file__).parents[2] / "offsets" / "groups.table"
+)  # of a checkout; an installed program has none
+SCHEMES = {  # name: (integer bits, real bits), report 3.5
+    "i16r32": (16, 32),
+    "i32r32": (32, 32),
+    "i16r64": (16, 64),
+    "i32r64": (32, 64),
+    "i64r64": (64, 64),
+}
 RATIOS = (1, 2, 4)
 GROUP_TYPES = ("int", "real")
 COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
@@ -23,6 +33,10 @@ COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the n
 
 class TableError(ValueError):
     """A line of the table that cannot be read; the message names file and line."""
+
+
+class StaleLayout(ImportError):
+    """The table at the top of the checkout has changed, and udec_ia/layout has not been made from it yet."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +88,22 @@ class HeadCode:
 
 
 @dataclass(frozen=True)
+class Code:
+    """What an integer of the field `field` says. Flags are codes that add up."""
+
+    name: str
+    value: int
+    field: str
+    text: str
+
+
+@dataclass(frozen=True)
 class Table:
     """The whole table. `digest` is the SHA-256 of its text: tables with equal digests are the same."""
 
     groups: tuple[Group, ...]
     heads: tuple[HeadCode, ...]
+    codes: tuple[Code, ...]
     common: tuple[Field, ...]
     digest: str
 
@@ -109,10 +134,19 @@ def read_table() -> Table:
     return parse(TABLE.read_text())
 
 
+def require_current(digest: str) -> None:
+    """StaleLayout if `digest` is not that of the table in the checkout."""
+    if SOURCE.exists() and hashlib.sha256(SOURCE.read_bytes()).hexdigest() != digest:
+        raise StaleLayout(
+            f"{SOURCE} has changed since udec_ia/layout was made from it: run python -m offsets"
+        )
+
+
 def parse(text: str) -> Table:
     """Parse a table, which may be that of another version. Raises TableError."""
     groups: list[Group] = []
     heads: list[HeadCode] = []
+    codes: list[Code] = []
     common: list[Field] = []
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -130,6 +164,8 @@ def parse(text: str) -> Table:
                 fields = common
             elif words[0] == "HEAD" and words[2].isdigit():
                 heads.append(HeadCode(words[1], int(words[2]), words[3], doc))
+            elif words[0] == "CODE":
+                codes.append(Code(words[1], int(words[2]), words[3], doc))
             elif fields is None:
                 raise ValueError("a field stands before the first GROUP")
             else:
@@ -142,17 +178,22 @@ def parse(text: str) -> Table:
                     )
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
-    _check_names(groups, common)
-    return Table(tuple(groups), tuple(heads), tuple(common), hashlib.sha256(text.encode()).hexdigest())
+    _check_names(groups, codes, common)
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return Table(tuple(groups), tuple(heads), tuple(codes), tuple(common), digest)
 
 
-def _check_names(groups: list[Group], common: list[Field]) -> None:
-    """TableError if two fields have one name: generated.py has all of them side by side."""
+def _check_names(groups: list[Group], codes: list[Code], common: list[Field]) -> None:
+    """TableError if two fields or codes have one name, or a code has no field: offsets.py has them all."""
     names = [field.name for group in groups for field in group.fields if field.role != "head"]
     names += [field.name for field in common]
+    lost = [code.name for code in codes if code.field not in names]
+    if lost:
+        raise TableError(f"groups.table: there is no field for the code {', '.join(lost)}")
+    names += [code.name for code in codes]
     double = {name for name, times in Counter(names).items() if times > 1}
     if double:
-        raise TableError(f"groups.table: two fields are called {', '.join(sorted(double))}")
+        raise TableError(f"groups.table: two fields or codes are called {', '.join(sorted(double))}")
 
 
 def _field(words: list[str], doc: str, types: Collection[str]) -> Field:
