@@ -1,0 +1,157 @@
+"""Remarks: what is no error and hardly meant is said once, before the run, with the cure."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from scenes import play
+
+from udec_ia import Model
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.dat"))
+
+
+def told(m: Model) -> list[str]:
+    """What `m` is going to tell."""
+    said: list[str] = []
+    m.tell = said.append
+    return said
+
+
+def soft(out: Path, **moduli: float) -> Model:
+    m = Model(out=out)
+    m.property(1, density=2000, kn=1e8, ks=1e8, **moduli)
+    m.block(0, 0, 0, 2, 1, 2, 1, 0)
+    m.split(-1, 1, 2, 1)
+    m.change(0, 1, 1, 2, "sdef")
+    return m
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "meant"),
+    [("friction", 35, 0.7), ("block_dilation", 10, 0.176), ("residual_friction", 6, 0.105)],
+)
+def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    said = told(m)
+    for _ in range(2):
+        m.property(3, **{name: given})
+    (text,) = said
+    assert text.startswith(f"{name.replace('_', ' ')} {given} of material 3 is a tangent")
+    assert text.endswith(f"give {meant:g}")
+    m.property(3, friction=3, residual_friction=1000, cohesion=35)
+    assert len(said) == 1
+
+
+def test_a_property_that_is_not_named(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    said = told(m)
+    m.property(2)
+    assert said == ["PROPERTY MATERIAL=2 names no property, and none was set"]
+
+
+def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
+    m = soft(tmp_path, bulk=1e9, g=1e9)
+    said = told(m)
+    m.property(1, density=3000)
+    assert said == []
+    m.cycle(1)
+    masses = m.table("block")["KBM"].tolist()
+    m.property(2, density=3000)
+    m.property(1, kn=2e8)
+    assert said == []
+    m.property(1, density=4000)
+    (text,) = said
+    assert text.startswith("masses were made before the first cycle: the 2 blocks of material 1 keep theirs")
+    m.cycle(1)
+    assert m.table("block")["KBM"].tolist() == masses
+
+
+@pytest.mark.parametrize(("at", "d", "many"), [(0.499, 0.0, 1), (0.4, 0.0, 0), (0.499, 0.0001, 0)])
+def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, tmp_path: Path) -> None:
+    """A cut near a corner leaves an edge of a thousandth; who gives a length by ROUND knows."""
+    m = Model(out=tmp_path)
+    said = told(m)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.split(-1, 0.5, 2, 0.5)
+    m.split(0, at, 1.5, 2)
+    if d:
+        m.round(d)
+    m.cycle(1)
+    m.cycle(1)
+    assert len(said) == many
+    for text in said:
+        assert text.startswith("the edge of 0.000999 m that ends at (0, 0.5)")
+
+
+@pytest.mark.parametrize(("moduli", "lacking"), [({"g": 1e9}, "BULK"), ({"bulk": 1e9}, "G")])
+def test_a_modulus_alone(moduli: dict[str, float], lacking: str, tmp_path: Path) -> None:
+    m = soft(tmp_path, **moduli)
+    said = told(m)
+    for _ in range(2):
+        m.cycle(1)
+    (text,) = said
+    assert text.endswith(f"PROPERTY MATERIAL=1 {lacking}=...")
+    m.start()
+    m = soft(tmp_path, bulk=1e9, g=1e9)
+    said = told(m)
+    m.cycle(1)
+    assert said == []
+
+
+def test_a_modulus_alone_is_nothing_to_rigid_blocks(tmp_path: Path) -> None:
+    m = soft(tmp_path, g=1e9)
+    said = told(m)
+    m.change(0, 1, 1, 2, "rigid")
+    m.cycle(1)
+    assert said == []
+
+
+def test_rest_without_damping(tmp_path: Path) -> None:
+    """Said by SOLVE, once, and not if anything damps."""
+    m = soft(tmp_path, bulk=1e9, g=1e9)
+    said = told(m)
+    m.cycle(1)
+    assert said == []
+    for _ in range(2):
+        m.solve(0.1, limit=1)
+    (text,) = said
+    assert "no damping" in text
+    for damping in ("mass", "stiffness", "internal"):
+        m.start()
+        m = soft(tmp_path, bulk=1e9, g=1e9)
+        m.damping(0.001, 10, damping)
+        said = told(m)
+        m.solve(0.1, limit=1)
+        assert said == []
+
+
+def test_a_deck_says_it_before_the_run(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    printed = m.run(
+        "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=35\n"
+        "BLOCK 0,0 0,2 1,2 1,0\nSPLIT -1,1 2,1\nSOLVE 0.1 LIMIT 1\n"
+    )
+    assert printed is not None
+    assert "\n PROPERTY: friction 35 of material 1 is a tangent" in printed
+    assert printed.index(" SOLVE: there is no damping") < printed.index(" SOLVE: time-step")
+
+
+@pytest.mark.parametrize("deck", EXAMPLES, ids=lambda deck: deck.stem)
+def test_the_examples_are_not_remarked_on(deck: Path, tmp_path: Path) -> None:
+    """Up to the first cycle of each of their CYCLEs; the steps are safe as well."""
+    m = Model(out=tmp_path)
+    printed = m.run(re.sub(r"(CYCLE|SOLVE) .*", "CYCLE 1", re.sub(r"(?m)^PLOT.*\n", "", deck.read_text())))
+    assert printed is not None
+    for word in ("tangent", "nothing in them", "no damping", "safe bound, which"):
+        assert word not in printed
+
+
+def test_random_scenes_are_not_remarked_on(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    for seed in range(3):
+        play(seed, Model(out=tmp_path), cycles=(1, 2))
+    for word in ("tangent", "nothing in them", "no damping"):
+        assert word not in caplog.text

@@ -1,0 +1,92 @@
+"""Rules that the kernels' sources keep, so that one source serves five word schemes and two ways to run.
+
+A bare float is a real of 64 bits: one of them in a sum of 32-bit reals makes the compiled sum another one
+than the interpreted. So a number is `real(h, 0.5)`, of the scheme's width, but where a file counts in 64 bits
+in every scheme on purpose. A power is left to the compiler's library, whose last digit is not NumPy's. And
+the array is indexed in heap/ only: what reads and writes it can be exchanged there.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[2] / "udec_ia"
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+KERNELS = [path for path in SOURCES if "kernels" in path.parts]
+IN_DOUBLES = {  # they sum up over a whole run, or solve for what is the same in every scheme
+    "body/bounds.py",
+    "detect/tunnelling.py",
+    "drive/contact_stiffness.py",
+    "drive/unbalanced.py",
+    "energy/stored.py",
+    "energy/works.py",
+}
+LINES_OF_A_FUNCTION, LINES_OF_A_FILE = 65, 500
+
+
+def parsed(text: str) -> ast.Module:
+    """A source with, at each node, the node that it is part of (`above`)."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        for part in ast.iter_child_nodes(node):
+            part.above = node  # type: ignore[attr-defined]
+    return tree
+
+
+def bare_floats(tree: ast.Module) -> Iterator[int]:
+    """Lines within functions where a float stands that is no argument of `real`."""
+    for function in ast.walk(tree):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.Constant) and isinstance(node.value, float):
+                above = node.above  # type: ignore[attr-defined]
+                if isinstance(above, ast.UnaryOp):
+                    above = above.above  # type: ignore[attr-defined]
+                if not (isinstance(above, ast.Call) and ast.unparse(above.func) == "real"):
+                    yield node.lineno
+
+
+def powers(tree: ast.Module) -> Iterator[int]:
+    """Lines with a power."""
+    return (
+        node.lineno for node in ast.walk(tree) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
+    )
+
+
+def indices(tree: ast.Module) -> Iterator[int]:
+    """Lines where a view of the array is indexed."""
+    for node in ast.walk(tree):
+        view = isinstance(node, ast.Subscript) and isinstance(node.value, ast.Attribute)
+        if view and ast.unparse(node.value) in ("h.ia", "h.ra", "self.ia", "self.ra"):  # type: ignore[attr-defined]
+            yield node.lineno  # type: ignore[attr-defined]
+
+
+def test_the_rules_find_what_breaks_them() -> None:
+    tree = parsed("def f(h, x):\n    y = 0.5 * x\n    z = x**2 + real(h, -0.5)\n    return h.ia[3]\n")
+    assert [*bare_floats(tree)] == [2]
+    assert [*powers(tree)] == [3]
+    assert [*indices(tree)] == [4]
+
+
+def test_numbers_are_as_wide_as_the_scheme_says() -> None:
+    kernels = {str(path.relative_to(PACKAGE / "kernels")): parsed(path.read_text()) for path in KERNELS}
+    assert {name for name, tree in kernels.items() if [*bare_floats(tree)]} == IN_DOUBLES
+    assert {name for name, tree in kernels.items() if [*powers(tree)]} == set()
+
+
+def test_kernels_do_not_index_the_array() -> None:
+    assert {path.name for path in KERNELS if [*indices(parsed(path.read_text()))]} == set()
+
+
+def test_a_function_fits_a_screen_and_a_file_a_reader() -> None:
+    for path in SOURCES:
+        text = path.read_text()
+        if path.name not in ("model.py", "offsets.py"):  # one method a command; generated
+            assert text.count("\n") <= LINES_OF_A_FILE, path
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef):
+                length = (node.end_lineno or node.lineno) - node.lineno + 1
+                assert length <= LINES_OF_A_FUNCTION, f"{path}: {node.name} has {length} lines"

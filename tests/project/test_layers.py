@@ -1,0 +1,70 @@
+"""Imports point downwards: from a layer to those below it, and nowhere in a circle."""
+
+from __future__ import annotations
+
+import ast
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[2] / "udec_ia"
+FOLDERS = {  # of a layer, each of which imports from those before it only
+    "kernels": ("links", "geometry", "map", "body", "detect", "energy", "contact", "split", "drive"),
+    "ops": ("common", "laws", "mesh", "commands", "run"),
+}
+BELOW = {  # layers that a layer imports
+    "layout": set[str](),
+    "heap": {"layout", "signals"},
+    "kernels": {"heap", "layout"},
+    "ops": {"errors", "heap", "kernels", "layout", "printable", "signals"},
+}
+
+
+def module(path: Path) -> str:
+    """The name of the module in the file `path`."""
+    name = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+    return name.removesuffix(".__init__")
+
+
+SOURCES = {module(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def imports(name: str) -> set[str]:
+    """The modules of the package that `name` imports, wherever in the file."""
+    found = set()
+    for node in ast.walk(ast.parse(SOURCES[name].read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module in SOURCES:
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= {one for one in inner if one in SOURCES} or {node.module}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names if alias.name in SOURCES}
+    return found
+
+
+def test_there_is_something_to_look_at() -> None:
+    assert imports("udec_ia.kernels.drive.cycle") > {"udec_ia.heap.accessors", "udec_ia.kernels.contact.ford"}
+    for layer, folders in FOLDERS.items():
+        assert {path.parent.name for path in (PACKAGE / layer).glob("*/__init__.py")} == {*folders}
+
+
+@pytest.mark.parametrize("layer", BELOW)
+def test_imports_point_downwards(layer: str) -> None:
+    for name in SOURCES:
+        if name.startswith(f"udec_ia.{layer}."):
+            assert {other.split(".")[1] for other in imports(name)} <= {layer} | BELOW[layer], name
+
+
+@pytest.mark.parametrize(("layer", "folder"), [(layer, one) for layer in FOLDERS for one in FOLDERS[layer]])
+def test_imports_point_downwards_within_a_layer(layer: str, folder: str) -> None:
+    before = FOLDERS[layer][: FOLDERS[layer].index(folder) + 1]
+    for name in SOURCES:
+        if name.startswith(f"udec_ia.{layer}.{folder}."):
+            inside = {other.split(".")[2] for other in imports(name) if other.split(".")[1] == layer}
+            assert inside <= {*before}, name
+
+
+@pytest.mark.parametrize("layer", BELOW)
+def test_there_is_no_circle(layer: str) -> None:
+    inside = {name: imports(name) for name in SOURCES if name.startswith(f"udec_ia.{layer}.")}
+    assert list(TopologicalSorter(inside).static_order())
