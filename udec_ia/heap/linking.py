@@ -38,6 +38,9 @@ class _Part(JITCodeLibrary):
 
     codegen = _NoEnvironment()
 
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """A part is optimised where it has been taken in."""
+
     def finalize(self) -> None:
         self._finalized = True
 
