@@ -50,6 +50,7 @@ def state_of(array: MainArray) -> list[bytes]:
 @pytest.mark.parametrize("build", ["i32r32", "i32r64"])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_with_any_number_of_words_a_command_is_obeyed_or_changes_nothing(command: str, build: str) -> None:
+    """With every number that an array can have; for SPLIT, which takes longest, with every fifth."""
     model = Model(build)
     model.run(SCENE)
     before = model.array.copy()

@@ -257,9 +257,7 @@ def test_a_changed_table_is_told_and_changes_the_run_after_it_was_written_out(tm
         refused = python_in(tree, *command)
         assert refused.returncode == 1
         last = refused.stderr.splitlines()[-1]
-        assert last.endswith(
-            f"{table} has changed since udec_ia/layout was made from it: run python -m offsets"
-        )
+        assert last.endswith(f"{table} has changed since udec_ia/layout was made: run python -m offsets")
         assert ("Traceback" in refused.stderr) == (command[0] == "-c")
     told = python_in(tree, "-m", "offsets", "--check")
     assert told.returncode == 1

@@ -73,7 +73,8 @@ def _check_held(state: State) -> None:
     """Velocities that are given are not calculated."""
     bounds, given = state.address["bound"], state.column("bound", "KUFIX")
     fixed = state.column("block", "KBFIX")
-    held = np.where(fixed == g.FIXED, 3, fixed // g.GIVEN_X)  # of a block, in the code of a grid-point
+    along_x, along_y = fixed & (g.FIXED | g.GIVEN_X) != 0, fixed & (g.FIXED | g.GIVEN_Y) != 0
+    held = along_x * g.ALONG_X + along_y * g.ALONG_Y  # of a block, in the code of a grid-point
     for kind, name, field, values in (
         ("gridpoint", "KUG", "KGFIX", state.column("gridpoint", "KGFIX")),
         ("block", "KUB", "KBFIX", held),

@@ -16,9 +16,7 @@ from functools import cache, cached_property
 from pathlib import Path
 
 TABLE = Path(__file__).with_name("groups.table")
-SOURCE = (
-    Path(__file__).parents[2] / "offsets" / "groups.table"
-)  # of a checkout; an installed program has none
+SOURCE = Path(__file__).parents[2] / "offsets" / "groups.table"  # an installed program has none
 SCHEMES = {  # name: (integer bits, real bits), report 3.5
     "i16r32": (16, 32),
     "i32r32": (32, 32),
@@ -135,11 +133,10 @@ def read_table() -> Table:
 
 
 def require_current(digest: str) -> None:
-    """StaleLayout if `digest` is not that of the table in the checkout."""
-    if SOURCE.exists() and hashlib.sha256(SOURCE.read_bytes()).hexdigest() != digest:
-        raise StaleLayout(
-            f"{SOURCE} has changed since udec_ia/layout was made from it: run python -m offsets"
-        )
+    """StaleLayout if `digest` is not that of the table in the checkout, and of the program's own."""
+    for path in (SOURCE, TABLE):
+        if path.exists() and hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+            raise StaleLayout(f"{path} has changed since udec_ia/layout was made: run python -m offsets")
 
 
 def parse(text: str) -> Table:

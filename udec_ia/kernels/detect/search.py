@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.detect.crossing import would_cross
+from udec_ia.kernels.detect.crossed_tips import AROUND, would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between
 from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, lean, meet, past
@@ -35,7 +35,6 @@ from udec_ia.kernels.map.segments import (
 from udec_ia.layout import offsets as g
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
-AROUND = 6  # items looked at on either side for a contact of the same two blocks
 STRAY = -1  # no code: what overlaps can have no contact
 SMALL = 48  # segments of a domain in which all pairs are tried
 

@@ -15,7 +15,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import is_contact, is_corner, nextcp, other, prevcp
 from udec_ia.layout import offsets as g
 
-AROUND = 6  # items looked at on either side
+AROUND = 6  # items looked at on either side for a contact of the same two blocks
 TURNS = 1  # corners passed on the way to a contact that lies beside another: the way round has two at least
 
 
