@@ -101,7 +101,7 @@ def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool
     """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
     if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
-    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+    return overlap < -h.cr[g.GTOL] and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
 
 @kernel

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.detect.tunnelling import arc_point, carried, was_at, ways
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
@@ -71,7 +71,21 @@ def _arc_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float,
     return out * out + across * across < r * r
 
 
-@kernel
+@inlined
+def _lies_beside(h: Memory, ia: int, ip: int, iq: int, x: float, y: float, nx: float, ny: float) -> bool:
+    """True if corner `ip`, its circle and both its edges, lies on one side of the line along a gap.
+
+    Then it does not stand in it. ia, iq: the corners before and after.
+    """
+    a = nx * (getr(h, ia, g.KYP) - y) - ny * (getr(h, ia, g.KXP) - x)
+    b = nx * (getr(h, ip, g.KYP) - y) - ny * (getr(h, ip, g.KXP) - x)
+    c = nx * (getr(h, iq, g.KYP) - y) - ny * (getr(h, iq, g.KXP) - x)
+    middle = nx * (getr(h, ip, g.KYCP) - y) - ny * (getr(h, ip, g.KXCP) - x)
+    rad = getr(h, ip, g.KRAD)
+    return min(min(a, b), min(c, middle - rad)) > 0 or max(max(a, b), max(c, middle + rad)) < 0
+
+
+@inlined
 def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
     """True if the point (x, y) lies on the side of the edge that ends at corner `ip` where its block is."""
     ia = iget(h, ip, g.KR)
@@ -79,7 +93,7 @@ def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
     return bool((x - ax) * (getr(h, ip, g.KYP) - ay) > (y - ay) * (getr(h, ip, g.KXP) - ax))
 
 
-@kernel
+@inlined
 def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
     """True if block `ib` holds the point (x, y), so deep that it would overlap by FTOL with what comes there.
 
@@ -99,15 +113,16 @@ def stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: fl
     The gap is 2 `half` wide along the unit vector (nx, ny), its middle is at (x, y).
     """
     iq = next_corner(h, ib, ip)
-    return (
+    if not _lies_beside(h, iget(h, ip, g.KR), ip, iq, x, y, nx, ny) and (
         _arc_stands_in(h, ip, x, y, nx, ny, half)
         or _edge_stands_in(h, ip, x, y, nx, ny, half)
         or _edge_stands_in(h, iq, x, y, nx, ny, half)
-        or _holds(h, ib, ip, iq, x, y)
-    )
+    ):
+        return True
+    return _holds(h, ib, ip, iq, x, y)
 
 
-@kernel
+@inlined
 def beside(h: Memory, ib: int, iad: int, forwards: bool) -> int:
     """The first real contact of block `ib` at item `iad` or a little further on in its list; 0 for none."""
     item = int64(iad)
@@ -118,7 +133,7 @@ def beside(h: Memory, ib: int, iad: int, forwards: bool) -> int:
     return int64(0)
 
 
-@kernel
+@inlined
 def _third(h: Memory, ib: int, jb: int, item: int) -> int:
     """The third block that contact `item` of block `ib` leads to; 0 if there is none."""
     if item == 0:
@@ -127,7 +142,7 @@ def _third(h: Memory, ib: int, jb: int, item: int) -> int:
     return int64(0) if kb == jb else kb
 
 
-@kernel
+@inlined
 def _taken_by(h: Memory, ib: int, jb: int, item: int, gap: Any) -> bool:
     """True if the third block that contact `item` of block `ib` leads to stands between it and block `jb`.
 
