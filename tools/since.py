@@ -3,8 +3,10 @@
     python tools/since.py 757eec3
 
 The commit is checked out beside this one. Both run the same slab of rigid blocks, at rest and moving so fast
-that the domain pass runs in every cycle, in processes that take turns; and each runs the ball once with
-nothing compiled. Printed are processor times, as medians, and words of IA() a block.
+that the domain pass runs in every cycle: two processes take turns of half a second, and the ratio is the
+median of those of the turns, so that what else the machine does falls on both. Several pairs of processes do
+so, for where a process has its memory matters, too. And each runs the ball once with nothing compiled.
+Printed are processor times, as medians, and words of IA() a block.
 """
 
 from __future__ import annotations
@@ -16,12 +18,13 @@ import sys
 import tempfile
 from pathlib import Path
 from statistics import median
-from typing import Any
 
 ROOT = Path(__file__).parent.parent
-TURNS = 5
+PAIRS = 4  # of processes
+TURNS = 9  # of each process, in each of the two states
 SLAB = """
 import json
+import sys
 from time import process_time
 try:
     from udec_ia.layout.offsets import HTOL, KXD, MFREE, NBLK, NCON, TDEL
@@ -30,10 +33,14 @@ except ImportError:  # the older commit may have them elsewhere
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 
-def seconds(cycles):
-    start = process_time()
-    m.cycle(cycles)
-    return (process_time() - start) * 1e9 / cycles / int(m.h.ci[NCON])
+def turns(name, cycles):
+    for line in sys.stdin:
+        if line == "next\\n":
+            return
+        start = process_time()
+        m.cycle(cycles)
+        ns = (process_time() - start) * 1e9 / cycles / int(m.h.ci[NCON])
+        print(json.dumps([name, ns]), flush=True)
 
 m, n = Model(), 100
 m.start()
@@ -47,47 +54,66 @@ for i in range(1, n):
     m.split(i, -1, i, n + 1)
 m.fix(-1, n, 0, 1)
 m.cycle(200)
-found = {"words of IA() a block": (int(m.h.ci[MFREE]) - 1) / int(m.h.ci[NBLK])}
-found["at rest, ns a contact and cycle"] = seconds(200)
+print(json.dumps(["words of IA() a block", (int(m.h.ci[MFREE]) - 1) / int(m.h.ci[NBLK])]), flush=True)
+turns("at rest, ns a contact and cycle", 200)
 m.damping(0, 1)
 m.free(-1, n + 1, -1, n + 1)
 for ib in m.table("block")["address"]:
     putr(m.h, int(ib), KXD, float(2 * m.h.cr[HTOL] / m.h.cr[TDEL]))
 m.cycle(2)
-found["thrown, ns a contact and cycle"] = seconds(100)
-print(json.dumps(found))
+turns("thrown, ns a contact and cycle", 200)
 """
+BALL = "the ball with nothing compiled, s"
 
 
-def run(tree: Path, cache: Path, *arguments: str) -> str:
-    """Run Python with the package in `tree`; returns what it printed."""
+def start(tree: Path, cache: Path, *arguments: str) -> subprocess.Popen[str]:
+    """Start Python with the package in `tree`."""
     env = {**os.environ, "PYTHONPATH": str(tree), "UDEC_CACHE": str(cache)}
-    return subprocess.run(
-        [sys.executable, *arguments], cwd=tree, env=env, check=True, stdout=subprocess.PIPE, text=True
-    ).stdout
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        [sys.executable, *arguments], cwd=tree, env=env, stdin=pipe, stdout=pipe, text=True
+    )
 
 
 def first_ball(tree: Path, cache: Path) -> float:
     """Processor time in s of the ball with nothing compiled, which leaves its kernels in `cache`."""
     before = os.times()
-    run(tree, cache, "-m", "udec_ia", "run", "examples/ball-rolling.dat", "--out", str(cache / "ball"))
+    ball = start(
+        tree, cache, "-m", "udec_ia", "run", "examples/ball-rolling.dat", "--out", str(cache / "ball")
+    )
+    ball.communicate()
     after = os.times()
     return after.children_user + after.children_system - before.children_user - before.children_system
 
 
-def compare(before: Path, caches: Path) -> dict[str, list[float]]:
+def ask(slab: subprocess.Popen[str], what: str) -> tuple[str, float]:
+    """The next figure of a process with a slab, by name, once it has been told `what`."""
+    assert slab.stdin is not None
+    assert slab.stdout is not None
+    slab.stdin.write(what)
+    slab.stdin.flush()
+    name, value = json.loads(slab.stdout.readline())
+    return name, value
+
+
+def run_pair(trees: dict[Path, Path], found: dict[str, list[tuple[float, float]]]) -> None:
+    """Add to `found` the figures of one process of each of the two trees."""
+    slabs = [start(tree, cache, "-c", SLAB) for tree, cache in trees.items()]
+    for what in ("", *(["turn\n"] * TURNS), *(["next\nturn\n"] + ["turn\n"] * (TURNS - 1))):
+        (name, old), (_, new) = [ask(slab, what) for slab in slabs]
+        found.setdefault(name, []).append((old, new))
+    for slab in slabs:
+        slab.communicate("next\n")
+
+
+def compare(before: Path, caches: Path) -> dict[str, list[tuple[float, float]]]:
     """The figures of the tree `before` and of this one, by name."""
     trees = {before: caches / "before", ROOT: caches / "now"}
-    found: dict[str, list[float]] = {"the ball with nothing compiled, s": []}
-    for tree, cache in trees.items():
-        found["the ball with nothing compiled, s"].append(first_ball(tree, cache))
-        run(tree, cache, "-c", SLAB)
-    turns: dict[Path, list[Any]] = {tree: [] for tree in trees}
-    for _ in range(TURNS):
-        for tree, cache in trees.items():
-            turns[tree].append(json.loads(run(tree, cache, "-c", SLAB)))
-    for name in turns[ROOT][0]:
-        found[name] = [median(turn[name] for turn in turns[tree]) for tree in trees]
+    old, new = (first_ball(tree, cache) for tree, cache in trees.items())
+    run_pair(trees, {})  # compiles what the slab needs beside
+    found = {BALL: [(old, new)]}
+    for _ in range(PAIRS):
+        run_pair(trees, found)
     return found
 
 
@@ -104,8 +130,9 @@ def main() -> None:
         finally:
             subprocess.run([*git, "remove", "--force", str(before)], check=True)
     print(f"| a rigid slab of 10,000 blocks | {sys.argv[1]} | now | ratio |\n|---|---|---|---|")
-    for name, (old, new) in found.items():
-        print(f"| {name} | {old:.1f} | {new:.1f} | {new / old:.2f} |")
+    for name, turns in found.items():
+        old, new, ratio = (median(values) for values in zip(*((a, b, b / a) for a, b in turns), strict=True))
+        print(f"| {name} | {old:.1f} | {new:.1f} | {ratio:.3f} |")
 
 
 if __name__ == "__main__":
