@@ -26,7 +26,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 compiled = cast(Callable[[F], F], njit(error_model="numpy", _nrt=False, forceinline=True))
 
 NONE = 0xFFFFFFFF  # row number that stands for nothing
-UPEND, WORK, EVENTS = 0, 1, 2  # numbers that outlive a cycle, in Slab.sums
+UPEND, ULOOK, WORK, EVENTS = 0, 1, 2, 3  # numbers that outlive a cycle, in Slab.sums
 
 
 class Constants(NamedTuple):
@@ -114,7 +114,7 @@ class Domains(NamedTuple):
 
 
 class Slab(NamedTuple):
-    """A whole model. kn, ks, mu, coh: one value a material. sums: see UPEND, WORK, EVENTS."""
+    """A whole model. kn, ks, mu, coh: one value a material. sums: see UPEND, ULOOK, WORK, EVENTS."""
 
     constants: Constants
     blocks: Blocks
@@ -179,7 +179,7 @@ def extract(array: MainArray) -> Slab:
     constants = Constants(float(cr[g.DTOL] - cr[g.GTOL]), *(float(cr[i]) for i in names))
     kn, ks, mu, coh = (cr[i : i + 50].copy() for i in (g.AKN, g.AKS, g.AMU, g.COH))
     domains = _domains(array, d, p["address"], k["address"])
-    sums = np.array([cr[g.UPEND], array.h.cd[g.WFRIC], 0.0])
+    sums = np.array([cr[g.UPEND], cr[g.ULOOK], array.h.cd[g.WFRIC], 0.0])
     return Slab(constants, blocks, corners, contacts, domains, kn, ks, mu, coh, sums)
 
 
@@ -255,7 +255,9 @@ def accumulate(s: Slab, fastest: float) -> None:
     """Fictitious displacements of the domains, when they cannot wait; an event if one needs an update."""
     b, p, k, d, c = s.blocks, s.corners, s.contacts, s.domains, s.constants
     bound = (fastest + fastest) * c.dt
-    waiting = s.sums[UPEND]
+    waiting, greatest = s.sums[UPEND], 0.0
+    if s.sums[ULOOK] >= c.htol:
+        s.sums[ULOOK] = 0.0
     if waiting + bound < c.htol:
         s.sums[UPEND] = waiting + bound
         return
@@ -273,8 +275,10 @@ def accumulate(s: Slab, fastest: float) -> None:
                 lx, ly, hx, hy = min(lx, vx), min(ly, vy), max(hx, vx), max(hy, vy)
         moved = max(hx - lx, hy - ly) * c.dt
         d.umax[i] += waiting + moved
+        greatest = max(greatest, moved)
         if d.umax[i] + moved > c.etol or moved > c.etol + c.etol:
             s.sums[EVENTS] += 1
+    s.sums[ULOOK] += waiting + greatest
     s.sums[UPEND] = 0.0
 
 
@@ -404,7 +408,7 @@ def stays(s: Slab, j: int, nx: float, ny: float) -> bool:
     overlap = k.un[j]
     if overlap > 0.0:
         return k.fn[j] != 0.0 or not has_twin(k, j, c)
-    if s.sums[UPEND] != 0.0:
+    if s.sums[ULOOK] < c.htol:
         return True
     return in_place(s, j, nx, ny) and not has_twin(k, j, c)
 

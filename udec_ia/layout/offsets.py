@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "52b6c98129101b81984ef06ff91a8f4076eac3655b76976815e7131cff3614f5"
+DIGEST = "3dc3c74dfd55d76a027cddeab0940b19f7a6bfaa3b6476050c60d0702c63da3e"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -281,7 +281,8 @@ PAR1 = 872  # a number for the user's own laws, material I
 PAR2 = 922  # a number for the user's own laws, material I
 PAR3 = 972  # a number for the user's own laws, material I
 PAR4 = 1022  # a number for the user's own laws, material I
-NCOMR = 1072
+ULOOK = 1072  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 1073
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

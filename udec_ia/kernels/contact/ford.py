@@ -101,7 +101,7 @@ def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool
     """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
     if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
-    return overlap < -h.cr[g.GTOL] and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
 
 @kernel
@@ -191,9 +191,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
         idle = is_open(h, ic, overlap)
     if energy is not None and by_springs and overlap <= zero:
         note_opening(h, ic)
-    still = zero < h.cr[g.UPEND] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
+    still = h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
-        return  # an open contact looks at its neighbours only when the domain pass has run
+        return  # an open contact looks at its neighbours only when the domain pass says so
     was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
     xd, yd = cvel(h, ic, soft)
     if joints is not None and has_law(h, joints, ic):

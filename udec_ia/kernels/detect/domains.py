@@ -15,6 +15,10 @@ error. Why nothing else can be missed is said in tunnelling.py.
 While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
 block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
 hundredth of ETOL. A scene at rest pays nothing for its domains.
+
+An open contact looks at its neighbours (ford.py) in a cycle in which a domain is going to be updated, or the
+greatest displacement within any domain, summed since they last looked (ULOOK), has reached HTOL. What flies
+together pays nothing for that.
 """
 
 from __future__ import annotations
@@ -89,10 +93,13 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
     dt = h.cr[g.TDEL]
     bound = (fastest + fastest) * dt
     waiting = h.cr[g.UPEND]
+    looked = h.cr[g.ULOOK] >= h.cr[g.HTOL]
+    unseen = real(h, 0.0) if looked else h.cr[g.ULOOK]
     if waiting + bound < h.cr[g.HTOL]:
+        h.cr[g.ULOOK] = unseen
         h.cr[g.UPEND] = waiting + bound
         return False
-    most = real(h, 0.0)
+    most = greatest = real(h, 0.0)
     idm = h.ci[g.IDPNT]
     ahead = idm
     for _ in range(LEAD):
@@ -104,7 +111,7 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
         if umax + moved > h.cr[g.ETOL]:
             umax += moved
         putr(h, idm, g.KUMAX, umax)
-        most = max(most, umax)
+        most, greatest = max(most, umax), max(greatest, moved)
         if moved > h.cr[g.ETOL] and h.ci[g.NERR] == 0:
             ip = gone_through(h, idm)
             if ip != 0:
@@ -112,4 +119,6 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
                 h.ci[g.IERAD] = ip
         idm = iget(h, idm, g.KD)
     h.cr[g.UPEND] = real(h, 0.0)
-    return bool(most > h.cr[g.ETOL])
+    to_update = bool(most > h.cr[g.ETOL])
+    h.cr[g.ULOOK] = h.cr[g.HTOL] if to_update else unseen + waiting + greatest
+    return to_update
