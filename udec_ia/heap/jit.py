@@ -44,7 +44,7 @@ def source_digest() -> str:
 CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}"
 
 
-def kernel(function: F, inline: bool = False) -> F:
+def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
     """Compile `function` on first use, for the word scheme of the arrays it is called with.
 
     No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
@@ -56,7 +56,7 @@ def kernel(function: F, inline: bool = False) -> F:
     kept = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE)
     try:
-        return cast(F, Kernel(function, CACHE / layer, error_model="numpy", forceinline=inline))
+        return cast(F, Kernel(function, CACHE / layer, apart, error_model="numpy", forceinline=inline))
     finally:
         config.CACHE_DIR = kept
 
@@ -64,3 +64,8 @@ def kernel(function: F, inline: bool = False) -> F:
 def inlined(function: F) -> F:
     """A kernel that becomes a part of its callers: for what the cycle does once for every contact."""
     return kernel(function, inline=True)
+
+
+def apart(function: F) -> F:
+    """A kernel that is not taken in by others, which call it where it is: see heap/apart.py."""
+    return kernel(function, apart=True)

@@ -92,12 +92,14 @@ class _WholeCompiler(_KernelCompiler):
 class Kernel:
     """A compiled function in both its forms: called from Python it is whole, from a kernel a part.
 
-    folder: where the machine code of the whole is kept.
+    folder: where the machine code of the whole is kept. apart: kernels call the whole, too, by its address.
     """
 
-    def __init__(self, function: Callable[..., Any], folder: Path, **flags: Any) -> None:
+    def __init__(self, function: Callable[..., Any], folder: Path, apart: bool = False, **flags: Any) -> None:
         update_wrapper(self, function)
-        self.whole = njit(cache=True, no_cfunc_wrapper=True, pipeline_class=_WholeCompiler, **flags)(function)
+        self.whole = njit(cache=True, no_cfunc_wrapper=not apart, pipeline_class=_WholeCompiler, **flags)(
+            function
+        )
         keep_code(self.whole, folder)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
@@ -105,6 +107,12 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         return self.whole(*args)
+
+    def address(self, kinds: tuple[Any, ...]) -> int:
+        """Where the whole for arguments of these types begins, as a function of C."""
+        self.whole.compile(kinds)
+        made = self.whole.overloads[kinds]
+        return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
 
 
 class _KernelType(types.Dispatcher):

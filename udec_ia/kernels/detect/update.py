@@ -5,6 +5,9 @@ domain was cut, until nothing more is needed. Blocks that overlap then where no 
 error 15. Every single contact leaves a sound map; when memory runs out the update stops between two contacts
 and can be taken up again.
 
+Whoever compiles a kernel that leads to updates does not compile these anew: it is handed the address of
+`update_domains`, which is machine code of its own.
+
 It comes to an end. After a long step contacts are given up first, as long as there is one to give up, and
 only then are contacts made: none twice, and none of them is given up in the same update, unless a domain
 that has not been looked at yet gives up its own. Of these there is one less each time.
@@ -17,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.apart import entry
+from udec_ia.heap.jit import apart, kernel
 from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.detect.gaps import give_up_taken
 from udec_ia.kernels.detect.search import SMALL, STRAY, search
@@ -150,7 +154,7 @@ def update(h: Memory, idm: int) -> bool:
                 waiting[n] = waiting[n - 1]
                 waiting[n - 1] = idnew
                 n += 1
-        elif done == MERGED:  # one that was waiting may be gone; they are flagged and found by update_all
+        elif done == MERGED:  # one that was waiting may be gone; they are flagged and found by _update_all
             settle_loop(h, idnew)
             waiting[0] = idnew
             n = 1
@@ -158,7 +162,7 @@ def update(h: Memory, idm: int) -> bool:
 
 
 @kernel
-def update_all(h: Memory) -> bool:
+def _update_all(h: Memory) -> bool:
     """Update every domain whose fictitious displacement exceeds ETOL. False if memory ran out."""
     again = True
     while again:
@@ -175,3 +179,14 @@ def update_all(h: Memory) -> bool:
                 break  # domains have merged, the following one may be gone
             idm = following
     return True
+
+
+@apart
+def update_domains(h: Memory, idm: int) -> bool:
+    """Update domain `idm`, or with 0 every domain that needs it. False if memory ran out."""
+    return bool(_update_all(h) if idm == 0 else update(h, idm))
+
+
+def updating(h: Memory) -> Any:
+    """What kernels that lead to updates are handed: see heap.apart."""
+    return entry(update_domains, h)

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.heap.accessors import Memory
+from udec_ia.heap.accessors import Memory, int64
+from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.detect.update import update_all
 from udec_ia.kernels.energy.works import note_forces, note_stresses
 from udec_ia.layout import offsets as g
 
@@ -23,12 +23,12 @@ BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 
 
 @kernel
-def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any) -> int:
+def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any, update: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid and free of boundary conditions, else True. laws: of blocks, None if
     `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). energy:
-    None if no account of the energy is kept, else True.
+    None if no account of the energy is kept, else True. update: see detect.update.updating.
     """
     done = 0
     while done < n:
@@ -44,7 +44,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any
                 note_stresses(h, soft)
             h.ci[g.JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
         if h.ci[g.JPHASE] == DOMAINS:
-            if not update_all(h):
+            if not call_entry(update, h, int64(0)):
                 return done
             h.ci[g.JPHASE] = CONTACTS
         if h.ci[g.JPHASE] == CONTACTS:
@@ -52,7 +52,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any
             ford_all(h, soft, joints, energy)
             h.ci[g.JPHASE] = BLOCKS if h.ci[g.NBROKE] == broken else BROKEN
         if h.ci[g.JPHASE] == BROKEN:  # domains that merged are looked through at once
-            if not update_all(h):
+            if not call_entry(update, h, int64(0)):
                 return done
             h.ci[g.JPHASE] = BLOCKS
         h.ci[g.MCTOT] += 1

@@ -91,13 +91,13 @@ def record(h: Memory, soft: Any, places: Any, rows: Any, count: Any) -> bool:
 
 @kernel
 def run_watched(
-    h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any
+    h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any, update: Any
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
-    laws: the last four arguments of run_cycles. places: without rows if nothing is recorded. Stops early when
-    NERR is set, when `rows` is full, and at rest, which is looked at every CHECK cycles of the run; to within
-    a negative ratio it never is.
+    laws: four arguments of run_cycles. update: its last one. places: without rows if nothing is recorded.
+    Stops early when NERR is set, when `rows` is full, and at rest, which is looked at every CHECK cycles of
+    the run; to within a negative ratio it never is.
     """
     recorded = len(places) > 0
     done = 0
@@ -105,7 +105,7 @@ def run_watched(
         ahead = min(int64(n - done), CHECK - h.ci[g.MCTOT] % CHECK) if ratio >= 0 else int64(n - done)
         before = h.ci[g.MCTOT]
         asked = until_due(h, ahead) if recorded else ahead
-        completed = run_cycles(h, asked, laws[0], laws[1], laws[2], laws[3])
+        completed = run_cycles(h, asked, laws[0], laws[1], laws[2], laws[3], update)
         done += completed
         if recorded and h.ci[g.MCTOT] > before:
             record(h, laws[0], places, rows, count)

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, real, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
+from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.masses import share_extension
 from udec_ia.kernels.contact.ford import restart, settle_all
-from udec_ia.kernels.detect.update import update, update_all
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
@@ -171,7 +171,7 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
 
 
 @kernel
-def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
+def update_cracks(h: Memory, blocks: Any, first: int, n: int, update: Any) -> bool:
     """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out.
 
     Every domain beside a block follows a contact of it that is not virtual, as the crack's two are not. An
@@ -185,10 +185,10 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int) -> bool:
         while item != ip:
             if is_contact(h, item) and iget(h, item, g.KCCOD) != g.VIRTUAL:
                 idm = idomp(h, ib, item)
-                if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not update(h, idm):
+                if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not call_entry(update, h, idm):
                     return False
                 if h.ci[g.NBROKE] != broken:
-                    return update_all(h)  # the contact at hand may be gone
+                    return call_entry(update, h, int64(0))  # the contact at hand may be gone
             item = nextcp(h, ib, item)
     return True
 
@@ -206,11 +206,13 @@ def cut_path(
     where: Any,
     which: Any,
     soft: Any,
+    update: Any,
 ) -> tuple[int, int]:
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so `where` and `which` do as they did for `path`. Returns the status and the new number of boxes.
+    so `where` and `which` do as they did for `path`. update: see
+    detect.update.updating. Returns the status and the new number of boxes.
     """
     first = n
     rounding_length = h.cr[g.DTOL]
@@ -236,5 +238,5 @@ def cut_path(
     if h.cr[g.DTOL] != rounding_length:
         settle_all(h)
         flag_all(h)
-        return (DONE if update_all(h) else NO_MEMORY), n
-    return (DONE if update_cracks(h, blocks, first, n) else NO_MEMORY), n
+        return (DONE if call_entry(update, h, int64(0)) else NO_MEMORY), n
+    return (DONE if update_cracks(h, blocks, first, n, update) else NO_MEMORY), n

@@ -7,7 +7,7 @@ from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.contact.ford import settle_all
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
-from udec_ia.kernels.detect.update import update_all
+from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
@@ -109,7 +109,7 @@ def bring_up(array: MainArray) -> None:
     """Update every flagged domain, finding memory as needed. What it may find is left in NERR and IERAD."""
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = 0
     keep_spare(array)
-    while not update_all(array.h):
+    while not update_domains(array.h, 0):
         find_room(array)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.watch import record, run_watched
 from udec_ia.ops.commands.history import Definition, definitions, places
 from udec_ia.ops.common.soft import soft
@@ -28,7 +29,7 @@ def run_unwatched(h: Memory, n: int, laws: Any) -> int:
 
     laws: see kernels.drive.watch.run_watched.
     """
-    return int(run_watched(h, n, laws, NEVER, NO_PLACES, NO_ROWS, np.zeros(1, np.int64))[0])
+    return int(run_watched(h, n, laws, NEVER, NO_PLACES, NO_ROWS, np.zeros(1, np.int64), updating(h))[0])
 
 
 class Series:
@@ -173,11 +174,11 @@ class Watch:
 
         laws: see kernels.drive.watch.run_watched.
         """
-        done, full = 0, True
+        h, update, done, full = self.array.h, updating(self.array.h), 0, True
         while done < n and full:
             try:
                 completed, self.reached = run_watched(
-                    self.array.h, n - done, laws, self.ratio, self._places, self._rows, self._count
+                    h, n - done, laws, self.ratio, self._places, self._rows, self._count, update
                 )
             finally:
                 full = self.hand_on() == ROWS

@@ -1,0 +1,46 @@
+"""Kernels that are called where they are, instead of being taken in by every whole that needs them.
+
+What is long and called seldom would be translated once more in each of them (linking.py). Such a kernel is
+translated once, as a whole of its own; Python asks for the address of its machine code (`entry`) and hands it
+to the kernels that need it, which call what lies there (`call_entry`). A call costs what it costs in C.
+Kernels that are not compiled are handed the function itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import typeof, types
+from numba.extending import intrinsic, overload
+
+from udec_ia.heap.views import Memory
+
+
+def entry(kernel: Callable[[Memory, int], bool], h: Memory) -> Any:
+    """Where `kernel`, made by jit.apart, is for memories of the type of `h`, compiled if it has not been."""
+    return kernel.address((typeof(h), types.int64)) if hasattr(kernel, "address") else kernel
+
+
+def call_entry(where: Any, h: Memory, iad: int) -> bool:
+    """Call the kernel at `where` with the memory and an address in it."""
+    return bool(where(h, iad))
+
+
+@intrinsic
+def _jump(typing: Any, where: Any, h: Any, iad: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        taken = [context.get_value_type(kind) for kind in signature.args[1:]]
+        function = ir.FunctionType(context.get_value_type(types.boolean), taken)
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+
+    return types.boolean(types.int64, h, types.int64), generate
+
+
+@overload(call_entry)
+def _call_entry(where: Any, h: Any, iad: Any) -> Callable[..., Any]:
+    def impl(where: Any, h: Any, iad: Any) -> Any:
+        return _jump(where, h, iad)
+
+    return impl
