@@ -1,0 +1,70 @@
+"""A kernel that others call where it is does what it does when Python calls it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from udec_ia.heap.accessors import Memory, iget, int64, puti
+from udec_ia.heap.apart import call_entry, entry
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.jit import apart, kernel
+from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME, Scheme
+from udec_ia.layout import offsets as g
+
+
+@apart
+def count_down(h: Memory, iad: int) -> bool:
+    """Take 1 from the word at `iad`; True as long as something is left."""
+    puti(h, iad, g.KB, iget(h, iad, g.KB) - 1)
+    return bool(iget(h, iad, g.KB) > 0)
+
+
+@kernel
+def calls(h: Memory, iad: int, where: Any) -> int:
+    """How often `where` says True."""
+    n = 0
+    while call_entry(where, h, int64(iad)):
+        n += 1
+    return n
+
+
+@kernel
+def takes_it_in(h: Memory, iad: int) -> bool:
+    """The same, taken in."""
+    return count_down(h, iad)
+
+
+@pytest.mark.parametrize("scheme", ALL_SCHEMES.values(), ids=list(ALL_SCHEMES))
+def test_it_is_called_with_the_memory_and_what_it_returns_comes_back(scheme: Scheme) -> None:
+    h = MainArray(scheme).h
+    puti(h, 10, g.KB, 7)
+    assert calls(h, 10, entry(count_down, h)) == 6
+    assert iget(h, 10, g.KB) == 0
+    puti(h, 10, g.KB, 2)
+    assert [count_down(h, int64(10)) for _ in range(2)] == [True, False]
+
+
+def test_there_is_one_for_each_word_scheme() -> None:
+    """And the same again for another memory of the same scheme."""
+    where = [entry(count_down, MainArray(scheme).h) for scheme in ALL_SCHEMES.values()]
+    again = [entry(count_down, MainArray(scheme).h) for scheme in ALL_SCHEMES.values()]
+    assert where == again
+    assert len(set(where)) == (len(ALL_SCHEMES) if isinstance(where[0], int) else 1)
+
+
+def test_what_calls_it_does_not_take_it_in() -> None:
+    """The machine code of the caller has no copy of it."""
+    if not hasattr(calls, "whole"):
+        pytest.skip("nothing is compiled")
+    h = MainArray(ALL_SCHEMES[DEFAULT_SCHEME]).h
+    puti(h, 10, g.KB, 1)
+    assert not takes_it_in(h, np.int64(10))
+    assert calls(h, np.int64(10), entry(count_down, h)) == 0
+    inside = [
+        "count_down" in next(iter(one.whole.overloads.values())).library.get_llvm_str()
+        for one in (takes_it_in, calls)
+    ]
+    assert inside == [True, False]
