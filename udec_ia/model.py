@@ -32,7 +32,7 @@ from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
-from udec_ia.layout.offsets import DTOL, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
+from udec_ia.layout.offsets import DTOL, LREADY, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
 from udec_ia.ops.commands.change import change
@@ -59,7 +59,7 @@ from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
 from udec_ia.printable import printable
 from udec_ia.recorder import Recorder
-from udec_ia.transaction import Undo, beside, command, looking, numbers, once
+from udec_ia.transaction import Undo, beside, command, looking, numbers, once, steady
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -161,6 +161,7 @@ class Model:
 
     def note_writes(self) -> None:
         """Something was written to the words that `h` lends: what follows them proves them first."""
+        self.array.h.ci[LREADY] = 0
         self.forget_boxes()
         self.undo.array = None  # commands obeyed once more would not give these words
         self._touched = True
@@ -594,7 +595,7 @@ class Model:
         self._ready(sound=False)
         settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
-    @numbers
+    @steady
     def energy(self, state: str = "on") -> None:
         """ENERGY: "on": an account of the energy begins (see `balance`); "off": it ends."""
         self._ready()
@@ -617,7 +618,7 @@ class Model:
         self._ready(sound=False)
         settings.set_fraction(self.array, f, safe)
 
-    @numbers
+    @steady
     def scale(self, s: float) -> None:
         """SCALE: plot scale."""
         self._ready(sound=False)

@@ -48,7 +48,7 @@ PLAIN = (bool, int, float, str, np.generic, type(None))
 
 def command(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that may change any word of IA()."""
-    return _obeyed(method, words=True)
+    return _obeyed(_unsettling(method), words=True)
 
 
 def once(method: Method[P, R]) -> Method[P, R]:
@@ -58,6 +58,11 @@ def once(method: Method[P, R]) -> Method[P, R]:
 
 def numbers(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that changes numbers of the common block only."""
+    return _obeyed(_unsettling(method))
+
+
+def steady(method: Method[P, R]) -> Method[P, R]:
+    """The same, of numbers on which no time-step hangs."""
     return _obeyed(method)
 
 
@@ -75,6 +80,17 @@ def looking(method: Method[P, R]) -> Method[P, R]:
             return method(model, *args, **named)
 
     return beside(shown)
+
+
+def _unsettling(method: Method[P, R]) -> Method[P, R]:
+    """The next CYCLE finds masses and time-step anew. Obeyed once more, the method says so again."""
+
+    @wraps(method)
+    def unsettles(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        model.array.h.ci[g.LREADY] = 0
+        return method(model, *args, **named)
+
+    return unsettles
 
 
 def _obeyed(

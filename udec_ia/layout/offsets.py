@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "3dc3c74dfd55d76a027cddeab0940b19f7a6bfaa3b6476050c60d0702c63da3e"
+DIGEST = "5575183f49bdac54197e53260e10b4edad894dff6e3e03248f47aea45730566a"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -235,7 +235,8 @@ NTIPS = 27  # contacts that the last search refused because a tip stands in thei
 JPHASE = 28  # pass of the cycle to be resumed after memory was found; 0 for none
 NSPOIL = 29  # number of the error that has ended a run of this state; 0 for none
 MCSPOI = 30  # cycle in which that was; 0 for none
-NCOMI = 31
+LREADY = 31  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 32
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

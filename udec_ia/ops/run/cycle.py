@@ -45,11 +45,15 @@ Prepared = Callable[[], None]
 def prepare(array: MainArray) -> None:
     """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
 
+    Nothing is found anew unless a command has come since the last CYCLE: how many cycles a CYCLE has does not
+    change the digits of any.
     Errors 11, 12, 13, 14, 16, 26 and 28.
     """
     h = array.h
     if h.ci[g.NBLK] == 0:
         raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
+    if h.ci[g.LREADY]:
+        return
     if h.ci[g.MCTOT] == 0:
         make_masses(h, soft(array))
     settle_default(array)
@@ -65,6 +69,7 @@ def prepare(array: MainArray) -> None:
             raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
         h.cr[con1] = 1 - half
         h.cr[con2] = 1 / (1 + half)
+    h.ci[g.LREADY] = 1
 
 
 def _check_deformable(array: MainArray) -> None:
