@@ -1,4 +1,4 @@
-"""docs/words.md shows what tools/words.py prints."""
+"""docs/words.md shows what tools/studies/words.py prints."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_the_page_shows_what_the_tool_prints(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT / "tools")
+    monkeypatch.syspath_prepend(ROOT / "tools" / "studies")
     monkeypatch.delitem(sys.modules, "words", raising=False)
     import words
 

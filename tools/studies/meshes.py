@@ -1,6 +1,6 @@
 """How good the zones of GENERATE ... AUTOMATIC are: random blocks, meshed, and the angles of their zones.
 
-    python tools/meshes.py [--blocks N] [--seed SEED]
+    python tools/studies/meshes.py [--blocks N] [--seed SEED]
 
 prints what docs/meshes.md says. A quarter of the blocks is cut from a rectangle by random lines, as SPLIT
 does, and convex; a quarter are stars with 4 to 10 points of random length; a quarter are combs, all of whose

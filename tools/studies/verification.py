@@ -1,4 +1,4 @@
-"""Problems with exact solutions: `python tools/verification.py [NAME ...]` prints computed beside exact.
+"""Problems with exact solutions: `python tools/studies/verification.py [NAME ...]` prints both figures.
 
 The tests run the same problems and hold each figure to its tolerance. A problem is a function that builds a
 model, runs it and returns figures; its comment says what the exact value is. Units are SI.
@@ -6,6 +6,7 @@ model, runs it and returns figures; its comment says what the exact value is. Un
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
 from collections.abc import Callable
@@ -22,7 +23,12 @@ PROBLEMS: dict[str, Callable[[], list[Figure]]] = {
 
 def main() -> int:
     """Run the problems named on the command line, or all; 0 if every figure is within its tolerance."""
-    names = sys.argv[1:] or list(PROBLEMS)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="one of: " + ", ".join(PROBLEMS))
+    names = parser.parse_args().names or list(PROBLEMS)
+    unknown = [name for name in names if name not in PROBLEMS]
+    if unknown:
+        parser.error(f"there is no problem {unknown[0]!r}: choose from {', '.join(PROBLEMS)}")
     wrong = 0
     print(f"{'':60} {'computed':>12} {'exact':>12} {'off by':>10} {'allowed':>8}")
     for name in names:

@@ -1,6 +1,6 @@
 """What the widths of integers and reals cost and bear, shown on the ball of Appendix II-1.
 
-    python tools/words.py
+    python tools/studies/words.py
 
 prints the tables of docs/words.md: the deck examples/ball-rolling.dat is run in all five word schemes,
 without its plots, and held against the formulas for a disc that rolls.
@@ -16,7 +16,7 @@ from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import MFREE, NBLK
 
-DECK = Path(__file__).parent.parent / "examples" / "ball-rolling.dat"
+DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"
 SIDE, RADIUS, DENSITY, KN, STEP = 5**0.5, 1.115, 2000.0, 1e8, 0.002  # of the deck; s, m, kg/m3, N/m
 LEFT_OUT = ("PLOT", "P B", "SAVE", "STOP", "END")
 
