@@ -23,7 +23,7 @@ PROBLEMS: dict[str, Callable[[], list[Figure]]] = {
 
 def main() -> int:
     """Run the problems named on the command line, or all; 0 if every figure is within its tolerance."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description="Computed beside exact, for each figure of the problems.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="one of: " + ", ".join(PROBLEMS))
     names = parser.parse_args().names or list(PROBLEMS)
     unknown = [name for name in names if name not in PROBLEMS]
