@@ -363,7 +363,7 @@ def _aimed_strike(stage: Stage, rng: Rng, mover: int, target: int) -> None:
     one, two = (_point(rng, bodies[ib].corners) for ib in (mover, target))
     reach = two - one
     length = float(np.hypot(*reach))
-    direction = reach / length
+    direction = reach / length if length > 0 else away  # two corners can lie in one place
     rest = length / stage.d - float(10.0 ** rng.uniform(-0.3, 1))
     if rest > 0:  # most of the way at one speed
         quick = min(max(rest / 80, speed(rng)), FAST)
