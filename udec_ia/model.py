@@ -103,6 +103,7 @@ class Model:
         self.laws = LawBook(constitutive)
         self.name = name
         self.deck_log: list[str] = []
+        self.logs_calls = True  # False while a monitor does, which knows the lines themselves
         self.progress: TextIO | None = None
         self.animate = False
         self.tell: Callable[[str], None] = log.warning
@@ -158,6 +159,23 @@ class Model:
     def whole(self, action: Callable[[], R]) -> R:
         """Have all that `action` does with this model done, or nothing of it if it raises."""
         return self.undo.whole(self, action)
+
+    def log_call(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """Log what was done, as a deck says it."""
+        from udec_ia.deck.spelling import spell
+
+        if self.logs_calls:
+            self.deck_log += spell(method, args, named)
+
+    def deck(self) -> str:
+        """The deck that does what was done until now, in decks and in Python: all but SAVE and RESTART.
+
+        What was given as `constitutive` is given with it again; of words that were written through `h` it
+        says nothing. The deck of a model from a restart file begins as that of the model that was saved.
+        """
+        from udec_ia.deck.spelling import joined
+
+        return "".join(line + "\n" for line in joined(self.deck_log))
 
     def note_writes(self) -> None:
         """Something was written to the words that `h` lends: what follows them proves them first."""
@@ -671,6 +689,7 @@ class Model:
 
             self._animation = Animation(self.name)
         report = Report(lambda: self.array.h, n, self.progress, self._animation)
+        before = int(self.array.h.ci[MCTOT])
         try:
             every = max(1, n // PICTURES) if self.animate else None
             done = cycle(
@@ -685,6 +704,7 @@ class Model:
                 self._runaway,
             )
         except BaseException:
+            self.log_call(Model.cycle, (int(self.array.h.ci[MCTOT]) - before,), {})
             finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts
                 self._keep(watch)

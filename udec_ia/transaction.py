@@ -103,7 +103,9 @@ def _obeyed(
                 model.undo.note(Step(method, args, named) if repeated else None)
             if words:
                 model.undo.keep(model.array)
-            return method(model, *args, **named)
+            result = method(model, *args, **named)
+            model.log_call(method, args, named)
+            return result
 
         done: R = model.whole(obey)
         return done

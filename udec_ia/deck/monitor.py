@@ -144,13 +144,13 @@ class Monitor:
         if "path" in named:  # files named in a deck are in the folder for files
             named["path"] = self.model.out / named["path"]
         model = self.model
-        before = model.tell, model.inform, model.explain_step
-        model.explain_step = True
+        before = model.tell, model.inform, model.explain_step, model.logs_calls
+        model.explain_step, model.logs_calls = True, False
         model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
             return getattr(model, name)(*call.positional, **named)
         finally:
-            model.tell, model.inform, model.explain_step = before
+            model.tell, model.inform, model.explain_step, model.logs_calls = before
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
