@@ -24,6 +24,7 @@ class Recorder:
         self.tell = self.inform = print
         self.explain_step = False
         self.deck_log: list[str] = []
+        self.log_lines = self.deck_log.extend
         self.logs_calls = True
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
         self.answers: dict[str, object] = {"save": Path("results/rescue.h5")}

@@ -16,6 +16,7 @@ import logging
 import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
@@ -59,7 +60,7 @@ from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
 from udec_ia.printable import printable
 from udec_ia.recorder import Recorder
-from udec_ia.transaction import Undo, beside, command, looking, numbers, once, steady
+from udec_ia.transaction import Step, Undo, beside, command, looking, numbers, once, steady
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -102,8 +103,9 @@ class Model:
         self.out = out
         self.laws = LawBook(constitutive)
         self.name = name
-        self.deck_log: list[str] = []
         self.logs_calls = True  # False while a monitor does, which knows the lines themselves
+        self._log: list[str | Step] = []
+        self._cycles: int | None = None  # of the CYCLEs at the end of the log
         self.progress: TextIO | None = None
         self.animate = False
         self.tell: Callable[[str], None] = log.warning
@@ -161,11 +163,28 @@ class Model:
         return self.undo.whole(self, action)
 
     def log_call(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """Log what was done, as a deck says it."""
-        from udec_ia.deck.spelling import spell
+        """Log what was done, to be said as a deck says it when somebody asks."""
+        if not self.logs_calls:
+            return
+        if method.__name__ == "cycle":
+            self._cycles = (self._cycles or 0) + int(args[0] if args else named["n"])
+            return
+        step = Step(method, tuple(args), named)
+        self.log_lines([step] if step.lasts else step.lines)
 
-        if self.logs_calls:
-            self.deck_log += spell(method, args, named)
+    def log_lines(self, lines: Sequence[str | Step]) -> None:
+        """Log what a deck says."""
+        if self._cycles is not None:
+            self._log.append(f"CYCLE {self._cycles}")
+        self._log += lines
+        self._cycles = None
+
+    @property
+    def deck_log(self) -> list[str]:
+        """The lines of a deck that say what was done."""
+        last = [] if self._cycles is None else [f"CYCLE {self._cycles}"]
+        said = ([one] if isinstance(one, str) else one.lines for one in self._log)
+        return [*chain.from_iterable(said), *last]
 
     def deck(self) -> str:
         """The deck that does what was done until now, in decks and in Python: all but SAVE and RESTART.
@@ -173,9 +192,7 @@ class Model:
         What was given as `constitutive` is given with it again; of words that were written through `h` it
         says nothing. The deck of a model from a restart file begins as that of the model that was saved.
         """
-        from udec_ia.deck.spelling import joined
-
-        return "".join(line + "\n" for line in joined(self.deck_log))
+        return "".join(line + "\n" for line in self.deck_log)
 
     def note_writes(self) -> None:
         """Something was written to the words that `h` lends: what follows them proves them first."""
@@ -231,7 +248,8 @@ class Model:
         source = self.out / RESTART_FILE if path is None else path
         array, deck_log, laws, series = load(source)
         refit(array, self.mtop)
-        self.array, self.deck_log, self._recorder.series = array, deck_log, series
+        self.array, self._recorder.series = array, series
+        self._log, self._cycles = [*deck_log], None
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
@@ -704,7 +722,7 @@ class Model:
                 self._runaway,
             )
         except BaseException:
-            self.log_call(Model.cycle, (int(self.array.h.ci[MCTOT]) - before,), {})
+            self.log_call(Model.cycle, (int(self.array.h.ci[MCTOT]) - before,), {})  # they stay
             finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts
                 self._keep(watch)

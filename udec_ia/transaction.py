@@ -121,6 +121,13 @@ class Step(NamedTuple):
     named: dict[str, Any]
 
     @property
+    def lines(self) -> list[str]:
+        """The command as a deck says it."""
+        from udec_ia.deck.spelling import spell
+
+        return spell(*self)
+
+    @property
     def lasts(self) -> bool:
         """True if nobody can change what it was given."""
         return all(map(_is_plain, (*self.args, *self.named.values())))

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word
 from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import statements
-from udec_ia.deck.spelling import BY_NAME, UNSAID, joined, spell
+from udec_ia.deck.spelling import BY_NAME, UNSAID, spell
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
@@ -129,6 +129,7 @@ def test_the_deck_of_a_session_makes_the_same_words(tmp_path: Path) -> None:
     first = session(tmp_path)
     deck = first.deck()
     assert "CYCLE 50\n" in deck
+    assert "CYCLE 7\nCYCLE 3\n" in deck  # as they stand in the deck
     assert "SPLIT 0" not in deck
     second = Model(out=tmp_path / "again")
     second.run(deck)
@@ -162,7 +163,24 @@ def test_a_run_that_was_ended_is_said_as_long_as_it_was(tmp_path: Path) -> None:
         second.run(m.deck())
 
 
-def test_cycles_are_joined() -> None:
-    lines = ["CYCLE 3", "CYCLE 4", "FIX 0 1 0 1", "CYCLE 0", "CYC 2", "CYCLE 2", "CYCLE 0"]
-    assert [*joined(lines)] == ["CYCLE 7", "FIX 0 1 0 1", "CYCLE 0", "CYC 2", "CYCLE 2"]
-    assert [*joined([])] == []
+def test_what_was_given_may_be_changed_afterwards() -> None:
+    """The deck says what it was; and that of many CYCLEs is one line."""
+    m = Model()
+    m.block(0, 0, 0, 4, 1, 4, 1, 0)
+    m.change(0, 1, 0, 4, type="fdef")
+    points, zones = [[0.0, 0.0], [0.0, 4.0], [1.0, 4.0], [1.0, 0.0]], [[1, 2, 3], [1, 3, 4]]
+    m.generate(0, 1, 0, 4, "manual", gridpoints=points, zones=zones)
+    points[0][0] = 17.0
+    m.property(1, density=1, bulk=1, g=1)
+    for _ in range(3):
+        m.cycle(n=2)
+    lines = m.deck_log
+    assert lines[3:] == [
+        "GENERATE 0 1 0 4 MANUAL GRIDPOINTS 0.0,0.0 0.0,4.0 1.0,4.0 1.0,0.0 ZONES 1,2,3",
+        "+ 1,3,4",
+        "PROPERTY MATERIAL 1 BULK 1 DENSITY 1 G 1",
+        "CYCLE 6",
+    ]
+    m.gravity(0, 0)
+    m.cycle(0)
+    assert m.deck_log == [*lines, "GRAVITY 0 0", "CYCLE 0"]

@@ -128,9 +128,8 @@ class Monitor:
     def _carry_out(self, call: Call, statement: Statement) -> object:
         """Obey `call` and log its lines; what is returned is to be shown."""
         result = self._call(call)
-        self.model.deck_log += [
-            line.shown for line in dict.fromkeys(token.line for token in statement.tokens)
-        ]
+        lines = dict.fromkeys(token.line for token in statement.tokens)
+        self.model.log_lines([line.shown for line in lines])
         return result
 
     def _call(self, call: Call) -> object:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import Any
 
@@ -40,22 +40,6 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
     given = _signature(method).bind(None, *args, **named).arguments
     parts = [command.keyword.upper(), *_parts(command, _signature(method), given)]
     return textwrap.wrap(" ".join(parts), WIDTH, subsequent_indent=f"{CONTINUATION} ", **WHOLE_WORDS)
-
-
-def joined(lines: Iterable[str]) -> Iterator[str]:
-    """The same lines, CYCLEs that follow one another in one, which makes the same digits."""
-    cycles = None
-    for line in lines:
-        word, _, number = line.partition(" ")
-        if word == "CYCLE" and number.isdecimal():
-            cycles = (cycles or 0) + int(number)
-            continue
-        if cycles is not None:
-            yield f"CYCLE {cycles}"
-        cycles = None
-        yield line
-    if cycles is not None:  # CYCLE 0 has found masses and rounding length
-        yield f"CYCLE {cycles}"
 
 
 @cache
