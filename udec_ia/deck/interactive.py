@@ -7,12 +7,12 @@ or at the next command, as in a deck, and a deck can be pasted in unless it cont
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
+
+from platformdirs import user_state_dir
 
 from udec_ia.deck.language import COMMANDS, Command, match
 from udec_ia.deck.monitor import Monitor
@@ -119,9 +119,7 @@ class Typed:
 
 def history_file() -> Path:
     """Where the lines typed in earlier sessions are kept."""
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "udec_ia" / "history"
-    return Path(os.environ.get("XDG_STATE_HOME", Path.home() / ".local" / "state")) / "udec_ia" / "history"
+    return Path(user_state_dir("udec_ia", appauthor=False)) / "history"
 
 
 @contextmanager

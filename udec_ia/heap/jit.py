@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config
+from platformdirs import user_cache_dir
 
 from udec_ia.heap.linking import Kernel
 from udec_ia.layout import offsets as g
@@ -25,11 +25,7 @@ PACKAGE = Path(__file__).parent.parent
 
 
 def _cache_home() -> Path:
-    if "UDEC_CACHE" in os.environ:
-        return Path(os.environ["UDEC_CACHE"])
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "udec_ia"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "udec_ia"
+    return Path(os.environ.get("UDEC_CACHE", user_cache_dir("udec_ia", appauthor=False)))
 
 
 def source_digest() -> str:
