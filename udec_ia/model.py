@@ -54,7 +54,7 @@ from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.arrange import arrange
 from udec_ia.ops.run.cycle import cycle, finish
-from udec_ia.ops.run.remarks import on_moduli, on_properties, on_rest, on_rounding
+from udec_ia.ops.run.remarks import on_laws, on_moduli, on_properties, on_rest, on_rounding
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
@@ -754,6 +754,7 @@ class Model:
         if self.explain_step:
             self.inform(describe(self.array, self._runaway.safe))
         self._remark(on_moduli(self.array, self.laws.block_laws))
+        self._remark(on_laws(self.array))
         self._remark(on_rounding(self.array))
 
     def _warn(self, text: str) -> None:

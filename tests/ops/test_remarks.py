@@ -20,8 +20,8 @@ def told(m: Model) -> list[str]:
     return said
 
 
-def soft(out: Path, **moduli: float) -> Model:
-    m = Model(out=out)
+def soft(out: Path, laws: str | None = None, **moduli: float) -> Model:
+    m = Model(out=out, constitutive=laws)
     m.property(1, density=2000, kn=1e8, ks=1e8, **moduli)
     m.block(0, 0, 0, 2, 1, 2, 1, 0)
     m.split(-1, 1, 2, 1)
@@ -106,6 +106,24 @@ def test_a_modulus_alone_is_nothing_to_rigid_blocks(tmp_path: Path) -> None:
     m = soft(tmp_path, g=1e9)
     said = told(m)
     m.change(0, 1, 1, 2, "rigid")
+    m.cycle(1)
+    assert said == []
+
+
+def test_properties_that_no_law_in_use_looks_at(tmp_path: Path) -> None:
+    """Of materials that are used, once; not where a block or a contact follows a law of the user's."""
+    m = soft(tmp_path, bulk=1e9, g=1e9)
+    said = told(m)
+    m.property(1, dilation=0.2, block_cohesion=1e5)
+    m.property(2, dilation=0.2)
+    for _ in range(2):
+        m.cycle(1)
+    (text,) = said
+    assert text.startswith("DILATION and BCOHESION of material 1: constitutive number 1 does not look")
+    m = soft(tmp_path, "joint-dilation", bulk=1e9, g=1e9)
+    said = told(m)
+    m.property(1, dilation=0.2)
+    m.change(0, 1, 1, 2, "rigid", constitutive=2)
     m.cycle(1)
     assert said == []
 

@@ -16,8 +16,19 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.limits import NMAT
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
+OF_LAWS = {  # properties that constitutive number 1 does not look at, by their places in the common block
+    "DILATION": g.JDIL,
+    "RFRICTION": g.RMU,
+    "RCOHESION": g.RCOH,
+    "CRITICAL": g.UCRIT,
+    "BFRICTION": g.BMU,
+    "BCOHESION": g.BCOH,
+    "BTENSION": g.BTEN,
+    "BDILATION": g.BDIL,
+}
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
@@ -62,6 +73,28 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
                     f"material {m} of deformable blocks has {given} and no {lacking}: nothing in them "
                     f"resists a change of {change}; PROPERTY MATERIAL={m} {lacking}=..."
                 )
+
+
+def on_laws(array: MainArray) -> Iterator[str]:
+    """CYCLE: properties of materials in use that only other laws than constitutive number 1 look at."""
+    h = array.h
+    given: dict[int, list[str]] = {}
+    for word, k in OF_LAWS.items():
+        for m in np.flatnonzero(h.cr[k : k + NMAT]) + 1:
+            given.setdefault(int(m), []).append(word)
+    if not given:
+        return
+    blocks, contacts = (addresses(h, int(h.ci[k]), n) for k, n in ((g.IBPNT, g.KB), (g.ICPNT, g.KC)))
+    followers = [
+        integers(h, groups, material)[integers(h, groups, number) > 1]
+        for groups, material, number in ((blocks, g.KMAT, g.KCONS), (contacts, g.KCM, g.KCC))
+    ]
+    for m in np.setdiff1d(integers(h, blocks, g.KMAT), np.concatenate(followers)):
+        if m in given:
+            yield (
+                f"{' and '.join(given[m])} of material {m}: constitutive number 1 does not look at that; "
+                "CHANGE x1 x2 y1 y2 CONSTITUTIVE=2, and give a law of that number (--constitutive)"
+            )
 
 
 def on_rounding(array: MainArray) -> Iterator[str]:

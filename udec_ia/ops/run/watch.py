@@ -117,15 +117,21 @@ class Solution(NamedTuple):
         return self.reached
 
     def __str__(self) -> str:
+        ratio = f"{self.ratio:.3g}" if np.isfinite(self.ratio) else "without bound, as no force is carried,"
         if self.reached:
-            return f"force ratio {self.wanted:g} reached: it is {self.ratio:.3g} after {self.cycles} cycles"
-        found = f"force ratio {self.wanted:g} NOT REACHED: it is {self.ratio:.3g} after {self.cycles} cycles"
+            return f"force ratio {self.wanted:g} reached: it is {ratio} after {self.cycles} cycles"
+        found = f"force ratio {self.wanted:g} NOT REACHED: it is {ratio} after {self.cycles} cycles"
         if self.ratio > self.wanted:
             return f"{found}, most out of balance is {self.worst}{self._advice}"
         if self.motion > self.wanted:
+            motion = (
+                f"is {self.motion:.3g}"
+                if np.isfinite(self.motion)
+                else "has no bound, nothing being strained"
+            )
             return (
-                f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
-                f"{self.liveliest} has most of it"
+                f"{found}, but there is no rest: kinetic over strain energy {motion}, and {self.liveliest} "
+                "has most of it"
             )
         return f"{found}, and at least one cycle must show it"
 
