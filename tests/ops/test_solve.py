@@ -218,7 +218,8 @@ def test_a_block_in_the_air_is_not_in_balance(tmp_path: Path) -> None:
     assert (solution.reached, solution.cycles, solution.ratio) == (False, 25, math.inf)
     assert solution.worst in {f"block@{address}" for address in m.table("block")["address"]}
     assert str(solution).endswith(
-        f"NOT REACHED: it is without bound, as no force is carried, after 25 cycles, most out of balance is {solution.worst}"
+        "NOT REACHED: it is without bound, as no force is carried, after 25 cycles, "
+        f"most out of balance is {solution.worst}"
     )
 
 
