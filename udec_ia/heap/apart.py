@@ -13,6 +13,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba import typeof, types
+from numba.core import config
 from numba.extending import intrinsic, overload
 
 from udec_ia.heap.views import Memory
@@ -20,7 +21,13 @@ from udec_ia.heap.views import Memory
 
 def entry(kernel: Callable[[Memory, int], bool], h: Memory) -> Any:
     """Where `kernel`, made by jit.apart, is for memories of the type of `h`, compiled if it has not been."""
-    return kernel.address((typeof(h), types.int64)) if hasattr(kernel, "address") else kernel
+    if config.DISABLE_JIT:
+        return kernel
+    kinds = typeof(h), types.int64
+    whole: Any = getattr(kernel, "whole", kernel)
+    whole.compile(kinds)
+    made = whole.overloads[kinds]
+    return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
 
 
 def call_entry(where: Any, h: Memory, iad: int) -> bool:

@@ -17,8 +17,11 @@ import numba
 from numba.core import config
 from platformdirs import user_cache_dir
 
-from udec_ia.heap.linking import Kernel
+from udec_ia.heap.plain import plain_kernel, wanted
 from udec_ia.layout import offsets as g
+
+if not wanted():
+    from udec_ia.heap.linking import Kernel
 
 F = TypeVar("F", bound=Callable[..., Any])
 PACKAGE = Path(__file__).parent.parent
@@ -37,7 +40,7 @@ def source_digest() -> str:
     return digest.hexdigest()
 
 
-CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}"
+CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{'-plain' if wanted() else ''}"
 
 
 def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
@@ -52,6 +55,8 @@ def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
     kept = config.CACHE_DIR
     config.CACHE_DIR = str(CACHE)
     try:
+        if wanted():
+            return cast(F, plain_kernel(function, CACHE / layer, error_model="numpy", forceinline=inline))
         return cast(F, Kernel(function, CACHE / layer, apart, error_model="numpy", forceinline=inline))
     finally:
         config.CACHE_DIR = kept

@@ -108,12 +108,6 @@ class Kernel:
     def __call__(self, *args: Any) -> Any:
         return self.whole(*args)
 
-    def address(self, kinds: tuple[Any, ...]) -> int:
-        """Where the whole for arguments of these types begins, as a function of C."""
-        self.whole.compile(kinds)
-        made = self.whole.overloads[kinds]
-        return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
-
 
 class _KernelType(types.Dispatcher):
     """What a kernel is to the kernels that call it."""

@@ -1,0 +1,59 @@
+"""Kernels as numba makes them by itself, without the linking of linking.py.
+
+That builds on inner parts of numba, and a release on which it was not tried may have others. Then, or where
+the environment says UDEC_LINK=plain, every kernel is a compiled function of numba's own. Runs make the same
+words; compiling takes about twice as long, and a cycle about 1.3 times.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba import njit
+from numba.core import event
+
+from udec_ia.heap.compiling import compiling
+from udec_ia.heap.kept import keep_code
+
+TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which linking.py was tried
+PACKAGE = __name__.partition(".")[0]
+
+
+def wanted() -> bool:
+    """True if kernels are to be made without linking.py."""
+    release = tuple(int(part) for part in numba.__version__.split(".")[:2])
+    return os.environ.get("UDEC_LINK") == "plain" or not TRIED[0] <= release <= TRIED[1]
+
+
+def plain_kernel(function: Callable[..., Any], folder: Path, **flags: Any) -> Any:
+    """`function` compiled. folder: where its machine code is kept; flags: as njit takes them."""
+    made = njit(cache=True, **flags)(function)
+    keep_code(made, folder)
+    return made
+
+
+class _Teller(event.Listener):
+    """Says what compiles: numba tells when a kernel begins to be compiled, and when that has ended."""
+
+    def __init__(self) -> None:
+        self.open: list[AbstractContextManager[None]] = []
+
+    def on_start(self, told: Any) -> None:
+        """A kernel begins, or what a kernel calls: that is a part of the same wait."""
+        ours = told.data["dispatcher"].py_func.__module__.partition(".")[0] == PACKAGE
+        first = ours and all(isinstance(one, nullcontext) for one in self.open)
+        self.open.append(compiling() if first else nullcontext())
+        self.open[-1].__enter__()
+
+    def on_end(self, told: Any) -> None:
+        """What began last has ended."""
+        self.open.pop().__exit__(None, None, None)
+
+
+if wanted():
+    event.register("numba:compile", _Teller())
