@@ -68,10 +68,11 @@ def limited(m: Model, mtop: int) -> Model:
     other = Model()
     other.start()
     other.array = MainArray(m.array.scheme, mtop)
-    size = len(other.h.ia)
-    other.h.ia[:] = m.h.ia[:size]
-    other.h.ci[:], other.h.cr[:], other.h.cd[:] = m.h.ci, m.h.cr, m.h.cd
-    other.h.ci[g.MTOP] = size
+    here, there = other.array.h, m.array.h
+    size = len(here.ia)
+    here.ia[:] = there.ia[:size]
+    here.ci[:], here.cr[:], here.cd[:] = there.ci, there.cr, there.cd
+    here.ci[g.MTOP] = size
     return other
 
 

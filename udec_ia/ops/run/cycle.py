@@ -53,6 +53,7 @@ def prepare(array: MainArray) -> None:
     if h.ci[g.NBLK] == 0:
         raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
     if h.ci[g.LREADY]:
+        check_strained_edges(array)
         return
     if h.ci[g.MCTOT] == 0:
         make_masses(h, soft(array))
