@@ -303,10 +303,13 @@ class Stage:
         after = self.bodies()
         if before is None or all(np.array_equal(before[ib].corners, after[ib].corners) for ib in after):
             before, after = self._moved(after, -1.0), self._moved(after, 1.0)
-        reached = max(
-            deepest([before[one], before[two]], [after[one], after[two]], self.d)
-            for one, two in self._near(before, after)
-        )
+        reached = 0.0
+        for finer in (1, 20):  # what went by on a curve may have been deepest between two sub-steps
+            if reached < LIMIT * self.d - self._noise():
+                reached = max(
+                    deepest([before[one], before[two]], [after[one], after[two]], self.d, finer)
+                    for one, two in self._near(before, after)
+                )
         self.stopped = reached / self.d
         if reached < LIMIT * self.d - self._noise():
             kind = "late alarm" if self.cycles - self.touched < LATE else "false alarm"

@@ -199,6 +199,7 @@ def test_what_the_search_has_found(deck: str) -> None:
         ("extreme", 2000, 1143),
         ("long", 2000, 564),  # the far side of a blunt corner's circle
         ("needles", 1000, 406),  # a contact that crossed another one of two tips that have crossed
+        ("needles", 6000, 806),  # deepest between two sub-steps of the judge
         ("needles", 1000, 671),  # two contacts on an arc, deeper than its circle is wide
     ],
 )

@@ -176,9 +176,14 @@ def steps_of(before: Sequence[Array], after: Sequence[Array], d: float) -> int:
     return max(1, ceil(10 * relative / d))
 
 
-def within(before: Sequence[Body], after: Sequence[Body], d: float) -> Iterator[list[Polygon]]:
-    """Outlines of the bodies in the course of a step, its beginning and its end left out."""
-    n = steps_of([body.corners for body in before], [body.corners for body in after], d)
+def within(
+    before: Sequence[Body], after: Sequence[Body], d: float, finer: int = 1
+) -> Iterator[list[Polygon]]:
+    """Outlines of the bodies in the course of a step, its beginning and its end left out.
+
+    finer: sub-steps for one of `steps_of`.
+    """
+    n = finer * steps_of([body.corners for body in before], [body.corners for body in after], d)
     for k in range(1, n):
         moved = [
             Body(between(one.corners, two.corners, k / n), two.plain)
@@ -187,11 +192,11 @@ def within(before: Sequence[Body], after: Sequence[Body], d: float) -> Iterator[
         yield outlines(moved, d)
 
 
-def deepest(before: Sequence[Body], after: Sequence[Body], d: float) -> float:
+def deepest(before: Sequence[Body], after: Sequence[Body], d: float, finer: int = 1) -> float:
     """The greatest depth to which two bodies come into each other in a step, its ends included."""
     one, two = outlines(before, d)
     reached = depth(one, two, d)
-    for one, two in within(before, after, d):
+    for one, two in within(before, after, d, finer):
         if one.intersects(two):
             reached = max(reached, depth(one, two, d))
     one, two = outlines(after, d)
