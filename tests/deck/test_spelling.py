@@ -176,8 +176,7 @@ def test_what_was_given_may_be_changed_afterwards() -> None:
         m.cycle(n=2)
     lines = m.deck_log
     assert lines[3:] == [
-        "GENERATE 0 1 0 4 MANUAL GRIDPOINTS 0.0,0.0 0.0,4.0 1.0,4.0 1.0,0.0 ZONES 1,2,3",
-        "+ 1,3,4",
+        "GENERATE 0 1 0 4 MANUAL GRIDPOINTS 0,0 0,4 1,4 1,0 ZONES 1,2,3 1,3,4",
         "PROPERTY MATERIAL 1 BULK 1 DENSITY 1 G 1",
         "CYCLE 6",
     ]

@@ -95,5 +95,8 @@ def _says(word: Word, value: Any) -> bool:
 
 
 def _number(value: Any) -> str:
-    """A number, so that it is read as the same."""
-    return str(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
+    """A number, as short as it is read as the same."""
+    if isinstance(value, int | np.integer):
+        return str(int(value))
+    short = f"{float(value):g}"
+    return short if float(short) == float(value) else repr(float(value))
