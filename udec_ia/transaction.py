@@ -266,16 +266,20 @@ class Undo:
         self.busy = True
 
     def _end(self, model: Model) -> None:
-        """Note what was done, in one step, or that the copy is of no use any more."""
-        if self.array is model.array and None not in self.doing:
-            seconds = self.seconds + (perf_counter() - self._start if self.doing else 0.0)
-            self.left, self.seconds = image(model.array.h), seconds
-            self.since += [step for step in self.doing if step is not None]
-            if seconds > REPEATED * self.cost:
-                self.array, self.since = None, []
-        else:
-            self.array = None
+        """Note what was done, or that the copy is of no use any more.
+
+        What was done is to stay before it is noted: an end in between costs the copy and no more.
+        """
+        array, self.array = self.array, None
         self.before = None
+        if array is model.array and None not in self.doing:
+            self.seconds += perf_counter() - self._start if self.doing else 0.0
+            self.left = image(model.array.h)
+            self.since += [step for step in self.doing if step is not None]
+            if self.seconds > REPEATED * self.cost:
+                self.since = []
+            else:
+                self.array = array
 
     def _copy(self, array: MainArray) -> None:
         self.array, self.since = None, []

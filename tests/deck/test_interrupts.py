@@ -12,6 +12,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from types import FrameType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -631,3 +633,39 @@ def test_a_restart_and_what_follows_it_are_taken_back(tmp_path: Path) -> None:
         m.whole(action)
     assert words(m) == before
     assert m.check() == []
+
+
+@pytest.mark.parametrize("k", range(11))
+def test_an_interrupt_while_a_command_is_noted(k: int, tmp_path: Path) -> None:
+    """At line `k` of that: the command is taken back with its line of the log, or stays with it."""
+    m, twin = blocks(tmp_path), blocks(tmp_path)
+    for one in (m, twin):
+        one.fix(-9, 9, -9, 9)
+    before, left = state(m), k
+
+    def trace(frame: FrameType, event: str, arg: object) -> Any:
+        nonlocal left
+        if frame.f_code is not Undo._end.__code__:
+            return trace if event == "call" else None
+        if event == "line":
+            left -= 1
+            if left < 0:
+                sys.settrace(None)
+                raise KeyboardInterrupt
+        return trace
+
+    old = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        m.free(-9, 9, -9, 9)
+    except KeyboardInterrupt:
+        left = -1
+    finally:
+        sys.settrace(old)
+    twin.free(-9, 9, -9, 9)
+    assert state(m) in ([before, state(twin)] if left < 0 else [state(twin)])
+    for one in (m, twin):  # and what follows is taken back as far as to there
+        one.free(-9, 9, -9, 9)
+    with pytest.raises(KeyError):
+        m.whole(lambda: (m.fix(-9, 9, -9, 9), {}["nothing"]))
+    assert state(m)["words"] == state(twin)["words"]
