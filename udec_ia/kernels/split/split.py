@@ -211,8 +211,8 @@ def cut_path(
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so `where` and `which` do as they did for `path`. update: see
-    detect.update.updating. Returns the status and the new number of boxes.
+    so `where` and `which` do as they did for `path`. update: see detect.update.updating.
+    Returns the status and the new number of boxes.
     """
     first = n
     rounding_length = h.cr[g.DTOL]
