@@ -25,7 +25,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import FrameType
@@ -33,8 +33,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia import Model, UdecError
-from udec_ia.cli import main as udec
+from udec_ia import Model, UdecError, cli, signals
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
 from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
@@ -183,6 +182,16 @@ class Injector:
         return self.line
 
 
+def forget_holds(depth: int) -> None:
+    """Close the holds that were left open beyond `depth`.
+
+    What is raised here at the line of a `with` on the way out comes before its end, which is then left out.
+    No signal raises there: it waits until that end.
+    """
+    signals._waiting.depth = depth
+    signals._waiting.passing = signals._waiting.firm = False
+
+
 class Lines:
     """A model in `folder` whose commands are interrupted. cycled: it has been cycled before."""
 
@@ -223,12 +232,14 @@ class Lines:
             self.fresh(line)
             before = state(self.model)
         k = 1 + k % self.counts[key]
+        depth = signals._waiting.depth
         with Injector(k, exception) as injector:
             try:
                 self.obey(line, typed)
             except BaseException as error:
                 if not isinstance(error, (exception, UdecError)):
                     return f"{line}: {error!r} at {injector.raised}"
+        forget_holds(depth)
         now = state(self.model)
         wrong = ""
         if now != before:
@@ -321,18 +332,30 @@ def deck(rng: np.random.Generator) -> str:
     return "\n".join([SCENE, *lines, "SAVE", "STOP", "END", ""])
 
 
+_obey_arguments = cli._main
+
+
+def _let_signals_come(argv: Sequence[str]) -> int:
+    """What the command line does once its handlers are there."""
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, MEANT)
+    return _obey_arguments(argv)
+
+
 def child(folder: Path) -> None:
-    """Run the deck in `folder` as the command line does, and leave."""
+    """Run the deck in `folder` as the command line does, and leave. Signals are blocked before."""
     status = 99
     try:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         for number, name in ((1, "out"), (2, "err")):
-            os.dup2(os.open(folder / name, os.O_WRONLY | os.O_CREAT), number)
+            os.dup2(os.open(folder / name, os.O_WRONLY), number)
         sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w")
-        status = udec(["run", "--out", str(folder), str(folder / "deck.dat")])
+        cli._main = _let_signals_come
+        status = cli.main(["run", "--out", str(folder), str(folder / "deck.dat")])
     except BaseException:
         traceback.print_exc()
     finally:
+        for number in MEANT:
+            signal.signal(number, signal.SIG_IGN)
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
@@ -340,9 +363,13 @@ def child(folder: Path) -> None:
 
 def one_process(folder: Path, number: int, wait: float, ended: Counter[str]) -> str:
     """Send the signal after `wait` seconds; returns what is wrong with what is left, or ""."""
+    for name in ("out", "err"):
+        (folder / name).touch()
+    signal.pthread_sigmask(signal.SIG_BLOCK, MEANT)
     process = os.fork()
     if process == 0:
         child(folder)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, MEANT)
     ends = time.monotonic() + wait
     while time.monotonic() < ends and os.waitpid(process, os.WNOHANG) == (0, 0):
         time.sleep(0.002)

@@ -8,7 +8,9 @@ at any time (`passing`). Who presses Ctrl-C twice does not wait: the command is 
 
 An exception that is raised where Python cleans up, in a `__del__` or a callback of a weak reference, is lost.
 So what is let through at any time stays noted until it has ended something, else it is handed on again; that
-it was lost on the way is then nothing to tell.
+it was lost on the way is then nothing to tell. A library may also turn it into an error of its own, with or
+without saying by what: an error that comes while a signal was let through and has ended nothing is that
+signal.
 
 Handlers belong to the main thread of a process. In another one nothing waits, for no signal comes there. A
 signal that kills or is ignored is left alone: SIGTERM waits where the command line has it raise Terminated.
@@ -61,6 +63,11 @@ class _Waiting:
         if self.has_raised(error):
             self.signals.clear()
             self.raised = None
+
+    def turned_into(self, error: BaseException) -> BaseException | None:
+        """What a signal has raised and a library has made `error` of, or None."""
+        turned = self.signals and not self.has_raised(error)
+        return self.raised if turned else None
 
 
 _waiting = _Waiting()
@@ -129,6 +136,7 @@ def poll() -> None:
     if _waiting.signals and current_thread() is main_thread():
         number = _waiting.signals[0]
         _waiting.signals.clear()
+        _waiting.raised = None
         _waiting.former[number](number, sys._getframe())
 
 
@@ -143,7 +151,10 @@ def passing() -> Iterator[None]:
         poll()
         yield
     except BaseException as error:
-        _waiting.ended(error)
+        raised = _waiting.turned_into(error)
+        _waiting.ended(raised or error)
+        if raised is not None:
+            raise raised from error
         raise
     finally:
         _waiting.passing = before

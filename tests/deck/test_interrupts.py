@@ -230,6 +230,21 @@ def test_an_interrupt_that_is_swallowed_comes_again() -> None:
     poll()
 
 
+def test_an_interrupt_that_a_library_turns_into_an_error_of_its_own_is_one() -> None:
+    """As class bodies do with __set_name__, and C++ that converts arguments: it does not say by what."""
+
+    def library() -> None:
+        with suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+        raise ValueError("invalid bounding box")
+
+    with pytest.raises(KeyboardInterrupt) as caught, hold(), passing():
+        library()
+    assert isinstance(caught.value.__cause__, ValueError)
+    with pytest.raises(ValueError, match="of its own"), hold(), passing():
+        raise ValueError("of its own")
+
+
 @pytest.mark.parametrize("error", [None, ValueError("told")])
 def test_that_an_interrupt_was_lost_on_the_way_is_not_told(
     error: Exception | None, monkeypatch: pytest.MonkeyPatch
