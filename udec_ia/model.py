@@ -683,7 +683,7 @@ class Model:
         watch = Watch(self.array, self._recorder.series, ratio)
         cycles = self._cycle(limit, watch)
         h, kinds = self.array.h, soft(self.array)
-        reached = cycles > 0 and bool(at_rest(h, kinds, float(ratio)))
+        reached = cycles > 0 and bool(at_rest(h, float(ratio)))
         ends, motion = float(force_ratio(h, kinds)), float(motion_ratio(h, kinds))
         worst, lively = (
             kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])

@@ -12,7 +12,7 @@ from mechanics import box, model
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import variable
+from udec_ia.heap.array import MainArray, variable
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field, read_table
 from udec_ia.restart import save
@@ -39,8 +39,8 @@ def test_a_case_is_always_the_same() -> None:
 
 
 @pytest.fixture(scope="module")
-def wall(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The restart file of six blocks, four of them on a fixed base."""
+def wall() -> MainArray:
+    """Six blocks, four of them on a fixed base, after some cycles."""
     m = model(*box(0, 6, 0, 4), d=0.1, friction=0.5)
     for y in (1, 2):
         m.split(-1, y, 7, y)
@@ -48,7 +48,7 @@ def wall(tmp_path_factory: pytest.TempPathFactory) -> Path:
         m.split(x, 1, x, 4)
     m.fix(0, 6, 0, 1)
     m.cycle(30)
-    return m.save(tmp_path_factory.mktemp("wall") / "wall.h5")
+    return m.array
 
 
 UNUSABLE = {29}  # error of RESTART: the file is refused
@@ -59,7 +59,7 @@ MAD = {False: (-1, 0, 7, 2**40), True: (-1.0, 1e300, np.inf, np.nan)}
 
 
 @pytest.mark.parametrize("field", read_table().common, ids=lambda field: field.name)
-def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Path) -> None:
+def test_a_mad_number_in_the_common_block(field: Field, wall: MainArray, tmp_path: Path) -> None:
     """A file that holds it is refused, or the run goes on to its end or to a numbered error.
 
     An array that cannot grow asks for the most of these numbers.
@@ -67,7 +67,7 @@ def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Pa
     path = tmp_path / "mad.h5"
     refused, ended = set(), set()
     for value in MAD[field.real]:
-        array = Model.restore(wall).array
+        array = wall.copy()
         array.fixed = True
         variable(array.h, field)[0] = value
         save(array, path, [])
@@ -83,9 +83,9 @@ def test_a_mad_number_in_the_common_block(field: Field, wall: Path, tmp_path: Pa
     assert ended <= IN_A_RUN
 
 
-def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: Path, tmp_path: Path) -> None:
+def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: MainArray, tmp_path: Path) -> None:
     """In any other, CYCLE would count cycles and do nothing."""
-    array = Model.restore(wall).array
+    array = wall.copy()
     array.h.ci[offsets.JPHASE] = 7
     path = save(array, tmp_path / "mad.h5", [])
     with pytest.raises(UdecError, match="JPHASE is 7, not 0 to 3"):

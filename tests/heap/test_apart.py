@@ -42,7 +42,7 @@ def takes_it_in(h: Memory, iad: int) -> bool:
 def test_it_is_called_with_the_memory_and_what_it_returns_comes_back(scheme: Scheme) -> None:
     h = MainArray(scheme).h
     puti(h, 10, g.KB, 7)
-    assert calls(h, 10, entry(count_down, h)) == 6
+    assert calls(h, 10, entry(count_down, h, 0)) == 6
     assert iget(h, 10, g.KB) == 0
     puti(h, 10, g.KB, 2)
     assert [count_down(h, int64(10)) for _ in range(2)] == [True, False]
@@ -50,8 +50,8 @@ def test_it_is_called_with_the_memory_and_what_it_returns_comes_back(scheme: Sch
 
 def test_there_is_one_for_each_word_scheme() -> None:
     """And the same again for another memory of the same scheme."""
-    where = [entry(count_down, MainArray(scheme).h) for scheme in ALL_SCHEMES.values()]
-    again = [entry(count_down, MainArray(scheme).h) for scheme in ALL_SCHEMES.values()]
+    where = [entry(count_down, MainArray(scheme).h, 0) for scheme in ALL_SCHEMES.values()]
+    again = [entry(count_down, MainArray(scheme).h, 0) for scheme in ALL_SCHEMES.values()]
     assert where == again
     assert len(set(where)) == (len(ALL_SCHEMES) if isinstance(where[0], int) else 1)
 
@@ -65,6 +65,6 @@ def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.M
     h = MainArray(ALL_SCHEMES[DEFAULT_SCHEME]).h
     puti(h, 10, g.KB, 1)
     assert not taking(h, np.int64(10))
-    assert calling(h, np.int64(10), entry(count_down, h)) == 0
+    assert calling(h, np.int64(10), entry(count_down, h, 0)) == 0
     made = [next(iter(one.whole.overloads.values())).library.get_llvm_str() for one in (taking, calling)]
     assert ["count_down" in code for code in made] == [True, False]

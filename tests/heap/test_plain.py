@@ -22,7 +22,7 @@ from udec_ia import Model
 m = Model()
 m.block(0, 0, 0, 1, 1, 1, 1, 0)
 m.property(1, density=2000, kn=1e8, ks=1e8)
-m.round(0.05)
+m.fix(0, 1, 0, 1)
 m.rset(0.5, int(m.table("block")["address"][0]), 7)
 print(sha256(m.array.h.ia.tobytes() + m.array.h.cr.tobytes()).hexdigest(), m.check())
 """

@@ -1,9 +1,10 @@
 """Kernels that are called where they are, instead of being taken in by every whole that needs them.
 
 What is long and called seldom would be translated once more in each of them (linking.py). Such a kernel is
-translated once, as a whole of its own; Python asks for the address of its machine code (`entry`) and hands it
-to the kernels that need it, which call what lies there (`call_entry`). A call costs what it costs in C.
-Kernels that are not compiled are handed the function itself.
+translated once, as a whole of its own, and only where it is needed; Python asks for the address of its
+machine code (`entry`) and hands it to the kernels that need it, which call what lies there (`call_entry`). A
+call costs what it costs in C. All such kernels return True or False. Kernels that are not compiled are handed
+the function itself.
 """
 
 from __future__ import annotations
@@ -13,41 +14,42 @@ from typing import Any
 
 from llvmlite import ir
 from numba import typeof, types
-from numba.core import config
+from numba.core import cgutils, config
 from numba.extending import intrinsic, overload
 
 from udec_ia.heap.views import Memory
 
 
-def entry(kernel: Callable[[Memory, int], bool], h: Memory) -> Any:
-    """Where `kernel`, made by jit.apart, is for memories of the type of `h`, compiled if it has not been."""
+def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
+    """Where `kernel`, made by jit.apart, is for arguments of these types, compiled if it has not been."""
     if config.DISABLE_JIT:
         return kernel
-    kinds = typeof(h), types.int64
+    kinds = tuple(typeof(one) for one in (h, *others))
     whole: Any = getattr(kernel, "whole", kernel)
     whole.compile(kinds)
     made = whole.overloads[kinds]
     return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
 
 
-def call_entry(where: Any, h: Memory, iad: int) -> bool:
-    """Call the kernel at `where` with the memory and an address in it."""
-    return bool(where(h, iad))
+def call_entry(where: Any, *args: Any) -> bool:
+    """Call the kernel at `where` with arguments of the types for which that was asked for."""
+    return bool(where(*args))
 
 
 @intrinsic
-def _jump(typing: Any, where: Any, h: Any, iad: Any) -> Any:
+def _jump(typing: Any, where: Any, given: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        taken = [context.get_value_type(kind) for kind in signature.args[1:]]
+        taken = [context.get_value_type(kind) for kind in signature.args[1]]
         function = ir.FunctionType(context.get_value_type(types.boolean), taken)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+        address = builder.inttoptr(args[0], function.as_pointer())
+        return builder.call(address, cgutils.unpack_tuple(builder, args[1]))
 
-    return types.boolean(types.int64, h, types.int64), generate
+    return types.boolean(types.int64, given), generate
 
 
 @overload(call_entry)
-def _call_entry(where: Any, h: Any, iad: Any) -> Callable[..., Any]:
-    def impl(where: Any, h: Any, iad: Any) -> Any:
-        return _jump(where, h, iad)
+def _call_entry(where: Any, *args: Any) -> Callable[..., Any]:
+    def impl(where: Any, *args: Any) -> Any:
+        return _jump(where, args)
 
     return impl

@@ -16,12 +16,11 @@ what they take: it tells a run that is driven from one that gains energy from no
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
 from udec_ia.layout import offsets as g
@@ -117,13 +116,13 @@ def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) ->
 
 
 @kernel
-def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
+def _give_velocity(h: Memory, iu: int, factor: float) -> None:
     """Set the velocities that condition `iu` gives; what that takes from those before is its work."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return
     if iget(h, ib, g.KBFIX) == g.GIVEN_X + g.GIVEN_Y:
-        if energy is not None:
+        if h.ci[g.LENER] != 0:
             td = np.float64(getr(h, ib, g.KTD))
             h.cd[g.WBOUND] -= td * (getr(h, ib, g.KBI) * td + getr(h, ib, g.KBFT) * h.cr[g.TDEL]) * 0.5
         putr(h, ib, g.KTD, real(h, 0.0))
@@ -144,7 +143,7 @@ def _give_velocity(h: Memory, iu: int, factor: float, energy: Any) -> None:
         putr(h, ib, g.KYD, vy)
     m, _, _ = mass_and_force(h, ig, ib)
     h.cd[g.WDRIVE] += max(gained(m, ux, uy, vx, vy) * 0.5, 0.0)
-    if energy is not None:
+    if h.ci[g.LENER] != 0:
         note_jerk(h, iu, ux, uy, vx, vy)
 
 
@@ -220,9 +219,9 @@ def drive(h: Memory, iu: int) -> None:
     h.cd[g.WDRIVE] += max(power, 0.0) * h.cr[g.TDEL]
 
 
-@kernel
-def apply_bounds(h: Memory, energy: Any) -> None:
-    """Apply all boundary conditions for the step that begins. energy: as in run_cycles."""
+@apart
+def apply_bounds(h: Memory) -> bool:
+    """Apply all boundary conditions for the step that begins."""
     set_signals(h)
     iu = h.ci[g.IBNPNT]
     while iu != 0:
@@ -230,7 +229,7 @@ def apply_bounds(h: Memory, energy: Any) -> None:
             factor = real(h, 1.0)
             if iget(h, iu, g.KUS) != 0:
                 factor = getr(h, iget(h, iu, g.KUS), g.KTNOW)
-            _give_velocity(h, iu, factor, energy)
+            _give_velocity(h, iu, factor)
         iu = iget(h, iu, g.KU)
     push_loads(h, h.cr[g.TDEL])
     iu = h.ci[g.IBNPNT]
@@ -238,3 +237,4 @@ def apply_bounds(h: Memory, energy: Any) -> None:
         if iget(h, iu, g.KUFIX) != 0:
             drive(h, iu)
         iu = iget(h, iu, g.KU)
+    return True

@@ -175,11 +175,12 @@ def push(
 
 
 @inlined
-def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
+def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it.
 
-    soft, joints, energy: as in run_cycles.
+    soft, joints: as in run_cycles.
     """
+    keeps = h.ci[g.LENER] != 0
     before = getr(h, ic, g.KCN)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, g.KCN, overlap)
@@ -189,7 +190,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
     if joints is not None and has_law(h, joints, ic):
         by_springs = False
         idle = is_open(h, ic, overlap)
-    if energy is not None and by_springs and overlap <= zero:
+    if keeps and by_springs and overlap <= zero:
         note_opening(h, ic)
     still = h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
@@ -198,7 +199,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
     xd, yd = cvel(h, ic, soft)
     if joints is not None and has_law(h, joints, ic):
         normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
-        if energy is not None:
+        if keeps:
             note_law_damping(h, ic, normal, shear, -(xd * nx + yd * ny), yd * nx - xd * ny)
         push(h, ic, nx, ny, normal, shear, overlap, soft)
         return
@@ -215,7 +216,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
     fs = held + ks * dus
     putr(h, ic, g.KCS, getr(h, ic, g.KCS) + dus)
     if fn <= zero:
-        if energy is not None:
+        if keeps:
             h.cd[g.WFRIC] += held * fs / (ks + ks)
         fn, fs = zero, zero
     most = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
@@ -225,9 +226,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, energy: Any) -> None:
         h.cd[g.WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
         fs = most if fs > zero else -most
         dashpot = zero
-    if energy is not None and soft is not None and before > zero and fn > zero:
+    if keeps and soft is not None and before > zero and fn > zero:
         note_corners(h, ic, fn, closing, overlap - before)
-    if energy is not None and h.cr[g.BETA] != zero:
+    if keeps and h.cr[g.BETA] != zero:
         if before <= zero:
             was_x, was_y = zero, zero
         held_fn = getr(h, ic, g.KCFN)
@@ -256,7 +257,7 @@ def look_ahead(h: Memory, ic: int) -> int:
 
 
 @kernel
-def ford_all(h: Memory, soft: Any, joints: Any, energy: Any) -> None:
+def ford_all(h: Memory, soft: Any, joints: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[g.ICPNT]
     ahead = ic
@@ -266,7 +267,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, energy: Any) -> None:
         ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
         following = iget(h, ic, g.KC)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            ford(h, ic, soft, joints, energy)
+            ford(h, ic, soft, joints)
         ic = following
 
 

@@ -29,10 +29,9 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
+from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import velocity_at
-from udec_ia.kernels.detect.tunnelling import gone_through
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.kernels.map.segments import loop_start
 from udec_ia.layout import offsets as g
@@ -85,10 +84,10 @@ def look_ahead(h: Memory, idm: int) -> int:
 
 
 @kernel
-def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
+def accumulate(h: Memory, fastest: float, soft: Any, through: Any) -> bool:
     """Sum the fictitious displacements of one step; True if a domain is to be updated.
 
-    fastest: a bound on the velocity of any point of any block in this step.
+    fastest: a bound on the velocity of any point of any block in this step. through: tunnelling.gone_through.
     """
     dt = h.cr[g.TDEL]
     bound = (fastest + fastest) * dt
@@ -113,10 +112,7 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> bool:
         putr(h, idm, g.KUMAX, umax)
         most, greatest = max(most, umax), max(greatest, moved)
         if moved > h.cr[g.ETOL] and h.ci[g.NERR] == 0:
-            ip = gone_through(h, idm)
-            if ip != 0:
-                h.ci[g.NERR] = OVERLAP_TOO_GREAT
-                h.ci[g.IERAD] = ip
+            call_entry(through, h, idm)
         idm = iget(h, idm, g.KD)
     h.cr[g.UPEND] = real(h, 0.0)
     to_update = bool(most > h.cr[g.ETOL])

@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
-from udec_ia.kernels.geometry.contact_geometry import tangents
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, tangents
 from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.layout import offsets as g
 
@@ -228,8 +228,8 @@ def ways(h: Memory, seg: Any, n: int, more: int) -> Any:
 
 
 @kernel
-def gone_through(h: Memory, idm: int) -> int:
-    """A corner in domain `idm` that has gone into another block in this step, or through; 0 if none has."""
+def _corner_through(h: Memory, idm: int) -> int:
+    """A corner in domain `idm` that has gone into another block in this step, or through it; 0 if none."""
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
@@ -246,3 +246,13 @@ def gone_through(h: Memory, idm: int) -> int:
             if edges and edge_lies_in(h, ip, seg[two, BLOCK], seg[two, CORNER]):
                 return int64(ip)
     return int64(0)
+
+
+@apart
+def gone_through(h: Memory, idm: int) -> bool:
+    """True, and error 15, if a corner in domain `idm` has gone into another block in this step."""
+    ip = _corner_through(h, idm)
+    if ip != 0:
+        h.ci[g.NERR] = OVERLAP_TOO_GREAT
+        h.ci[g.IERAD] = ip
+    return bool(ip != 0)

@@ -189,4 +189,4 @@ def update_domains(h: Memory, idm: int) -> bool:
 
 def updating(h: Memory) -> Any:
     """What kernels that lead to updates are handed: see heap.apart."""
-    return entry(update_domains, h)
+    return entry(update_domains, h, 0)

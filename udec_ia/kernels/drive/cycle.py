@@ -13,46 +13,46 @@ from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
-from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.energy.works import note_forces, note_stresses
+from udec_ia.kernels.drive.passes import BOUNDS, FORCES, STRESSES, THROUGH, UPDATE
 from udec_ia.layout import offsets as g
 
 BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
 
 
 @kernel
-def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, energy: Any, update: Any) -> int:
+def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid and free of boundary conditions, else True. laws: of blocks, None if
-    `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). energy:
-    None if no account of the energy is kept, else True. update: see detect.update.updating.
+    `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). passes: see
+    drive.passes.
     """
+    keeps = h.ci[g.LENER] != 0
     done = 0
     while done < n:
         if h.ci[g.JPHASE] == BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
             if soft is not None:
-                apply_bounds(h, energy)
-            if energy is not None:
-                note_forces(h, soft)
+                call_entry(passes[BOUNDS], h)
+            if keeps:
+                call_entry(passes[FORCES], h)
             fastest = move_all(h, soft, laws)
-            if energy is not None:
-                note_stresses(h, soft)
-            h.ci[g.JPHASE] = DOMAINS if accumulate(h, fastest, soft) else CONTACTS
+            if keeps:
+                call_entry(passes[STRESSES], h)
+            h.ci[g.JPHASE] = DOMAINS if accumulate(h, fastest, soft, passes[THROUGH]) else CONTACTS
         if h.ci[g.JPHASE] == DOMAINS:
-            if not call_entry(update, h, int64(0)):
+            if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
             h.ci[g.JPHASE] = CONTACTS
         if h.ci[g.JPHASE] == CONTACTS:
             broken = h.ci[g.NBROKE]
-            ford_all(h, soft, joints, energy)
+            ford_all(h, soft, joints)
             h.ci[g.JPHASE] = BLOCKS if h.ci[g.NBROKE] == broken else BROKEN
         if h.ci[g.JPHASE] == BROKEN:  # domains that merged are looked through at once
-            if not call_entry(update, h, int64(0)):
+            if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
             h.ci[g.JPHASE] = BLOCKS
         h.ci[g.MCTOT] += 1

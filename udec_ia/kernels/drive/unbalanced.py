@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.bounds import load, push_load
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.sdef import straining_force
@@ -204,7 +204,7 @@ def motion_ratio(h: Memory, soft: Any) -> float:
     return moving / strained if strained > 0 else np.inf
 
 
-@kernel
-def at_rest(h: Memory, soft: Any, ratio: float) -> bool:
+@apart
+def at_rest(h: Memory, ratio: float) -> bool:
     """True if the model is at rest to within `ratio`: the forces are balanced, and little moves."""
-    return force_ratio(h, soft) <= ratio and motion_ratio(h, soft) <= ratio
+    return bool(force_ratio(h, True) <= ratio and motion_ratio(h, True) <= ratio)

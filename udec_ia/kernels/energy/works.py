@@ -17,18 +17,16 @@ block deforms, its corners are rounded anew, by which overlaps change although n
 motion of a simply-deformable block (2.6) take its moment of inertia and Euler tensor as constant, although
 they change.
 
-Two passes over the model stand before and after the block pass, and the contact pass notes its own. None is
-compiled without ENERGY ON.
+Two passes over the model stand before and after the block pass, and are compiled once ENERGY ON is given
+(drive/passes.py). The contact pass notes its own.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.bounds import load, velocity_of
 from udec_ia.kernels.body.fdef import gradient, next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
@@ -157,33 +155,33 @@ def note_loads(h: Memory) -> None:
         iu = iget(h, iu, g.KU)
 
 
-@kernel
-def note_forces(h: Memory, soft: Any) -> None:
+@apart
+def note_forces(h: Memory) -> bool:
     """Before the block pass: what is done with the forces of now."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             kind = iget(h, ib, HEAD)
-            if soft is not None and kind == g.MFDEF:
+            if kind == g.MFDEF:
                 note_points(h, ib)
             else:
                 note_block(h, ib)
-            if soft is not None and kind == g.MSDEF:
+            if kind == g.MSDEF:
                 note_strain(h, iget(h, ib, g.KBEX))
                 h.cd[g.WSHAPE] += turning(h, ib, True)
-            if soft is not None and kind != g.MRIG:
+            if kind != g.MRIG:
                 taken = np.float64(stress_power(h, ib, True)) * h.cr[g.TDEL] * 0.5
                 h.cd[g.WYIELD] += taken + strain_of_block(h, ib)
         ib = iget(h, ib, g.KB)
-    if soft is not None:
-        note_loads(h)
+    note_loads(h)
+    return True
 
 
-@kernel
-def note_stresses(h: Memory, soft: Any) -> None:
+@apart
+def note_stresses(h: Memory) -> bool:
     """After the block pass, when grid-points feel the zones only: what is done with the stresses of now."""
     ib = int64(h.ci[g.IBPNT])
-    while soft is not None and ib != 0:
+    while ib != 0:
         kind = iget(h, ib, HEAD)
         if kind != g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
             now = np.float64(stress_power(h, ib, False))
@@ -193,6 +191,7 @@ def note_stresses(h: Memory, soft: Any) -> None:
             elif h.cr[g.BETA] != 0:
                 h.cd[g.WSTIF] += (point_power(h, ib) - now) * h.cr[g.TDEL]
         ib = iget(h, ib, g.KB)
+    return True
 
 
 @kernel

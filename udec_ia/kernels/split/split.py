@@ -142,7 +142,7 @@ def _shortest(h: Memory, ib: int) -> float:
 
 
 @kernel
-def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) -> int:
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
     """Split block `ib` between its crossings `k` and `k` + 1; returns the new block."""
     ia, iz = which[k, CORNER], which[k + 1, CORNER]
     if which[k, AT] == 0:
@@ -150,9 +150,9 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, soft: Any) ->
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
     jb = spli(h, ib, ia, iz)
-    if soft is not None and iget(h, ib, HEAD) == g.MSDEF:
+    if iget(h, ib, HEAD) == g.MSDEF:
         share_extension(h, ib, jb)
-    if soft is not None and h.ci[g.IBNPNT] != 0:
+    if h.ci[g.IBNPNT] != 0:
         share_bounds(h, ib, jb)
     if rounding_is_open(h):
         least = min(_shortest(h, ib), _shortest(h, jb))
@@ -205,7 +205,6 @@ def cut_path(
     cuts: int,
     where: Any,
     which: Any,
-    soft: Any,
     update: Any,
 ) -> tuple[int, int]:
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
@@ -217,7 +216,7 @@ def cut_path(
     first = n
     rounding_length = h.cr[g.DTOL]
     need = size_of(h, g.NVBL) + 4 * size_of(h, g.NVCR) + 6 * size_of(h, g.NVCN) + 5 * size_of(h, g.NVDO)
-    if soft is not None:
+    if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if not room(h, need * cuts + h.ci[g.NSPARE]):  # for the whole line, so that no cut is ever interrupted
         return NO_MEMORY, n
@@ -231,7 +230,7 @@ def cut_path(
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            blocks[n] = _cut_block(h, blocks[row], where, which, k, soft)
+            blocks[n] = _cut_block(h, blocks[row], where, which, k)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])
             n += 1

@@ -10,7 +10,7 @@ close within one, and of forgotten terms.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,11 +54,6 @@ class Balance(NamedTuple):
     def throughput(self) -> float:
         """What came in from all sources, or went to all sinks: the mean of both."""
         return sum(map(abs, self)) / 2
-
-
-def keeps_account(array: MainArray) -> Any:
-    """None if no account is kept: nothing of it is compiled then."""
-    return True if array.h.ci[g.LENER] else None
 
 
 def switch(array: MainArray, on: bool) -> None:

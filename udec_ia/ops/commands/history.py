@@ -15,7 +15,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
-from udec_ia.kernels.drive.watch import DOUBLE, INTEGER, REAL
+from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.recordable import COMMON, Recordable, by_codes, recordable
 from udec_ia.ops.common.limits import whole

@@ -99,7 +99,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
         *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
-        *(soft(array), updating(h)),
+        updating(h),
     )
     if status == NO_MEMORY:
         try:

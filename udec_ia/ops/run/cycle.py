@@ -161,7 +161,7 @@ def _run(
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
             most = min(target - done, runaway.ahead(array.h))
-            given = soft(array), bound.blocks, bound.joints, energy.keeps_account(array)
+            given = soft(array), bound.blocks, bound.joints
             done += run_unwatched(array.h, most, given) if watch is None else watch.run(most, given)
             settled()
             _raise_error(array, bound.book)

@@ -14,10 +14,10 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.detect.update import updating
-from udec_ia.kernels.drive.watch import record, run_watched
+from udec_ia.kernels.drive.passes import passes
+from udec_ia.kernels.drive.recording import record
+from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.ops.commands.history import Definition, definitions, places
-from udec_ia.ops.common.soft import soft
 
 ROWS = 1024  # rows that a compiled piece can fill
 NEVER = -1.0  # force ratio that is never reached
@@ -29,7 +29,8 @@ def run_unwatched(h: Memory, n: int, laws: Any) -> int:
 
     laws: see kernels.drive.watch.run_watched.
     """
-    return int(run_watched(h, n, laws, NEVER, NO_PLACES, NO_ROWS, np.zeros(1, np.int64), updating(h))[0])
+    nothing = NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
+    return int(run_watched(h, n, laws, NEVER, *nothing, passes(h, laws[0]))[0])
 
 
 class Series:
@@ -172,7 +173,8 @@ class Watch:
         self.look()
         self._places = places(self.array)
         self._rows = np.empty((ROWS, 2 + len(self.series)))
-        record(self.array.h, soft(self.array), self._places, self._rows, self._count)
+        if len(self._places):
+            record(self.array.h, self._places, self._rows, self._count)
         self.hand_on()
 
     def run(self, n: int, laws: Any) -> int:
@@ -180,12 +182,12 @@ class Watch:
 
         laws: see kernels.drive.watch.run_watched.
         """
-        h, update, done, full = self.array.h, updating(self.array.h), 0, True
+        h, done, full = self.array.h, 0, True
+        recorded = self._places, self._rows, self._count
+        called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio)
         while done < n and full:
             try:
-                completed, self.reached = run_watched(
-                    h, n - done, laws, self.ratio, self._places, self._rows, self._count, update
-                )
+                completed, self.reached = run_watched(h, n - done, laws, self.ratio, *recorded, called)
             finally:
                 full = self.hand_on() == ROWS
             done += int(completed)

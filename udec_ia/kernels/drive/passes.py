@@ -1,0 +1,39 @@
+"""What a cycle calls by its address (heap/apart.py): what is long, and not needed in every cycle or scene.
+
+Each is compiled once for a word scheme, and once it is needed, instead of in every kind of cycle there is:
+rigid or deformable, with and without laws of the user's. `passes` finds what a run needs.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.apart import entry
+from udec_ia.kernels.body.bounds import apply_bounds
+from udec_ia.kernels.detect.tunnelling import gone_through
+from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.recording import record
+from udec_ia.kernels.drive.unbalanced import at_rest
+from udec_ia.kernels.energy.works import note_forces, note_stresses
+from udec_ia.layout import offsets as g
+
+UPDATE, THROUGH, BOUNDS, FORCES, STRESSES, RECORD, REST = range(7)
+
+
+def passes(h: Memory, soft: Any, recorded: tuple[Any, ...] = (), ratio: float = -1.0) -> tuple[Any, ...]:
+    """Addresses in the order above, 0 for what a run does not need.
+
+    soft: as in run_cycles. recorded: what `record` is called with beside `h`, if a history is recorded.
+    ratio: as in run_watched.
+    """
+    keeps = h.ci[g.LENER] != 0
+    return (
+        updating(h),
+        entry(gone_through, h, 0),
+        entry(apply_bounds, h) if soft is not None else 0,
+        entry(note_forces, h) if keeps else 0,
+        entry(note_stresses, h) if keeps else 0,
+        entry(record, h, *recorded) if recorded else 0,
+        entry(at_rest, h, ratio) if ratio >= 0 else 0,
+    )
