@@ -21,10 +21,10 @@ from udec_ia.layout import offsets as g
 UPDATE, THROUGH, BOUNDS, FORCES, STRESSES, RECORD, REST = range(7)
 
 
-def passes(h: Memory, soft: Any, recorded: tuple[Any, ...] = (), ratio: float = -1.0) -> tuple[Any, ...]:
+def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tuple[Any, ...]:
     """Addresses in the order above, 0 for what a run does not need.
 
-    soft: as in run_cycles. recorded: what `record` is called with beside `h`, if a history is recorded.
+    soft: as in run_cycles. recorded: what `record` is called with beside `h`, () if nothing is recorded.
     ratio: as in run_watched.
     """
     keeps = h.ci[g.LENER] != 0

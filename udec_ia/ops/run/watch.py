@@ -30,7 +30,7 @@ def run_unwatched(h: Memory, n: int, laws: Any) -> int:
     laws: see kernels.drive.watch.run_watched.
     """
     nothing = NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
-    return int(run_watched(h, n, laws, NEVER, *nothing, passes(h, laws[0]))[0])
+    return int(run_watched(h, n, laws, NEVER, *nothing, passes(h, laws[0], (), NEVER))[0])
 
 
 class Series:
