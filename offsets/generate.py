@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, lay_out, parse
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, TableError, lay_out, parse
 
 HERE = Path(__file__).parent
 TABLE = HERE / "groups.table"
+LAYOUTS = HERE / "layouts.txt"
 LAYOUT = HERE.parent / "udec_ia" / "layout"
 BANNER = "AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do not edit."
 
@@ -75,11 +76,34 @@ def _group_lines(group: Group, ratio: int) -> list[str]:
     return lines
 
 
+def layouts_text(table: Table, before: str) -> str:
+    """The list of all layouts, `before`, with that of `table`, which has the next number if it is new.
+
+    TableError if it has the number of another one, or a field is younger than the layout.
+    """
+    lines = before.splitlines()
+    known = dict(line.split() for line in lines if not line.startswith("#"))
+    number = str(table.layout)
+    if number not in known and table.layout == len(known) + 1:
+        lines.append(f"{number}  {table.shape}")
+    elif known.get(number) != table.shape:
+        raise TableError(
+            f"groups.table: this is not layout {number} of layouts.txt: give it number {len(known) + 1} "
+            f"(LAYOUT), new fields the page ours/{len(known) + 1}, and names that are gone a line RETIRED"
+        )
+    fields = [*table.common, *(field for group in table.groups for field in group.fields)]
+    young = [field.name for field in fields if field.since > table.layout]
+    if young:
+        raise TableError(f"groups.table: {', '.join(young)} younger than layout {number}")
+    return "\n".join(lines) + "\n"
+
+
 def files() -> dict[Path, str]:
-    """Every generated file and its text."""
+    """Every generated file and its text. TableError as layouts_text."""
     text = TABLE.read_text()
     table = parse(text)
     texts = {LAYOUT / "offsets.py": python_text(table), LAYOUT / "groups.table": text}
+    texts[LAYOUTS] = layouts_text(table, LAYOUTS.read_text())
     for scheme in SCHEMES:
         texts[HERE / f"{scheme}.txt"] = scheme_text(table, scheme)
     return texts

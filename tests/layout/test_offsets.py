@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_words
 
+from offsets.generate import LAYOUTS, files, layouts_text, stale
 from offsets.generate import TABLE as SOURCE
-from offsets.generate import files, stale
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout import offsets
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, TableError, lay_out, parse, read_table
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, Table, TableError, lay_out, parse, read_table
 
 TABLE = read_table()
 GROUPS = pytest.mark.parametrize("group", TABLE.groups, ids=lambda group: group.name)
@@ -122,7 +122,7 @@ def test_pointers_name_a_kind_of_group() -> None:
 def test_generated_files_are_current() -> None:
     assert stale() == []
     assert TABLE.digest == offsets.DIGEST
-    assert len(files()) == 2 + len(ALL_SCHEMES)
+    assert len(files()) == 3 + len(ALL_SCHEMES)
 
 
 @pytest.mark.parametrize(
@@ -133,6 +133,9 @@ def test_generated_files_are_current() -> None:
         "KZZ  int  -  data  -  53   no bar",
         "KZZ  int*x  -  data  -  53 | not a number",
         "GROUP  short  NVSH | columns are missing",
+        "KZZ  int  -  data  -  his | no page",
+        "KZZ  int  -  data  -  53/2 | the report has one layout",
+        "RETIRED  KOLD  soon | not a number",
         "HEAD  MBAD",
         "CODE  OPEN  four  KCCOD | not a number",
     ],
@@ -149,8 +152,9 @@ def test_bad_lines_are_named(bad: str) -> None:
     ("line", "said"),
     [
         ("CODE  OPEN  1  KNONE | of no field", "there is no field for the code OPEN"),
-        ("CODE  VIRTUAL  5  KCCOD | twice", "two fields or codes are called VIRTUAL"),
-        ("CODE  KX  5  KCCOD | a field's name", "two fields or codes are called KX"),
+        ("CODE  VIRTUAL  5  KCCOD | twice", "called VIRTUAL"),
+        ("RETIRED  KX  2 | a name that is in use again", "retired names are called KX"),
+        ("CODE  KX  5  KCCOD | a field's name", "called KX"),
     ],
 )
 def test_a_code_has_a_field_and_a_name_of_its_own(line: str, said: str) -> None:
@@ -160,11 +164,49 @@ def test_a_code_has_a_field_and_a_name_of_its_own(line: str, said: str) -> None:
 
 def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
-    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX"}
+    fields |= {field.name: field for field in TABLE.common}
+    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX", "KHK", "JPHASE"}
     for code in TABLE.codes:
-        assert any(low <= code.value <= high for low, high in fields[code.field].allowed if high is not None)
+        assert any(low <= code.value <= (high or 0) for low, high in fields[code.field].allowed)
         assert getattr(offsets, code.name) == code.value
     assert fields["KUFIX"].allowed == fields["KGFIX"].allowed  # which have the same codes
+
+
+def changed(old: str, new: str) -> Table:
+    text = SOURCE.read_text()
+    assert old in text
+    return parse(text.replace(old, new))
+
+
+def test_a_layout_has_a_number_and_every_number_one_layout() -> None:
+    """A new field needs the next one, and says since when it is there; a wording needs none."""
+    known = LAYOUTS.read_text()
+    last = TABLE.layout
+    assert layouts_text(TABLE, known) == known
+    assert layouts_text(changed("| block type number", "| type of the block"), known) == known
+    with pytest.raises(TableError, match=f"not layout {last} of layouts.txt: give it number {last + 1}"):
+        layouts_text(changed("KBRO   real", "KNEW   real  -  data  m  ours | new\nKBRO   real"), known)
+    text = SOURCE.read_text().replace(f"LAYOUT  {last}\n", f"LAYOUT  {last + 1}\n")
+    more = text.replace("KBRO   real", f"KNEW   real  -  data  m  ours/{last + 1} | new\nKBRO   real")
+    new = parse(more)
+    assert {f.name: f.since for f in new.group("block").fields}["KNEW"] == last + 1
+    assert layouts_text(new, known) == f"{known}{last + 1}  {new.shape}\n"
+    with pytest.raises(TableError, match=f"KNEW younger than layout {last + 1}"):
+        layouts_text(parse(more.replace(f"ours/{last + 1}", f"ours/{last + 2}")), known)
+    with pytest.raises(TableError, match=f"not layout {last + 2}"):
+        layouts_text(parse(more.replace(f"LAYOUT  {last + 1}", f"LAYOUT  {last + 2}")), known)
+
+
+def test_what_is_gone_is_told_and_its_name_is_kept() -> None:
+    gone = changed("\nLAYOUT  ", "\nRETIRED  KOLD  1 | the colour of a block\nLAYOUT  ")
+    assert [(one.name, one.until, one.text) for one in gone.retired] == [("KOLD", 1, "the colour of a block")]
+
+
+def test_the_text_says_when_a_pointer_is_0() -> None:
+    for field in (*(one for group in TABLE.groups for one in group.fields), *TABLE.common):
+        if field.target is not None:
+            never = field.values.endswith("!")
+            assert ("; 0 " in field.text) is not never, field.name
 
 
 def test_a_field_before_the_first_group_is_refused() -> None:
@@ -250,7 +292,8 @@ def test_a_changed_table_is_told_and_changes_the_run_after_it_was_written_out(tm
     table = tree / "offsets" / "groups.table"
     lines = table.read_text().splitlines()
     at = next(i for i, line in enumerate(lines) if line.startswith("KX "))
-    lines.insert(at, "KXNEW  real  -  data  m  ours | a field before KX")
+    following = f"LAYOUT  {TABLE.layout + 1}"
+    lines.insert(at, f"KXNEW  real  -  data  m  ours/{TABLE.layout + 1} | a field before KX")
     table.write_text("\n".join(lines) + "\n")
     layout = {path: path.read_bytes() for path in (tree / "udec_ia" / "layout").glob("*.*")}
     for command in (["-c", "from udec_ia import Model"], ["-m", "udec_ia", "run", "no.dat"]):
@@ -259,6 +302,11 @@ def test_a_changed_table_is_told_and_changes_the_run_after_it_was_written_out(tm
         last = refused.stderr.splitlines()[-1]
         assert last.endswith(f"{table} has changed since udec_ia/layout was made: run python -m offsets")
         assert ("Traceback" in refused.stderr) == (command[0] == "-c")
+    for check in ([], ["--check"]):
+        told = python_in(tree, "-m", "offsets", *check)
+        assert told.returncode == 1
+        assert f"({following[:6]})" in told.stderr
+    table.write_text(table.read_text().replace(f"LAYOUT  {TABLE.layout}\n", f"{following}\n"))
     told = python_in(tree, "-m", "offsets", "--check")
     assert told.returncode == 1
     assert "udec_ia/layout/offsets.py is not current: run python -m offsets" in told.stdout

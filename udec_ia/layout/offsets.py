@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "5575183f49bdac54197e53260e10b4edad894dff6e3e03248f47aea45730566a"
+DIGEST = "0e1a09184ccdaf53cb13fa2b945a12ff95580d9331eedbe78e5d72b441ee163d"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -27,6 +27,12 @@ EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
 VIRTUAL = 4  # KCCOD: no contact: it keeps the map together
 ALONG_X = 1  # KGFIX: its x velocity is given; KUFIX has the same codes
 ALONG_Y = 2  # KGFIX: its y velocity is given
+WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
+COMMON_BLOCK = 0  # KHK: a variable of the common block
+AT_BLOCKS = 0  # JPHASE: before the block pass, where a cycle begins
+AT_DOMAINS = 1  # JPHASE: before the domain pass
+AT_CONTACTS = 2  # JPHASE: before the contact pass
+AT_BROKEN = 3  # JPHASE: before the domain pass that follows contacts which were broken
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list

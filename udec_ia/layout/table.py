@@ -51,6 +51,7 @@ class Field:
     text: str
     values: str = "-"  # what it may hold, as the table has it: a kind of group, a range, or "-"
     allowed: tuple[tuple[int, int | None], ...] = ()  # ranges of what it may hold, ends included; () for all
+    since: int = 1  # the first layout that has it
 
     @property
     def real(self) -> bool:
@@ -96,6 +97,15 @@ class Code:
 
 
 @dataclass(frozen=True)
+class Retired:
+    """A name that a field had in the layouts before `until`."""
+
+    name: str
+    until: int
+    text: str
+
+
+@dataclass(frozen=True)
 class Table:
     """The whole table. `digest` is the SHA-256 of its text: tables with equal digests are the same."""
 
@@ -104,10 +114,21 @@ class Table:
     codes: tuple[Code, ...]
     common: tuple[Field, ...]
     digest: str
+    retired: tuple[Retired, ...] = ()
+    layout: int = 1  # number of the layout
 
     def group(self, name: str) -> Group:
         """The group called `name` (block, corner, contact, domain, sdef, zone, gridpoint, jointext)."""
         return self._by_name[name]
+
+    @cached_property
+    def shape(self) -> str:
+        """SHA-256 of all that decides where a number lies: tables of one shape have the same layout."""
+        sizes = [(f.name, f.type, f.count) for f in self.common]
+        groups = [
+            (one.name, one.size_name, *((f.name, f.type, f.count) for f in one.fields)) for one in self.groups
+        ]
+        return hashlib.sha256(repr((groups, sizes)).encode()).hexdigest()
 
     @cached_property
     def _by_name(self) -> dict[str, Group]:
@@ -145,14 +166,22 @@ def parse(text: str) -> Table:
     heads: list[HeadCode] = []
     codes: list[Code] = []
     common: list[Field] = []
+    retired: list[Retired] = []
+    layout = 1
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("#"):
             continue
         try:
+            if line.startswith("LAYOUT"):
+                _, layout_number = line.split()
+                layout = int(layout_number)
+                continue
             left, doc = (part.strip() for part in line.split("|", 1))
             words = left.split()
-            if words[0] == "GROUP":
+            if words[0] == "RETIRED":
+                retired.append(Retired(words[1], int(words[2]), doc))
+            elif words[0] == "GROUP":
                 _, name, size_name, list_head, page = words
                 fields = []
                 head = None if list_head == "-" else list_head
@@ -175,22 +204,28 @@ def parse(text: str) -> Table:
                     )
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
-    _check_names(groups, codes, common)
+    _check_names(groups, codes, common, retired)
     digest = hashlib.sha256(text.encode()).hexdigest()
-    return Table(tuple(groups), tuple(heads), tuple(codes), tuple(common), digest)
+    parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
+    return Table(*parts, digest, tuple(retired), layout)
 
 
-def _check_names(groups: list[Group], codes: list[Code], common: list[Field]) -> None:
-    """TableError if two fields or codes have one name, or a code has no field: offsets.py has them all."""
+def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:
+    """TableError if two fields or codes have one name, or a code has no field: offsets.py has them all.
+
+    A retired name is not used again: a restart file of before holds it with another meaning.
+    """
     names = [field.name for group in groups for field in group.fields if field.role != "head"]
     names += [field.name for field in common]
     lost = [code.name for code in codes if code.field not in names]
     if lost:
         raise TableError(f"groups.table: there is no field for the code {', '.join(lost)}")
-    names += [code.name for code in codes]
+    names += [code.name for code in codes] + [one.name for one in retired]
     double = {name for name, times in Counter(names).items() if times > 1}
     if double:
-        raise TableError(f"groups.table: two fields or codes are called {', '.join(sorted(double))}")
+        raise TableError(
+            f"groups.table: two fields, codes or retired names are called {', '.join(sorted(double))}"
+        )
 
 
 def _field(words: list[str], doc: str, types: Collection[str]) -> Field:
@@ -205,7 +240,10 @@ def _field(words: list[str], doc: str, types: Collection[str]) -> Field:
         allowed = () if values == "-" else _ranges(values)
     if int(count or 1) < 1:
         raise ValueError(f"there are {count} of it")
-    return Field(name, base, int(count or 1), target, role, unit, page, doc, values, allowed)
+    page, _, since = page.partition("/")
+    if page != "ours" and (since or not page.isdigit()):
+        raise ValueError(f"{page!r} is neither a page of the report nor ours")
+    return Field(name, base, int(count or 1), target, role, unit, page, doc, values, allowed, int(since or 1))
 
 
 def _ranges(text: str) -> tuple[tuple[int, int | None], ...]:

@@ -18,8 +18,6 @@ from udec_ia.kernels.detect.domains import accumulate
 from udec_ia.kernels.drive.passes import BOUNDS, FORCES, STRESSES, THROUGH, UPDATE
 from udec_ia.layout import offsets as g
 
-BLOCKS, DOMAINS, CONTACTS, BROKEN = 0, 1, 2, 3
-
 
 @kernel
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
@@ -32,7 +30,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     keeps = h.ci[g.LENER] != 0
     done = 0
     while done < n:
-        if h.ci[g.JPHASE] == BLOCKS:
+        if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
             if soft is not None:
@@ -42,19 +40,19 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             fastest = move_all(h, soft, laws)
             if keeps:
                 call_entry(passes[STRESSES], h)
-            h.ci[g.JPHASE] = DOMAINS if accumulate(h, fastest, soft, passes[THROUGH]) else CONTACTS
-        if h.ci[g.JPHASE] == DOMAINS:
+            h.ci[g.JPHASE] = g.AT_DOMAINS if accumulate(h, fastest, soft, passes[THROUGH]) else g.AT_CONTACTS
+        if h.ci[g.JPHASE] == g.AT_DOMAINS:
             if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
-            h.ci[g.JPHASE] = CONTACTS
-        if h.ci[g.JPHASE] == CONTACTS:
+            h.ci[g.JPHASE] = g.AT_CONTACTS
+        if h.ci[g.JPHASE] == g.AT_CONTACTS:
             broken = h.ci[g.NBROKE]
             ford_all(h, soft, joints)
-            h.ci[g.JPHASE] = BLOCKS if h.ci[g.NBROKE] == broken else BROKEN
-        if h.ci[g.JPHASE] == BROKEN:  # domains that merged are looked through at once
+            h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
+        if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are looked through at once
             if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
-            h.ci[g.JPHASE] = BLOCKS
+            h.ci[g.JPHASE] = g.AT_BLOCKS
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1

@@ -12,7 +12,6 @@ from udec_ia.kernels.drive.unbalanced import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 
-COMMON_BLOCK = 0
 UNBALANCED, RATIO, KINETIC, STRAIN = 0, 1, 2, 3
 INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
 
@@ -35,9 +34,9 @@ def quantity(h: Memory, which: int) -> float:
 def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
     """What history `ih` has to record now; not a number if its group has gone."""
     kind, group = iget(h, ih, g.KHK), iget(h, ih, g.KHG)
-    if kind < COMMON_BLOCK:
+    if kind == g.WHOLE_MODEL:
         return quantity(h, offset)
-    if kind == COMMON_BLOCK:
+    if kind == g.COMMON_BLOCK:
         if type_code == DOUBLE:
             return float(h.cd[offset])
         return float(h.cr[offset]) if type_code == REAL else float(h.ci[offset])

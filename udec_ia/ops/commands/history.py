@@ -17,7 +17,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.recordable import COMMON, Recordable, by_codes, recordable
+from udec_ia.ops.commands.recordable import Recordable, by_codes, recordable
 from udec_ia.ops.common.limits import whole
 from udec_ia.ops.common.memory import require
 
@@ -93,7 +93,7 @@ def places(array: MainArray) -> np.ndarray:
     which = array.scheme.ratio >> 1
     found = np.zeros((len(addresses(array)), 2), np.int64)
     for row, (what, _, _) in zip(found, definitions(array), strict=True):
-        if what.kind >= COMMON:
+        if what.kind >= g.COMMON_BLOCK:
             offset = getattr(g, what.field.name)
             row[:] = offset[which] if what.group else offset, CODES[what.field.type]
         else:

@@ -5,7 +5,7 @@ block's velocity. Beside the fields there are the variables of the common block 
 few quantities of the whole model, which are calculated when they are recorded.
 
 In IA() a history holds the kind as a number: that of the group in the order of the table, counted from 1,
-COMMON for the common block or MODEL for the whole model.
+COMMON_BLOCK for the common block or WHOLE_MODEL for the whole model.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
+from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, read_table
 
-COMMON, MODEL = 0, -1
 HISTORY = "history"
 QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.recording.quantity
     "UNBalanced": ("N/m", "greatest unbalanced force"),
@@ -45,9 +45,11 @@ def recordable() -> dict[str, Recordable]:
         for number, field in enumerate(group.fields)
         if group.name != HISTORY and field.role != "head"
     ]
-    found += [Recordable("", COMMON, number, field) for number, field in enumerate(table.common)]
+    found += [Recordable("", g.COMMON_BLOCK, number, field) for number, field in enumerate(table.common)]
     found += [
-        Recordable("", MODEL, number, Field(word.upper(), "real", 1, None, "data", unit, "ours", text))
+        Recordable(
+            "", g.WHOLE_MODEL, number, Field(word.upper(), "real", 1, None, "data", unit, "ours", text)
+        )
         for number, (word, (unit, text)) in enumerate(QUANTITIES.items())
     ]
     return {r.field.name: r for r in found if r.field.count == 1}

@@ -17,7 +17,6 @@ from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.body.blocks import TOO_FAR
 from udec_ia.kernels.body.laws import LAW_FAILED
 from udec_ia.kernels.body.masses import make_masses
-from udec_ia.kernels.drive.cycle import BLOCKS
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import TOO_SHORT
@@ -229,7 +228,7 @@ def _raise_error(array: MainArray, laws: LawBook) -> None:
     """
     h = array.h
     number = int(h.ci[g.NERR])
-    if number == OVERFLOW and h.ci[g.JPHASE] == BLOCKS:
+    if number == OVERFLOW and h.ci[g.JPHASE] == g.AT_BLOCKS:
         h.ci[g.NERR] = h.ci[g.NWANT] = 0
         keep_spare(array)
         return
