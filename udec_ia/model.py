@@ -21,7 +21,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
 
-import numba
 import numpy as np
 
 from udec_ia.errors import UdecError, spoilt
@@ -29,6 +28,7 @@ from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import compile_seconds
+from udec_ia.heap.interpreting import mode
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
@@ -735,7 +735,7 @@ class Model:
 
     def _settle(self, watch: Watch | None) -> None:
         """The cycles of a run until now are to stay, whatever ends it."""
-        if numba.config.DISABLE_JIT:
+        if mode.python:
             finish(self.array, watch)
         self.undo.settle(self)
 

@@ -26,11 +26,11 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
-from numba import config
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.interpreting import mode
 from udec_ia.layout import offsets as g
 from udec_ia.signals import hold, passing
 
@@ -242,7 +242,7 @@ class Undo:
     def settle(self, model: Model) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
-        if config.DISABLE_JIT:
+        if mode.python:
             self._copy(model.array)
             self.covered, self.before = True, Before(model)
         else:

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from interpreted import digests
+from interpreted import both_ways
 from naive.compare import disagreements
 from naive.relocate import differences, essence, relocate
 from scenes import Scene, Step, blocks, outline, play, replay
 
 from udec_ia.errors import UdecError
+from udec_ia.heap.interpreting import interpreted
+from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
@@ -309,11 +311,15 @@ def test_growing_word_by_word_does_not_change_a_bit(seed: int, monkeypatch: pyte
 # ---- interpreted
 
 
-@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
-def test_interpreted_kernels_give_the_same_bits(build: str) -> None:
-    """The same source without the compiler."""
-    compiled, interpreted = digests("scenes", build, 12)
-    assert compiled == interpreted != ""
+@both_ways
+@pytest.mark.parametrize("seed", [12, 21, 33])
+@pytest.mark.parametrize("build", ALL_SCHEMES)
+def test_interpreted_kernels_give_the_same_bits(build: str, seed: int) -> None:
+    """The same source without the compiler, in every command."""
+    compiled = essence(play(seed, Model(build), cycles=(2, 4)).model.array)
+    with interpreted():
+        found = essence(play(seed, Model(build), cycles=(2, 4)).model.array)
+    assert differences(compiled, found) == []
 
 
 # ---- blocks that fly

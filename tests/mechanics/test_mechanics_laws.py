@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from math import cos, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from interpreted import both_ways
 from mechanics import G, at, block, no_damping, on_base, push, sound, step
+from naive.relocate import differences, essence
 from test_mechanics_energy import cycle_and_energy
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
+from udec_ia.heap.interpreting import interpreted
 from udec_ia.layout.offsets import NERR, WFRIC
 
 ROOT = Path(__file__).parents[2]
@@ -189,34 +189,17 @@ def test_zones_yield_under_a_plate(psi: float, mixed: bool) -> None:
     sound(m)
 
 
-PROBE = """
-from mechanics import block
-from test_mechanics_laws import resting
-
-for build in ("i32r64", "i32r32"):
-    m = resting("joint-dilation", friction=0.5, build=build)
-    m.property(1, dilation=0.1, critical_slip=1e-4, residual_friction=0.3)
-    m.gravity(8.0, -10.0)
-    m.cycle(100)
-    print(*(float(block(m, 0, 0.5)[name]).hex() for name in ("KX", "KY", "KTD")))
-"""
-
-
-def test_uncompiled_it_is_the_same_bit_for_bit() -> None:
-    path = os.pathsep.join(map(str, (ROOT, ROOT / "tests", Path(__file__).parent)))
-    texts = [
-        subprocess.run(
-            [sys.executable, "-c", PROBE],
-            env=os.environ | {"PYTHONPATH": path, "NUMBA_DISABLE_JIT": disabled},
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=True,
-        ).stdout
-        for disabled in ("0", "1")
-    ]
-    assert texts[0] == texts[1]
-    assert len(texts[0].splitlines()) == 2
+@both_ways
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+def test_uncompiled_it_is_the_same_bit_for_bit(build: str) -> None:
+    one, two = (resting("joint-dilation", friction=0.5, build=build) for _ in range(2))
+    for m in one, two:
+        m.property(1, dilation=0.1, critical_slip=1e-4, residual_friction=0.3)
+        m.gravity(8.0, -10.0)
+    one.cycle(100)
+    with interpreted():
+        two.cycle(100)
+    assert differences(essence(one.array), essence(two.array)) == []
 
 
 def refusal(m: Model) -> UdecError:

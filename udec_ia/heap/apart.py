@@ -14,15 +14,16 @@ from typing import Any
 
 from llvmlite import ir
 from numba import typeof, types
-from numba.core import cgutils, config
+from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
+from udec_ia.heap.interpreting import mode
 from udec_ia.heap.views import Memory
 
 
 def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """Where `kernel`, made by jit.apart, is for arguments of these types, compiled if it has not been."""
-    if config.DISABLE_JIT:
+    if mode.python:
         return kernel
     kinds = tuple(typeof(one) for one in (h, *others))
     whole: Any = getattr(kernel, "whole", kernel)

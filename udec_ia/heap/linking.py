@@ -22,6 +22,7 @@ from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
 from udec_ia.heap.compiling import compiling
+from udec_ia.heap.interpreting import mode
 from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
@@ -106,6 +107,8 @@ class Kernel:
         )(function)
 
     def __call__(self, *args: Any) -> Any:
+        if mode.python:
+            return self.whole.py_func(*args)
         return self.whole(*args)
 
 

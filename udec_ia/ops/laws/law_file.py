@@ -42,16 +42,17 @@ Given = str | Path | Mapping[str, Callable[..., Any]]
 class Law:
     """A law that was given: `name` is cl2 ... clj5, `origin` the name of its file.
 
-    digest: SHA-256 of the text of the file. call: what stands among the calls of a Laws: the address of its
-    machine code, or a Python function if kernels are not compiled. code: owner of the machine code.
-    function: the law itself. noted: the six reals with which it has raised an exception, not numbers as long
-    as it has not.
+    digest: SHA-256 of the text of the file. python, address: what stands among the calls of a Laws, for
+    kernels that are interpreted and for those that are compiled: the address of its machine code, 0 where
+    nothing is. code: owner of the machine code. function: the law itself. noted: the six reals with which it
+    has raised an exception, not numbers as long as it has not.
     """
 
     name: str
     origin: str
     digest: str
-    call: Any
+    python: Callable[..., tuple[float, ...]]
+    address: int
     code: Any
     function: FunctionType
     noted: Any
@@ -182,8 +183,9 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
     except TypeError as error:
         raise _wrong(f"{name} does not take 7 arguments", advice, plain.__code__) from error
     noted = np.full(6, np.nan)
+    python = _in_python(plain, n, noted)
     if config.DISABLE_JIT:
-        return Law(name, origin, digest, _in_python(plain, n, noted), None, plain, noted)
+        return Law(name, origin, digest, python, 0, None, plain, noted)
     compiled = _compiled(function, {})
     try:
         compiled.compile((*STATE, MATERIAL))
@@ -194,7 +196,7 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
         detail = f"{name} returns {signature.return_type} instead of {n} numbers"
         raise _wrong(detail, advice, plain.__code__)
     code = machine_code(compiled, n, noted)
-    return Law(name, origin, digest, code.address, code, plain, noted)
+    return Law(name, origin, digest, python, code.address, code, plain, noted)
 
 
 def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tuple[float, ...]]:

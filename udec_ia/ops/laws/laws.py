@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import config
 from numpy.typing import NDArray
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.interpreting import mode
 from udec_ia.kernels.body.law_call import ARRAYS, Laws, Material
 from udec_ia.kernels.body.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.layout import offsets as g
@@ -97,10 +97,10 @@ class LawBook:
         They are valid as long as this object lives, and until the next call.
         """
         rows = _materials(array)
-        calls: list[Any] = [self.given[name].call if name in self.given else 0 for name in RESULTS]
-        if config.DISABLE_JIT:
-            return Laws(tuple(calls), [Material(*row) for row in rows])
-        self._calls[:], self._materials[:] = calls, rows
+        given = [self.given.get(name) for name in RESULTS]
+        if mode.python:
+            return Laws(tuple(law.python if law else 0 for law in given), [Material(*row) for row in rows])
+        self._calls[:], self._materials[:] = [law.address if law else 0 for law in given], rows
         return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
 
     def _demand(self, array: MainArray, n: int, law: str, group: int) -> None:

@@ -1,0 +1,74 @@
+"""Kernels run as Python, in a process where they are compiled; and a memory that tells what is done with it.
+
+    with interpreted():
+        run_unwatched(observe(h, tell), 1, laws)
+
+All kernels that are called within run their Python source, bit for bit as compiled, a thousand times slower.
+So a debugger can see a cycle at work while all the others run at full speed: `observe` gives a memory of the
+same words that tells of each word that is read or written, and of nothing when no kernel is interpreted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numba.core import config
+
+from udec_ia.heap.plain import wanted
+from udec_ia.heap.views import Memory
+
+Tell = Callable[[str, Any, Any, bool], None]
+
+
+class _Mode:
+    """python: kernels that are called run as Python."""
+
+    python = bool(config.DISABLE_JIT)
+
+
+mode = _Mode()
+
+
+@contextmanager
+def interpreted() -> Iterator[None]:
+    """Within, kernels run as Python. NotImplementedError where they were made without linking.py."""
+    if wanted() and not config.DISABLE_JIT:
+        raise NotImplementedError("kernels of UDEC_LINK=plain are compiled only: set NUMBA_DISABLE_JIT=1")
+    before, mode.python = mode.python, True
+    try:
+        with np.errstate(all="ignore"):  # as compiled code does
+            yield
+    finally:
+        mode.python = before
+
+
+class Observed:
+    """One array of a memory, whose elements are read and written through it. name: ia, ra, ci, cr or cd."""
+
+    def __init__(self, name: str, array: Any, tell: Tell) -> None:
+        self.name, self.array, self.tell = name, array, tell
+        self.dtype, self.itemsize = array.dtype, array.itemsize
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __getitem__(self, where: Any) -> Any:
+        value = self.array[where]
+        self.tell(self.name, where, value, False)
+        return value
+
+    def __setitem__(self, where: Any, value: Any) -> None:
+        self.array[where] = value
+        self.tell(self.name, where, value, True)
+
+
+def observe(h: Memory, tell: Tell) -> Memory:
+    """The words of `h`, for kernels that are interpreted.
+
+    tell: called after each access with the name of the array, the index, the value, and True if it was
+    written. A word of IA() is told by that view of it through which the kernel has gone.
+    """
+    return Memory(*(Observed(name, array, tell) for name, array in zip(Memory._fields, h, strict=True)))
