@@ -53,6 +53,37 @@ def python_text(table: Table) -> str:
     return "\n".join(lines) + "\n"
 
 
+def material_text(table: Table) -> str:
+    """The text of udec_ia/layout/material.py."""
+    arrays = {field.name: field for field in table.common}
+    lines = [f'"""{BANNER}"""', "", "from __future__ import annotations", ""]
+    lines += [
+        "from typing import NamedTuple, TypedDict",
+        "",
+        "from udec_ia.layout import offsets as g",
+        "",
+        "",
+    ]
+    lines += ["class Material(NamedTuple):"]
+    lines += [
+        '    """What a law is told of the material: the numbers of PROPERTY. Frictions are tangents."""',
+        "",
+    ]
+    for one in table.properties:
+        unit = arrays[one.array].unit
+        lines.append(f"    {one.name}: float  # {one.text}" + (f", {unit}" if unit != "-" else ""))
+    lines += ["", "", "class Properties(TypedDict, total=False):", '    """What PROPERTY sets."""', ""]
+    lines += [f"    {one.argument}: float | None" for one in table.properties if one.keyword]
+    lines += [
+        "",
+        "",
+        "# Where the fields of Material stand in the common block, for material 1.",
+        "ARRAYS = (",
+    ]
+    lines += [*(f"    g.{one.array}," for one in table.properties), ")"]
+    return "\n".join(lines) + "\n"
+
+
 def scheme_text(table: Table, scheme: str) -> str:
     """The offsets of one scheme, in the manner of Appendix IV-2."""
     ibits, rbits = SCHEMES[scheme]
@@ -103,6 +134,7 @@ def files() -> dict[Path, str]:
     text = TABLE.read_text()
     table = parse(text)
     texts = {LAYOUT / "offsets.py": python_text(table), LAYOUT / "groups.table": text}
+    texts[LAYOUT / "material.py"] = material_text(table)
     texts[LAYOUTS] = layouts_text(table, LAYOUTS.read_text())
     for scheme in SCHEMES:
         texts[HERE / f"{scheme}.txt"] = scheme_text(table, scheme)

@@ -19,7 +19,7 @@ from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
 import numpy as np
 
@@ -33,6 +33,8 @@ from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
+from udec_ia.keywords import takes
+from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import DTOL, LREADY, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
@@ -566,58 +568,15 @@ class Model:
     # ---- numbers
 
     @numbers
-    def property(
-        self,
-        material: int,
-        *,
-        bulk: float | None = None,
-        cohesion: float | None = None,
-        density: float | None = None,
-        kn: float | None = None,
-        friction: float | None = None,
-        ks: float | None = None,
-        g: float | None = None,
-        dilation: float | None = None,
-        residual_friction: float | None = None,
-        residual_cohesion: float | None = None,
-        critical_slip: float | None = None,
-        block_friction: float | None = None,
-        block_cohesion: float | None = None,
-        block_tension: float | None = None,
-        block_dilation: float | None = None,
-        p1: float | None = None,
-        p2: float | None = None,
-        p3: float | None = None,
-        p4: float | None = None,
-    ) -> None:
+    @takes(Properties)
+    def property(self, material: int, **values: Unpack[Properties]) -> None:
         """PROPERTY: set properties of a material; those not given stay as they are.
 
         From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
         self._ready()
-        values = {
-            "bulk": bulk,
-            "cohesion": cohesion,
-            "density": density,
-            "kn": kn,
-            "friction": friction,
-            "ks": ks,
-            "g": g,
-            "dilation": dilation,
-            "residual_friction": residual_friction,
-            "residual_cohesion": residual_cohesion,
-            "critical_slip": critical_slip,
-            "block_friction": block_friction,
-            "block_cohesion": block_cohesion,
-            "block_tension": block_tension,
-            "block_dilation": block_dilation,
-            "p1": p1,
-            "p2": p2,
-            "p3": p3,
-            "p4": p4,
-        }
         settings.set_property(self.array, material, **values)
-        self._remark(on_properties(self.array, material, values))
+        self._remark(on_properties(self.array, material, dict[str, float | None](**values)))
 
     @numbers
     def gravity(self, gx: float, gy: float) -> None:

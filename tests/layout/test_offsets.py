@@ -122,7 +122,7 @@ def test_pointers_name_a_kind_of_group() -> None:
 def test_generated_files_are_current() -> None:
     assert stale() == []
     assert TABLE.digest == offsets.DIGEST
-    assert len(files()) == 3 + len(ALL_SCHEMES)
+    assert len(files()) == 4 + len(ALL_SCHEMES)
 
 
 @pytest.mark.parametrize(
@@ -136,6 +136,7 @@ def test_generated_files_are_current() -> None:
         "KZZ  int  -  data  -  his | no page",
         "KZZ  int  -  data  -  53/2 | the report has one layout",
         "RETIRED  KOLD  soon | not a number",
+        "PROPERTY  Weight  w  weight  DENS | a column is missing",
         "HEAD  MBAD",
         "CODE  OPEN  four  KCCOD | not a number",
     ],
@@ -160,6 +161,11 @@ def test_bad_lines_are_named(bad: str) -> None:
 def test_a_code_has_a_field_and_a_name_of_its_own(line: str, said: str) -> None:
     with pytest.raises(TableError, match=said):
         parse(SOURCE.read_text() + line + "\n")
+
+
+def test_a_property_has_an_array() -> None:
+    with pytest.raises(TableError, match="there is no array for the property weight"):
+        parse(SOURCE.read_text() + "PROPERTY  Weight  w  weight  weight  WGHT | of nothing\n")
 
 
 def test_codes_are_in_the_range_of_their_field() -> None:

@@ -18,6 +18,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
+from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.recordable import QUANTITIES, recordable
 
 MANY = 20  # choices that are told by the name of their argument, not one by one
@@ -110,6 +111,11 @@ class Command:
 
 
 MATERIAL = Word("Material", "n")
+PROPERTIES = [
+    Word(one.keyword, one.value, sets=one.argument if one.argument != one.keyword.lower() else "")
+    for one in read_table().properties
+    if one.keyword
+]
 CONSTITUTIVE = Word("Constitutive", "m")
 RANGE = "x1 x2 y1 y2"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
@@ -328,26 +334,8 @@ COMMANDS = (
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
         words=(
             MATERIAL,
-            Word("Bulk", "b"),
-            Word("Cohesion", "c"),
+            *PROPERTIES,
             Word("K", "b", sets="bulk"),
-            Word("Density", "d"),
-            Word("KN", "sn"),
-            Word("Friction", "f"),
-            Word("KS", "ss"),
-            Word("G", "g"),
-            Word("DIlation", "a"),
-            Word("RFriction", "f", sets="residual_friction"),
-            Word("RCohesion", "c", sets="residual_cohesion"),
-            Word("CRitical", "u", sets="critical_slip"),
-            Word("BFriction", "f", sets="block_friction"),
-            Word("BCohesion", "c", sets="block_cohesion"),
-            Word("BTension", "t", sets="block_tension"),
-            Word("BDilation", "a", sets="block_dilation"),
-            Word("P1", "v"),
-            Word("P2", "v"),
-            Word("P3", "v"),
-            Word("P4", "v"),
         ),
         first="material",
         ours="what stands behind G",

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "0e1a09184ccdaf53cb13fa2b945a12ff95580d9331eedbe78e5d72b441ee163d"
+DIGEST = "83fbc6b0570470ccbb41778b7448451bde3bcdaa2f68251cc10d9dfa6116c866"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

@@ -97,6 +97,22 @@ class Code:
 
 
 @dataclass(frozen=True)
+class Property:
+    """A number of a material.
+
+    keyword, value: what it and its number are called in a deck, "" if it is not given, but follows from
+    others; argument: by Model.property; name: by laws. array: in the common block.
+    """
+
+    keyword: str
+    value: str
+    argument: str
+    name: str
+    array: str
+    text: str
+
+
+@dataclass(frozen=True)
 class Retired:
     """A name that a field had in the layouts before `until`."""
 
@@ -114,6 +130,7 @@ class Table:
     codes: tuple[Code, ...]
     common: tuple[Field, ...]
     digest: str
+    properties: tuple[Property, ...] = ()
     retired: tuple[Retired, ...] = ()
     layout: int = 1  # number of the layout
 
@@ -167,6 +184,7 @@ def parse(text: str) -> Table:
     codes: list[Code] = []
     common: list[Field] = []
     retired: list[Retired] = []
+    properties: list[Property] = []
     layout = 1
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -181,6 +199,9 @@ def parse(text: str) -> Table:
             words = left.split()
             if words[0] == "RETIRED":
                 retired.append(Retired(words[1], int(words[2]), doc))
+            elif words[0] == "PROPERTY":
+                _, keyword, value, argument, name, variable = (word.strip("-") for word in words)
+                properties.append(Property(keyword, value, argument, name, variable, doc))
             elif words[0] == "GROUP":
                 _, name, size_name, list_head, page = words
                 fields = []
@@ -205,9 +226,12 @@ def parse(text: str) -> Table:
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
     _check_names(groups, codes, common, retired)
+    arrays = {field.name for field in common if field.real}
+    if lost := [one.name for one in properties if one.array not in arrays]:
+        raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, tuple(retired), layout)
+    return Table(*parts, digest, tuple(properties), tuple(retired), layout)
 
 
 def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:

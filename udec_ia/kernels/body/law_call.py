@@ -26,43 +26,12 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from udec_ia.layout import offsets as g
+from udec_ia.layout.material import Material
 
 FIRST, LAST = 2, 5  # constitutive numbers of the user's laws
 JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws
 
 
-class Material(NamedTuple):
-    """What a law is told of the material: the numbers of PROPERTY. Frictions and dilations are tangents."""
-
-    kn: float  # normal and shear stiffness of joints, N/m
-    ks: float
-    friction: float  # strength of joints; cohesions of joints are forces, N/m
-    cohesion: float
-    dilation: float
-    residual_friction: float
-    residual_cohesion: float
-    critical_slip: float  # m
-    density: float  # block material; moduli and strengths in Pa
-    bulk: float
-    shear: float
-    alam1: float  # bulk + 4 shear/3
-    alam2: float  # bulk - 2 shear/3
-    block_friction: float
-    block_cohesion: float
-    block_tension: float
-    block_dilation: float
-    p1: float  # for laws of your own
-    p2: float
-    p3: float
-    p4: float
-
-
-# Where the fields of Material stand in the common block, for material 1.
-ARRAYS = (
-    *(g.AKN, g.AKS, g.AMU, g.COH, g.JDIL, g.RMU, g.RCOH, g.UCRIT, g.DENS, g.BULK, g.SHEAR, g.ALAM1, g.ALAM2),
-    *(g.BMU, g.BCOH, g.BTEN, g.BDIL, g.PAR1, g.PAR2, g.PAR3, g.PAR4),
-)
 MATERIAL_SIZE = 8 * len(Material._fields)  # bytes
 STATE = (types.float64,) * 6  # compiled types of what a law is called with
 MATERIAL = types.NamedUniTuple(types.float64, len(Material._fields), Material)

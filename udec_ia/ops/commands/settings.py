@@ -11,6 +11,7 @@ from udec_ia.kernels.body.masses import greatest_block
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.boundary import given_velocities
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import bearable, finite, material_number, not_negative, positive, whole
@@ -18,28 +19,12 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.ranges import Range, blocks_in
 
 DEFAULT_FRACTION = 0.1
-PROPERTIES = {  # keyword of the PROPERTY command: array of the common block
-    "bulk": g.BULK,
-    "cohesion": g.COH,
-    "density": g.DENS,
-    "kn": g.AKN,
-    "friction": g.AMU,
-    "ks": g.AKS,
-    "g": g.SHEAR,
-    "dilation": g.JDIL,
-    "residual_friction": g.RMU,
-    "residual_cohesion": g.RCOH,
-    "critical_slip": g.UCRIT,
-    "block_friction": g.BMU,
-    "block_cohesion": g.BCOH,
-    "block_tension": g.BTEN,
-    "block_dilation": g.BDIL,
-    "p1": g.PAR1,
-    "p2": g.PAR2,
-    "p3": g.PAR3,
-    "p4": g.PAR4,
+PROPERTIES = {  # argument of PROPERTY: array of the common block
+    one.argument: getattr(g, one.array) for one in read_table().properties if one.keyword
 }
-FREE = ("p1", "p2", "p3", "p4")  # may be negative: what they mean is the user's
+RANGES = {field.name: field.allowed for field in read_table().common}
+# may be negative: what they mean is the user's
+FREE = [one.argument for one in read_table().properties if not RANGES[one.array]]
 
 
 def set_property(array: MainArray, material: int, **values: float | None) -> None:

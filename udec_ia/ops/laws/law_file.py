@@ -23,7 +23,8 @@ import numpy as np
 from numba import config, types
 
 from udec_ia.errors import UdecError
-from udec_ia.kernels.body.law_call import FIRST, LAST, MATERIAL, STATE, Material, machine_code
+from udec_ia.kernels.body.law_call import FIRST, LAST, MATERIAL, STATE, machine_code
+from udec_ia.layout.material import Material
 
 NUMBERS = range(FIRST, LAST + 1)
 RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {f"clj{n}": 2 for n in NUMBERS}  # how many numbers a law returns

@@ -12,9 +12,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import mode
-from udec_ia.kernels.body.law_call import ARRAYS, Laws, Material
+from udec_ia.kernels.body.law_call import Laws
 from udec_ia.kernels.body.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.layout import offsets as g
+from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.common.limits import NCONS, NMAT
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws

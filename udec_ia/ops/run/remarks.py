@@ -16,18 +16,13 @@ from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.ops.common.limits import NMAT
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
+OURS = {field.name for field in read_table().common if field.ours and field.allowed}
 OF_LAWS = {  # properties that constitutive number 1 does not look at, by their places in the common block
-    "DILATION": g.JDIL,
-    "RFRICTION": g.RMU,
-    "RCOHESION": g.RCOH,
-    "CRITICAL": g.UCRIT,
-    "BFRICTION": g.BMU,
-    "BCOHESION": g.BCOH,
-    "BTENSION": g.BTEN,
-    "BDILATION": g.BDIL,
+    one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in OURS
 }
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees

@@ -1,0 +1,83 @@
+"""AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do not edit."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypedDict
+
+from udec_ia.layout import offsets as g
+
+
+class Material(NamedTuple):
+    """What a law is told of the material: the numbers of PROPERTY. Frictions are tangents."""
+
+    bulk: float  # bulk modulus, Pa
+    cohesion: float  # joint cohesion, a force, N/m
+    density: float  # density of blocks, kg/m3
+    kn: float  # normal stiffness of joints, N/m
+    friction: float  # joint friction, a tangent
+    ks: float  # shear stiffness of joints, N/m
+    shear: float  # shear modulus, Pa
+    alam1: float  # bulk + 4 shear/3, Pa
+    alam2: float  # bulk - 2 shear/3, Pa
+    dilation: float  # joint dilation, a tangent
+    residual_friction: float  # residual joint friction, a tangent
+    residual_cohesion: float  # residual joint cohesion, a force, N/m
+    critical_slip: float  # slip that leads to residual strength, m
+    block_friction: float  # friction inside blocks, a tangent
+    block_cohesion: float  # cohesion inside blocks, Pa
+    block_tension: float  # tensile strength inside blocks, Pa
+    block_dilation: float  # dilation inside blocks, a tangent
+    p1: float  # for laws of your own
+    p2: float  # for laws of your own
+    p3: float  # for laws of your own
+    p4: float  # for laws of your own
+
+
+class Properties(TypedDict, total=False):
+    """What PROPERTY sets."""
+
+    bulk: float | None
+    cohesion: float | None
+    density: float | None
+    kn: float | None
+    friction: float | None
+    ks: float | None
+    g: float | None
+    dilation: float | None
+    residual_friction: float | None
+    residual_cohesion: float | None
+    critical_slip: float | None
+    block_friction: float | None
+    block_cohesion: float | None
+    block_tension: float | None
+    block_dilation: float | None
+    p1: float | None
+    p2: float | None
+    p3: float | None
+    p4: float | None
+
+
+# Where the fields of Material stand in the common block, for material 1.
+ARRAYS = (
+    g.BULK,
+    g.COH,
+    g.DENS,
+    g.AKN,
+    g.AMU,
+    g.AKS,
+    g.SHEAR,
+    g.ALAM1,
+    g.ALAM2,
+    g.JDIL,
+    g.RMU,
+    g.RCOH,
+    g.UCRIT,
+    g.BMU,
+    g.BCOH,
+    g.BTEN,
+    g.BDIL,
+    g.PAR1,
+    g.PAR2,
+    g.PAR3,
+    g.PAR4,
+)
