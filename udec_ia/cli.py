@@ -139,8 +139,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"\ninterrupted{_saved(interrupt)}", file=sys.stderr)
         return TERMINATED if isinstance(interrupt, Terminated) else INTERRUPTED
     finally:
-        for number, handler in former.items() if argv is not None else ():  # else the process ends here
-            if handler is not None:  # else it is none of Python's
+        for number, handler in former.items():
+            if argv is None:  # the process ends here, with a status that is settled
+                signal.signal(number, signal.SIG_IGN)
+            elif handler is not None:  # else it is none of Python's
                 signal.signal(number, handler)
 
 

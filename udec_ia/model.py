@@ -14,6 +14,7 @@ from __future__ import annotations
 import io
 import logging
 import operator
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
@@ -56,7 +57,7 @@ from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.arrange import arrange
 from udec_ia.ops.run.cycle import cycle, finish
-from udec_ia.ops.run.remarks import on_laws, on_moduli, on_properties, on_rest, on_rounding
+from udec_ia.ops.run.remarks import on_laws, on_loads, on_moduli, on_properties, on_rest, on_rounding
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
@@ -232,9 +233,12 @@ class Model:
 
         if self._touched:
             self._prove(whole=True)
-        target = self.out / RESTART_FILE if path is None else path
+        target = self.out / RESTART_FILE if path is None else Path(path)
+        folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
         written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
         self._note([written])
+        if makes:
+            self.inform(f"the folder {printable(str(folder))} was not there and has been made")
         return written
 
     @beside
@@ -608,7 +612,7 @@ class Model:
         return balance(self.array.h)
 
     @numbers
-    def fraction(self, f: float, safe: bool = False) -> None:
+    def fraction(self, f: float, *, safe: bool = False) -> None:
         """FRACTION: fraction of the critical time-step to be used; safe: of a bound on all modes."""
         self._ready(sound=False)
         settings.set_fraction(self.array, f, safe)
@@ -714,6 +718,7 @@ class Model:
             self.inform(describe(self.array, self._runaway.safe))
         self._remark(on_moduli(self.array, self.laws.block_laws))
         self._remark(on_laws(self.array))
+        self._remark(on_loads(self.array))
         self._remark(on_rounding(self.array))
 
     def _warn(self, text: str) -> None:
@@ -811,6 +816,7 @@ class Model:
     def plot(
         self,
         n: int | None = None,
+        *,
         contacts: bool = False,
         domains: bool = False,
         addresses: bool = False,

@@ -168,6 +168,13 @@ def test_files_named_in_a_deck_are_in_the_folder_for_files() -> None:
     assert [named for _, _, named in model.calls[1:]] == [in_out, {}, in_out, elsewhere]
 
 
+def test_a_folder_that_is_not_there_yet_has_one_above_it(tmp_path: Path) -> None:
+    model = Recorder()
+    model.out = tmp_path / "new"
+    run_deck(model, "START\nRESTART ../old/one.h5\n", io.StringIO())
+    assert model.calls[1][2] == {"path": tmp_path / "old" / "one.h5"}
+
+
 def test_a_file_that_cannot_be_written_is_error_31() -> None:
     model = Recorder()
     model.failures["save"] = PermissionError(13, "Permission denied", "run.h5")

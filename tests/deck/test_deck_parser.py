@@ -120,6 +120,8 @@ def test_what_a_command_means(text: str, positional: list[Any], named: dict[str,
         ("CYCLE 1234567890123456789", 28, 1, 7, ""),
         ("SAVE a\n+b", 10, 1, 6, ""),
         ("SAVE a\x00b", 10, 1, 6, ""),
+        ('SAVE "my file ; not closed', 10, 1, 6, "put a name in quotes as a whole"),
+        ("SAVE 'a'b", 10, 1, 6, "put a name in quotes as a whole"),
     ],
 )
 def test_where_and_why_a_command_is_refused(

@@ -173,3 +173,35 @@ def test_random_scenes_are_not_remarked_on(tmp_path: Path, caplog: pytest.LogCap
         play(seed, Model(out=tmp_path), cycles=(1, 2))
     for word in ("tangent", "nothing in them", "no damping"):
         assert word not in caplog.text
+
+
+def test_loads_on_fixed_blocks_only(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.gravity(0, -10)
+    m.damping(0.5, 5, "mass")
+    m.block(0, 0, 0, 2, 1, 2, 1, 0)
+    m.split(-1, 1, 2, 1)
+    m.fix(0, 1, 0, 1)
+    said = told(m)
+    m.boundary(0, 1, 0, 1, xforce=10.0)
+    m.cycle(1)
+    m.cycle(1)
+    (text,) = said
+    assert text.startswith("BOUNDARY loads fixed blocks only (block@")
+    m.boundary(0, 1, 1, 2, xforce=10.0)
+    m.fix(0, 1, 1, 2)
+    m.free(0, 1, 0, 2)
+    m.cycle(1)
+    assert len(said) == 1
+
+
+def test_words_are_arguments_by_name(tmp_path: Path) -> None:
+    """Not truth values of whatever argument stands in that place."""
+    m = Model(out=tmp_path)
+    with pytest.raises(TypeError):
+        m.plot(0, "velocities")  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        m.fraction(0.5, "safe")  # type: ignore[misc]
+    with pytest.raises(TypeError, match=r"property\(\) got an unexpected keyword argument 'desnity'"):
+        m.property(1, desnity=2000)  # type: ignore[call-arg]

@@ -159,6 +159,17 @@ def test_what_is_read_only_stays(tmp_path: Path) -> None:
     assert load(path).deck == ["START"]
 
 
+def test_a_folder_that_is_made_is_told(tmp_path: Path) -> None:
+    """It may be a mistyped one."""
+    m, said = small(tmp_path / "out"), []
+    m.inform = said.append
+    m.save()
+    m.save(tmp_path / "one.h5")
+    assert said == []
+    m.save(tmp_path / "a" / "b" / "one.h5")
+    assert said == [f"the folder {tmp_path / 'a' / 'b'} was not there and has been made"]
+
+
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     assert "Not a directory" in refused(lambda: small(tmp_path).save(tmp_path / "file" / "deeper" / "run.h5"))

@@ -176,7 +176,9 @@ COMMANDS = (
     ),
     Command(
         "DAmping",
-        "Rayleigh damping: fraction of critical damping at the centre frequency, in cycles per unit time.",
+        "Rayleigh damping: fraction of critical damping at the centre frequency, in cycles per unit time. "
+        "Mass or Stiffness takes that half alone, which is fcrit/2 at that frequency. There is none "
+        "by default.",
         "DAMP 0.1 30 STIFFNESS",
         numbers="fcrit freq",
         words=(Word("Mass", sets="only"), Word("Stiffness", sets="only"), Word("Internal", sets="only")),
@@ -213,7 +215,8 @@ COMMANDS = (
     Command(
         "FRaction",
         "Use the fraction f of the critical time-step: of the estimate of 1980, which is only approximate, "
-        "or of a bound that no mode of the contacts and zones of now exceeds.",
+        "or of a bound that no mode of the contacts and zones of now exceeds. By default it is 0.1 of the "
+        "estimate.",
         "FRAC 0.1",
         numbers="f",
         words=(Word("Safe"),),
@@ -326,8 +329,11 @@ COMMANDS = (
     ),
     Command(
         "PROperty",
-        "Define properties of material n: bulk modulus (Bulk or K), joint cohesion, density, normal and "
-        "shear joint stiffness, joint friction coefficient, shear modulus (G). For constitutive numbers 2 to "
+        "Define properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
+        "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force for a metre of overlap), joint "
+        "friction coefficient, shear modulus (G, Pa). Stiffnesses and cohesion are those of each contact, "
+        "however long the joint: two blocks face to face have two. What is not given is 0: a joint without "
+        "friction slides. For constitutive numbers 2 to "
         "5: dilation of joints, their residual friction and cohesion and the critical slip that leads to "
         "these; friction, cohesion, tensile strength and dilation inside blocks; four numbers for laws of "
         "your own. Frictions and dilations are tangents of angles.",
@@ -342,7 +348,8 @@ COMMANDS = (
     ),
     Command(
         "Restart",
-        "Go on from the restart file: restart.h5 in the folder for files (--out) if it is not named.",
+        "Go on from the restart file, restart.h5 if it is not named; relative names begin in the folder for "
+        "files (--out).",
         "RESTART slope.h5",
         text="path",
         opens=True,
@@ -357,14 +364,15 @@ COMMANDS = (
     Command(
         "Round",
         "Round each corner with a circle tangential to its edges at the distance d. Half the shortest edge "
-        "is the most, twice the greatest overlap the least.",
+        "is the most, twice the greatest overlap the least. Blocks touch where their corners' circles begin: "
+        "a block turns about a point at d from its corner.",
         "ROUND 0.5",
         numbers="d",
     ),
     Command(
         "SAve",
-        "Save the state on the restart file: restart.h5 in the folder for files (--out) if it is not named. "
-        "It may replace a restart file, and nothing else.",
+        "Save the state on the restart file, restart.h5 if it is not named; relative names begin in the "
+        "folder for files (--out). It may replace a restart file, and nothing else.",
         "SAVE slope.h5",
         text="path",
         ours="the name of the file",

@@ -141,7 +141,7 @@ class Monitor:
             return None
         named = dict(call.named)
         if "path" in named:  # files named in a deck are in the folder for files
-            named["path"] = self.model.out / named["path"]
+            named["path"] = _in_folder(self.model.out, named["path"])
         model = self.model
         before = model.tell, model.inform, model.explain_step, model.logs_calls
         model.explain_step, model.logs_calls = True, False
@@ -195,6 +195,12 @@ class Monitor:
         for violation in violations[:1]:
             self._write(f"the state that is saved is there to be looked at: {violation}")
         return str(path)
+
+
+def _in_folder(folder: Path, name: str) -> Path:
+    """The file `name` in `folder`, which need not be there yet: no system finds the `..` of such a one."""
+    path = folder / name
+    return path if folder.exists() else Path(os.path.normpath(path))
 
 
 def _awaited(lines: Iterable[str]) -> Iterator[str]:

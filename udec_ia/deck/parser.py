@@ -142,6 +142,10 @@ class _Parser:
         line, end = self.tokens[0].line, self.tokens[0].end - 1
         rest = line.text[end:].lstrip(" \t=")
         whole = QUOTED.match(rest)
+        if rest[:1] in ("'", '"') and whole is None:
+            detail = f"{rest[0]} stands before the name, and not behind it as the last of the line"
+            place = Token(rest[0], line, len(line.text) - len(rest) + 1)
+            raise at(UdecError(10, detail, "put a name in quotes as a whole, or in none"), place)
         text = whole.group(1) if whole else APART.split(rest, maxsplit=1)[0]
         place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:

@@ -13,9 +13,9 @@ class Material(NamedTuple):
     bulk: float  # bulk modulus, Pa
     cohesion: float  # joint cohesion, a force, N/m
     density: float  # density of blocks, kg/m3
-    kn: float  # normal stiffness of joints, N/m
+    kn: float  # normal stiffness of joints, N/m2
     friction: float  # joint friction, a tangent
-    ks: float  # shear stiffness of joints, N/m
+    ks: float  # shear stiffness of joints, N/m2
     shear: float  # shear modulus, Pa
     alam1: float  # bulk + 4 shear/3, Pa
     alam2: float  # bulk - 2 shear/3, Pa

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "83fbc6b0570470ccbb41778b7448451bde3bcdaa2f68251cc10d9dfa6116c866"
+DIGEST = "e7b873ddcb7d545905ceaf1d690ea93e6323b98f8468021568ba2c5310a569e8"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

@@ -92,6 +92,17 @@ def on_laws(array: MainArray) -> Iterator[str]:
             )
 
 
+def on_loads(array: MainArray) -> Iterator[str]:
+    """CYCLE: loads, all of which act on blocks that are fixed."""
+    h = array.h
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    loaded = np.any([getr(h, bounds, k) for k in (g.KUFX, g.KUFY)], axis=0)
+    blocks = np.unique(integers(h, bounds[loaded], g.KUB))
+    if len(blocks) and (integers(h, blocks, g.KBFIX) == g.FIXED).all():
+        named = f"block@{blocks[0]}" + (f" and {len(blocks) - 1} more" if len(blocks) > 1 else "")
+        yield f"BOUNDARY loads fixed blocks only ({named}), and no load moves these: FREE them or others"
+
+
 def on_rounding(array: MainArray) -> Iterator[str]:
     """CYCLE, before the first one: a sliver that makes the default rounding length very small.
 

@@ -292,7 +292,7 @@ def instability(array: MainArray, safe: Limit) -> str:
         )
     return (
         f"the time-step of {step:.3g} s is {share:.3g} of the safe bound, which "
-        f"{kind_of(array.h, safe.address)} sets, and may be unstable: {fraction}"
+        f"{_place(array.h, safe.address)} sets, and may be unstable: {fraction}"
     )
 
 
@@ -301,7 +301,7 @@ def describe(array: MainArray, safe: Limit) -> str:
     step = float(array.h.cr[g.TDEL])
     parts = [
         f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "
-        f"({kind_of(array.h, limit.address)})"
+        f"({_place(array.h, limit.address)})"
         for name, limit in (("estimate", estimate(array)), ("safe bound", safe))
         if math.isfinite(limit.step)
     ]
@@ -318,6 +318,13 @@ def kind_of(h: Memory, address: int) -> str:
     if what == STRAIN:
         return f"the strain of block@{ib}"
     return f"{'grid-point' if what == GRIDPOINT else 'zone'}@{address} of block@{ib}"
+
+
+def _place(h: Memory, address: int) -> str:
+    """The same, with the centroid of the block."""
+    ib, what = owner(h, address)
+    at = f" at ({getr(h, ib, g.KX):.4g}, {getr(h, ib, g.KY):.4g})" if what != NOBODY else ""
+    return kind_of(h, address) + at
 
 
 def _reals(h: Memory, at: Array, k: Offset) -> Array:
