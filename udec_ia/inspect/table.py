@@ -6,6 +6,7 @@ takes the array's two views as wholes, so this file repeats the accessors' rule 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -71,21 +72,30 @@ class _Reader:
             return self.listed(kind)
         if kind == "corner":
             return self.corners()
-        if kind in SOFT.values():
-            (code,) = (code for code, name in SOFT.items() if name == kind)
-            blocks = self.addresses("block")
-            soft = blocks[self.field("block", "HEAD", blocks) == code]
-            return self.sound(kind, self.field("block", "KBEX", soft))
-        if kind == "gridpoint":
-            return self.chains(kind, "KG", self.field("fdef", "KFG", self.addresses("fdef")))
-        if kind == "zone":
-            return self.chains(kind, "KZ", self.field("fdef", "KFZ", self.addresses("fdef")))
-        if kind == "tabpoint":
-            return self.chains(kind, "KTPN", self.field("signal", "KTP", self.addresses("signal")))
-        if kind == "jointext":
-            found = self.field("domain", "KDEX", self.addresses("domain"))
-            return self.sound("jointext", found[found != 0])
-        return np.empty(0, np.int64)
+        (link,) = self.names(kind, "next") or [""]
+        heads = [np.empty(0, np.int64), *self.heads(kind)]
+        return (
+            self.chains(kind, link, np.concatenate(heads))
+            if link
+            else self.sound(kind, np.concatenate(heads))
+        )
+
+    def names(self, kind: str, role: str) -> list[str]:
+        """The fields of `kind` that have a role."""
+        return [field.name for field in self.groups[kind].fields if field.role == role]
+
+    def heads(self, kind: str) -> Iterator[Any]:
+        """Addresses of groups of `kind` that pointers of other groups lead to, of the first ones of lists."""
+        for group in self.groups.values():
+            for field in group.fields:
+                if field.role not in ("extension", "first") or field.target not in (kind, "soft"):
+                    continue
+                owners = self.addresses(group.name)
+                if field.target == "soft":  # the head code of the block says what it is
+                    codes = [code for code, name in SOFT.items() if name == kind]
+                    owners = owners[np.isin(self.field(group.name, "HEAD", owners), codes)]
+                found = self.field(group.name, field.name, owners)
+                yield found if field.target == "soft" else found[found != 0]
 
     def listed(self, kind: str) -> Any:
         """Addresses along a main list: taken as they come, then tested all at once.

@@ -13,34 +13,21 @@ from typing import Any
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
-LISTS: dict[str, tuple[int, Offset]] = {
-    "block": (g.IBPNT, g.KB),
-    "contact": (g.ICPNT, g.KC),
-    "domain": (g.IDPNT, g.KD),
-    "bound": (g.IBNPNT, g.KU),
-    "signal": (g.ISGPNT, g.KT),
-    "history": (g.IHPNT, g.KH),
+TABLE = read_table()
+LISTS: dict[str, tuple[int, Offset]] = {  # kinds with a main list: its head, and the link to the next
+    group.name: (getattr(g, group.list_head), getattr(g, one.name))
+    for group in TABLE.groups
+    for one in group.fields
+    if group.list_head and one.role == "next"
 }
-HEADS: dict[str, tuple[int, ...]] = {
-    "block": (g.MRIG, g.MSDEF, g.MFDEF),
-    "corner": (g.MCOR,),
-    "contact": (g.MCON,),
-    "domain": (g.MDOM,),
-    "bound": (g.MBND,),
-    "signal": (g.MSIG,),
-    "history": (g.MHIS,),
+HEADS: dict[str, tuple[int, ...]] = {  # kinds with a head code, and what it may be
+    kind: tuple(head.value for head in TABLE.heads if head.group == kind)
+    for kind in dict.fromkeys(head.group for head in TABLE.heads)
 }
+SIZES: dict[str, Offset] = {kind: getattr(g, TABLE.group(kind).size_name) for kind in HEADS}
 SOFT = {g.MSDEF: "sdef", g.MFDEF: "fdef"}  # kind of the extension of a block with this head code
-SIZES: dict[str, Offset] = {
-    "block": g.NVBL,
-    "corner": g.NVCR,
-    "contact": g.NVCN,
-    "domain": g.NVDO,
-    "bound": g.NVBN,
-    "signal": g.NVSG,
-    "history": g.NVHI,
-}
 
 
 class Unsound(UdecError):

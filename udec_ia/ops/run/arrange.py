@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.relocate import relocate
 from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Group, read_table
 from udec_ia.ops.common.lists import chain
 
 LARGE = 500  # blocks from which on it pays
@@ -35,7 +36,8 @@ def arrange(array: MainArray) -> Any:
     if h.ci[g.NBLK] < LARGE or h.ci[g.MCTOT] > 0:
         return None
     blocks = in_strips(h)
-    order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks) | beside_the_map(h)
+    order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks)
+    order |= beside_the_map(h, order)
     return relocate(array, {kind: np.array(addresses) for kind, addresses in order.items() if len(addresses)})
 
 
@@ -68,9 +70,36 @@ def of_deformable_blocks(h: Memory, blocks: Any) -> dict[str, Any]:
     return {"sdef": sdef, "fdef": fdef, "gridpoint": points, "zone": zones}
 
 
-def beside_the_map(h: Memory) -> dict[str, Any]:
-    """Boundary conditions, signals and histories as they stand in their lists."""
-    signals = list(chain(h, int(h.ci[g.ISGPNT]), g.KT))
-    points = [it for signal in signals for it in chain(h, iget(h, signal, g.KTP), g.KTPN)]
-    bounds, histories = list(chain(h, int(h.ci[g.IBNPNT]), g.KU)), list(chain(h, int(h.ci[g.IHPNT]), g.KH))
-    return {"bound": bounds, "signal": signals, "tabpoint": points, "history": histories}
+def beside_the_map(h: Memory, known: dict[str, Any]) -> dict[str, Any]:
+    """All other kinds, such as conditions, signals and histories, as they stand in their lists.
+
+    known: the kinds whose order is known, on which some of the others hang.
+    """
+    order: dict[str, Any] = {}
+    for group in read_table().groups:
+        if group.name in known:
+            continue
+        links = [getattr(g, one.name) for one in group.fields if one.role == "next"]
+        firsts = (
+            [int(h.ci[getattr(g, group.list_head)])] if group.list_head else _hanging(h, group, known | order)
+        )
+        order[group.name] = [iad for first in firsts for iad in _along(h, first, links)]
+    return order
+
+
+def _hanging(h: Memory, group: Group, order: dict[str, Any]) -> list[int]:
+    """What the groups of `order` hold of kind `group`, or of its lists: the first address of each."""
+    return [
+        iget(h, int(owner), getattr(g, one.name))
+        for kind, owners in order.items()
+        for one in read_table().group(kind).fields
+        if one.role in ("first", "extension") and one.target == group.name
+        for owner in owners
+    ]
+
+
+def _along(h: Memory, first: int, links: list[Offset]) -> list[int]:
+    """The list that begins at `first`, 0 for none; a group without a link stands alone."""
+    if first == 0:
+        return []
+    return list(chain(h, first, links[0])) if links else [first]
