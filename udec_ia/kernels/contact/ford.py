@@ -17,7 +17,7 @@ from typing import Any
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
 from udec_ia.kernels.detect.depth import do_not_meet
@@ -271,8 +271,8 @@ def ford_all(h: Memory, soft: Any, joints: Any) -> None:
         ic = following
 
 
-@kernel
-def settle_all(h: Memory) -> None:
+@apart
+def settle_all(h: Memory) -> bool:
     """Bring every contact up to date with a changed geometry, its force as it is."""
     ic = h.ci[g.ICPNT]
     while ic != 0:
@@ -281,3 +281,4 @@ def settle_all(h: Memory) -> None:
             nx, ny, overlap = restart(h, ic)
             drop(h, ic, nx, ny, overlap)
         ic = following
+    return True

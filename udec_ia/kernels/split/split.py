@@ -15,11 +15,12 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.apart import call_entry, entry
+from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.masses import share_extension
 from udec_ia.kernels.contact.ford import restart, settle_all
+from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
@@ -30,6 +31,7 @@ from udec_ia.kernels.split.spli import corner_on_edge, spli
 from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
+UPDATE, SETTLE, SHARE = 0, 1, 2  # what `cutting` returns
 
 
 @kernel
@@ -141,19 +143,32 @@ def _shortest(h: Memory, ib: int) -> float:
     return least
 
 
+@apart
+def share(h: Memory, ib: int, jb: int) -> bool:
+    """Block `jb`, cut from block `ib`, gets its share of what hangs on that one."""
+    if iget(h, ib, HEAD) == g.MSDEF:
+        share_extension(h, ib, jb)
+    if h.ci[g.IBNPNT] != 0:
+        share_bounds(h, ib, jb)
+    return True
+
+
+def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
+    """What `cut_path` calls by its address (heap.apart), 0 for what it need not. soft: as in run_cycles."""
+    return updating(h), entry(settle_all, h), entry(share, h, 0, 0) if soft is not None else 0
+
+
 @kernel
-def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int) -> int:
-    """Split block `ib` between its crossings `k` and `k` + 1; returns the new block."""
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, passes: Any) -> int:
+    """Split block `ib` between its crossings `k` and `k` + 1; returns the new block. passes: see cutting."""
     ia, iz = which[k, CORNER], which[k + 1, CORNER]
     if which[k, AT] == 0:
         ia = corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
     jb = spli(h, ib, ia, iz)
-    if iget(h, ib, HEAD) == g.MSDEF:
-        share_extension(h, ib, jb)
-    if h.ci[g.IBNPNT] != 0:
-        share_bounds(h, ib, jb)
+    if passes[SHARE] != 0:
+        call_entry(passes[SHARE], h, ib, jb)
     if rounding_is_open(h):
         least = min(_shortest(h, ib), _shortest(h, jb))
         if least < h.cr[g.DTOL] * real(h, 4.0):
@@ -205,12 +220,12 @@ def cut_path(
     cuts: int,
     where: Any,
     which: Any,
-    update: Any,
+    passes: Any,
 ) -> tuple[int, int]:
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so `where` and `which` do as they did for `path`. update: see detect.update.updating.
+    so `where` and `which` do as they did for `path`. passes: see cutting.
     Returns the status and the new number of boxes.
     """
     first = n
@@ -230,12 +245,12 @@ def cut_path(
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            blocks[n] = _cut_block(h, blocks[row], where, which, k)
+            blocks[n] = _cut_block(h, blocks[row], where, which, k, passes)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])
             n += 1
     if h.cr[g.DTOL] != rounding_length:
-        settle_all(h)
+        call_entry(passes[SETTLE], h)
         flag_all(h)
-        return (DONE if call_entry(update, h, int64(0)) else NO_MEMORY), n
-    return (DONE if update_cracks(h, blocks, first, n, update) else NO_MEMORY), n
+        return (DONE if call_entry(passes[UPDATE], h, int64(0)) else NO_MEMORY), n
+    return (DONE if update_cracks(h, blocks, first, n, passes[UPDATE]) else NO_MEMORY), n

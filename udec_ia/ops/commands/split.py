@@ -9,9 +9,17 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.split.crossing import LEAST, X, Y, rounding_is_open
-from udec_ia.kernels.split.split import DONE, NO_MEMORY, NO_ROWS, REFUSED_SHORT, cut_path, enter_boxes, path
+from udec_ia.kernels.split.split import (
+    DONE,
+    NO_MEMORY,
+    NO_ROWS,
+    REFUSED_SHORT,
+    cut_path,
+    cutting,
+    enter_boxes,
+    path,
+)
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.rounding import update_flagged
 from udec_ia.ops.common.forces import renew_forces
@@ -99,7 +107,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
         *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
-        updating(h),
+        cutting(h, soft(array)),
     )
     if status == NO_MEMORY:
         try:
