@@ -8,85 +8,158 @@ from __future__ import annotations
 
 from udec_ia.printable import MESSAGE, printable
 
-MESSAGES = {
-    1: "memory overflow",
-    2: "unrecognisable command",
-    3: "not START or RESTART as first command",
-    4: "material number out of range",
-    5: "block has less than 3 corners",
-    6: "negative or zero block area",
-    7: "missing parameter",
-    8: "missing y-value",
-    9: "constitutive number out of range",
-    10: "unrecognised parameter",
-    11: "contact stiffnesses undefined: cannot cycle",
-    12: "zero mass block(s) present: cannot cycle",
-    13: "mass damping for rigid-body motion too high",
-    14: "rounding length too great",
-    15: "contact overlap too great",
-    16: "internal mass damping too high",
-    17: "cannot split fully-deformable block",
-    18: "only one block may be created at present: use SPLIT for more",
-    19: "cannot delete final contact in problem",
-    20: "internal error, the main array is damaged",
-    21: "cannot delete fully-deformable block at present",
-    22: 'fifth parameter must be "Manual" or "Automatic"',
-    23: "not available yet",
-    24: "cannot find block in range",
-    25: "zone pointer references non-existent grid-point",
-    26: "missing data",
-    27: "split line runs too close to a corner or an edge",
-    28: "value out of range",
-    29: "restart file cannot be used",
-    30: "address outside the main array",
-    31: "file cannot be written",
-    32: "zone or block has turned inside out",
-    33: "zones do not fill the block",
-    34: "constitutive law cannot be used",
-    35: "constitutive law returned no finite number",
-    36: "place or force beyond the reals",
-    37: "there is more energy than can be",
+ERRORS = {  # number: message, and what to do about it
+    1: (
+        "memory overflow",
+        "take a larger --mtop, or leave --mtop off and choose a --build with wider integers",
+    ),
+    2: (
+        "unrecognisable command",
+        "HELP lists the commands",
+    ),
+    3: (
+        "not START or RESTART as first command",
+        "put START before this line, or RESTART to go on from a saved state",
+    ),
+    4: (
+        "material number out of range",
+        "material numbers run from 1 to 50",
+    ),
+    5: (
+        "block has less than 3 corners",
+        "give at least three corners, clockwise",
+    ),
+    6: (
+        "negative or zero block area",
+        "give the corners in clockwise order, along an outline that does not cross itself",
+    ),
+    7: (
+        "missing parameter",
+        "HELP and the name of the command show its form",
+    ),
+    8: (
+        "missing y-value",
+        "x and y of a point must stand on one line",
+    ),
+    9: (
+        "constitutive number out of range",
+        "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
+    ),
+    10: (
+        "unrecognised parameter",
+        "HELP and the name of the command list its parameters",
+    ),
+    11: (
+        "contact stiffnesses undefined: cannot cycle",
+        "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
+    ),
+    12: (
+        "zero mass block(s) present: cannot cycle",
+        "give the density of every material in use: PROPERTY MAT=1 DENS=...",
+    ),
+    13: (
+        "mass damping for rigid-body motion too high",
+        "take a smaller fcrit in DAMPING, or a smaller FRACTION",
+    ),
+    14: (
+        "rounding length too great",
+        "the shortest edge must hold two roundings, no overlap may exceed half of one: change d in ROUND",
+    ),
+    15: (
+        "contact overlap too great",
+        "take a larger joint stiffness or a smaller FRACTION, or look for what drives the blocks together",
+    ),
+    16: (
+        "internal mass damping too high",
+        "take a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
+    ),
+    17: (
+        "cannot split fully-deformable block",
+        "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
+    ),
+    18: (
+        "only one block may be created at present: use SPLIT for more",
+        "make the first block large enough, then SPLIT it and DELETE what is not needed",
+    ),
+    19: (
+        "cannot delete final contact in problem",
+        "leave at least two blocks that touch",
+    ),
+    20: (
+        "internal error, the main array is damaged",
+        "look at the last RSET, and go back to what was saved before it",
+    ),
+    21: (
+        "cannot delete fully-deformable block at present",
+        "delete blocks before they are made fully-deformable",
+    ),
+    22: (
+        'fifth parameter must be "Manual" or "Automatic"',
+        "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ..., or AUTOMATIC EDGE d",
+    ),
+    23: (
+        "not available yet",
+        'AUTOMATIC zones need one package more: python -m pip install "pythoncdt>=2.0"',
+    ),
+    24: (
+        "cannot find block in range",
+        "a block counts by its centroid: PRINT BLOCKS shows the centroids",
+    ),
+    25: (
+        "zone pointer references non-existent grid-point",
+        "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
+    ),
+    26: (
+        "missing data",
+        "a zone needs its three grid-points on one line",
+    ),
+    27: (
+        "split line runs too close to a corner or an edge",
+        "move the line: it may pass exactly through a corner, but not graze one",
+    ),
+    28: (
+        "value out of range",
+        "HELP and the name of the command show what it takes",
+    ),
+    29: (
+        "restart file cannot be used",
+        "check the name of the file and whether it is complete: udec info FILE",
+    ),
+    30: (
+        "address outside the main array",
+        "addresses run from 1 to MFREE: DUMP 1 1 shows it",
+    ),
+    31: (
+        "file cannot be written",
+        "check that the folder can be written to, and its name",
+    ),
+    32: (
+        "zone or block has turned inside out",
+        "take a stiffer material, a smaller FRACTION or smaller loads",
+    ),
+    33: (
+        "zones do not fill the block",
+        "the zones must cover the block side to side, each side between two grid-points once",
+    ),
+    34: (
+        "constitutive law cannot be used",
+        "correct the file that --constitutive names",
+    ),
+    35: (
+        "constitutive law returned no finite number",
+        "look for what the law divides by or takes a root of, and at the properties of the material",
+    ),
+    36: (
+        "place or force beyond the reals",
+        "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
+    ),
+    37: (
+        "there is more energy than can be",
+        "take a smaller FRACTION, or FRACTION f SAFE",
+    ),
 }
-
-ADVICE = {
-    1: "take a larger --mtop, or leave --mtop off and choose a --build with wider integers",
-    2: "HELP lists the commands",
-    3: "put START before this line, or RESTART to go on from a saved state",
-    4: "material numbers run from 1 to 50",
-    5: "give at least three corners, clockwise",
-    6: "give the corners in clockwise order, along an outline that does not cross itself",
-    7: "HELP and the name of the command show its form",
-    8: "x and y of a point must stand on one line",
-    9: "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
-    10: "HELP and the name of the command list its parameters",
-    11: "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
-    12: "give the density of every material in use: PROPERTY MAT=1 DENS=...",
-    13: "take a smaller fcrit in DAMPING, or a smaller FRACTION",
-    14: "the shortest edge must hold two roundings, no overlap may exceed half of one: change d in ROUND",
-    15: "take a larger joint stiffness or a smaller FRACTION, or look for what drives the blocks together",
-    16: "take a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
-    17: "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
-    18: "make the first block large enough, then SPLIT it and DELETE what is not needed",
-    19: "leave at least two blocks that touch",
-    20: "look at the last RSET, and go back to what was saved before it",
-    21: "delete blocks before they are made fully-deformable",
-    22: "write GENERATE x1 x2 y1 y2 MANUAL GRIDPOINTS ... ZONES ..., or AUTOMATIC EDGE d",
-    23: 'AUTOMATIC zones need one package more: python -m pip install "pythoncdt>=2.0"',
-    24: "a block counts by its centroid: PRINT BLOCKS shows the centroids",
-    25: "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
-    26: "a zone needs its three grid-points on one line",
-    27: "move the line: it may pass exactly through a corner, but not graze one",
-    28: "HELP and the name of the command show what it takes",
-    29: "check the name of the file and whether it is complete: udec info FILE",
-    30: "addresses run from 1 to MFREE: DUMP 1 1 shows it",
-    31: "check that the folder can be written to, and its name",
-    32: "take a stiffer material, a smaller FRACTION or smaller loads",
-    33: "the zones must cover the block side to side, each side between two grid-points once",
-    34: "correct the file that --constitutive names",
-    35: "look for what the law divides by or takes a root of, and at the properties of the material",
-    36: "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
-    37: "take a smaller FRACTION, or FRACTION f SAFE",
-}
+MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
+ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 
 
 def spoilt(number: int, cycle: int) -> str:
