@@ -180,7 +180,6 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
 
     soft, joints: as in run_cycles.
     """
-    keeps = h.ci[g.LENER] != 0
     before = getr(h, ic, g.KCN)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, g.KCN, overlap)
@@ -190,12 +189,15 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     if joints is not None and has_law(h, joints, ic):
         by_springs = False
         idle = is_open(h, ic, overlap)
-    if keeps and by_springs and overlap <= zero:
+    if overlap <= zero and by_springs and h.ci[g.LENER] != 0:
         note_opening(h, ic)
     still = h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
         return  # an open contact looks at its neighbours only when the domain pass says so
-    was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
+    keeps = h.ci[g.LENER] != 0
+    was_x = was_y = zero
+    if keeps and before > zero:
+        was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
     xd, yd = cvel(h, ic, soft)
     if joints is not None and has_law(h, joints, ic):
         normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
@@ -229,8 +231,6 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
     if keeps and soft is not None and before > zero and fn > zero:
         note_corners(h, ic, fn, closing, overlap - before)
     if keeps and h.cr[g.BETA] != zero:
-        if before <= zero:
-            was_x, was_y = zero, zero
         held_fn = getr(h, ic, g.KCFN)
         stuck = abs(held) < h.cr[g.COH + m] + h.cr[g.AMU + m] * held_fn or held_fn == zero
         was = -(was_x * nx + was_y * ny), was_y * nx - was_x * ny if stuck else zero
