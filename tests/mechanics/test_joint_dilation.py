@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from udec_ia.kernels.body.law_call import Material
 from udec_ia.laws.joint_dilation import clj2
+from udec_ia.layout.material import Material
 
 KN, KS = 1e9, 5e8
 FRICTION, COHESION, RESIDUAL, REST = 0.8, 2e4, 0.5, 5e3

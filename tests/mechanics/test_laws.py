@@ -16,9 +16,9 @@ from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.kernels.body.law_call import ARRAYS, Material
 from udec_ia.kernels.body.laws import stress_increment
 from udec_ia.layout import offsets as g
+from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.commands import settings
 from udec_ia.ops.laws.law_file import _compiled, read_laws
 from udec_ia.ops.laws.laws import LawBook
@@ -358,9 +358,14 @@ def test_properties_for_laws_come_from_a_deck_and_go_to_the_law() -> None:
         "START\nPROP MAT=2 KN=1 KS=2 F=3 C=4 DI=5 RF=6 RC=7 CR=8 D=9 B=10 G=11\n"
         "PROP MAT=2 BF=14 BC=15 BT=16 BD=17 P1=-18 P2=19 P3=20 P4=21\n"
     )
-    row = [float(model.h.cr[i + 1]) for i in ARRAYS]
-    assert row[:11] == [*map(float, range(1, 12))]
-    assert row[13:] == [14.0, 15.0, 16.0, 17.0, -18.0, 19.0, 20.0, 21.0]
+    told = Material(*(float(model.h.cr[i + 1]) for i in ARRAYS))._asdict()
+    assert told == {
+        **{"kn": 1, "ks": 2, "friction": 3, "cohesion": 4, "dilation": 5, "residual_friction": 6},
+        **{"residual_cohesion": 7, "critical_slip": 8, "density": 9, "bulk": 10, "shear": 11},
+        **{"alam1": pytest.approx(10 + 44 / 3), "alam2": pytest.approx(10 - 22 / 3)},
+        **{"block_friction": 14, "block_cohesion": 15, "block_tension": 16, "block_dilation": 17},
+        **{"p1": -18, "p2": 19, "p3": 20, "p4": 21},
+    }
     with pytest.raises(UdecError, match="error 28"):
         model.property(2, block_tension=-1.0)
     with pytest.raises(UdecError, match="error 28"):

@@ -12,8 +12,8 @@ from math import cos, hypot, radians, sin, sqrt, tan
 import numpy as np
 import pytest
 
-from udec_ia.kernels.body.law_call import Material
 from udec_ia.laws.mohr_coulomb import cl2
+from udec_ia.layout.material import Material
 
 BULK, SHEAR = 2e9, 1e9
 C, P = 2e5, 5e5

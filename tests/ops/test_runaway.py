@@ -30,7 +30,7 @@ GRAVITY 0 -10
 FRAC {}
 """
 WARNING = re.compile(
-    r"time-step of \S+ s is (\S+) of the safe bound, which (\S+) sets.* FRACTION (\S+) is safe"
+    r"time-step of \S+ s is (\S+) of the safe bound, which (\S+) at \(\S+ \S+\) sets.* FRACTION (\S+) is safe"
 )
 
 
