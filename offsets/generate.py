@@ -53,35 +53,43 @@ def python_text(table: Table) -> str:
     return "\n".join(lines) + "\n"
 
 
+MATERIAL = '''"""{banner}"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypedDict
+
+from udec_ia.layout import offsets as g
+
+
+class Material(NamedTuple):
+    """What a law is told of the material: the numbers of PROPERTY. Frictions are tangents."""
+
+{fields}
+
+
+class Properties(TypedDict, total=False):
+    """What PROPERTY sets."""
+
+{given}
+
+
+# Where the fields of Material stand in the common block, for material 1.
+ARRAYS = (
+{arrays}
+)
+'''
+
+
 def material_text(table: Table) -> str:
     """The text of udec_ia/layout/material.py."""
-    arrays = {field.name: field for field in table.common}
-    lines = [f'"""{BANNER}"""', "", "from __future__ import annotations", ""]
-    lines += [
-        "from typing import NamedTuple, TypedDict",
-        "",
-        "from udec_ia.layout import offsets as g",
-        "",
-        "",
-    ]
-    lines += ["class Material(NamedTuple):"]
-    lines += [
-        '    """What a law is told of the material: the numbers of PROPERTY. Frictions are tangents."""',
-        "",
-    ]
-    for one in table.properties:
-        unit = arrays[one.array].unit
-        lines.append(f"    {one.name}: float  # {one.text}" + (f", {unit}" if unit != "-" else ""))
-    lines += ["", "", "class Properties(TypedDict, total=False):", '    """What PROPERTY sets."""', ""]
-    lines += [f"    {one.argument}: float | None" for one in table.properties if one.keyword]
-    lines += [
-        "",
-        "",
-        "# Where the fields of Material stand in the common block, for material 1.",
-        "ARRAYS = (",
-    ]
-    lines += [*(f"    g.{one.array}," for one in table.properties), ")"]
-    return "\n".join(lines) + "\n"
+    units = {field.name: f", {field.unit}" if field.unit != "-" else "" for field in table.common}
+    fields = [f"    {one.name}: float  # {one.text}{units[one.array]}" for one in table.properties]
+    given = [f"    {one.argument}: float | None" for one in table.properties if one.keyword]
+    arrays = [f"    g.{one.array}," for one in table.properties]
+    return MATERIAL.format(
+        banner=BANNER, fields="\n".join(fields), given="\n".join(given), arrays="\n".join(arrays)
+    )
 
 
 def scheme_text(table: Table, scheme: str) -> str:

@@ -1,10 +1,23 @@
-"""Tests that have kernels interpreted beside compiled ones, where there are both."""
+"""Kernels interpreted beside compiled ones, where there are both."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+from naive.relocate import differences, essence
 from numba.core import config
 
 from udec_ia.heap import plain
+from udec_ia.heap.interpreting import interpreted
+from udec_ia.model import Model
 
 both_ways = pytest.mark.skipif(bool(config.DISABLE_JIT) or plain.wanted(), reason="there is one way only")
+
+
+def unlike(play: Any, build: str, seed: int) -> list[str]:
+    """Fields in which the scene `seed`, played compiled and interpreted in every command, has other bits."""
+    compiled = essence(play(seed, Model(build), cycles=(2, 4)).model.array)
+    with interpreted():
+        found = essence(play(seed, Model(build), cycles=(2, 4)).model.array)
+    return differences(compiled, found)

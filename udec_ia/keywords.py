@@ -15,6 +15,7 @@ def takes(names: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """The method's **values are the keys of the TypedDict `names`, all optional. TypeError for any other."""
 
     def described(method: Callable[P, R]) -> Callable[P, R]:
+        """`method` with the names in its signature, and looked at when it is called."""
         plain = inspect.signature(method)
         fixed = [one for one in plain.parameters.values() if one.kind is not one.VAR_KEYWORD]
         named = [

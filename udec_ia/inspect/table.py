@@ -72,23 +72,16 @@ class _Reader:
             return self.listed(kind)
         if kind == "corner":
             return self.corners()
-        (link,) = self.names(kind, "next") or [""]
-        heads = [np.empty(0, np.int64), *self.heads(kind)]
-        return (
-            self.chains(kind, link, np.concatenate(heads))
-            if link
-            else self.sound(kind, np.concatenate(heads))
-        )
-
-    def names(self, kind: str, role: str) -> list[str]:
-        """The fields of `kind` that have a role."""
-        return [field.name for field in self.groups[kind].fields if field.role == role]
+        heads = np.concatenate([np.empty(0, np.int64), *self.heads(kind)])
+        links = [field.name for field in self.groups[kind].fields if field.role == "next"]
+        return self.chains(kind, links[0], heads) if links else self.sound(kind, heads)
 
     def heads(self, kind: str) -> Iterator[Any]:
         """Addresses of groups of `kind` that pointers of other groups lead to, of the first ones of lists."""
+        targets = (kind, "soft") if kind in SOFT.values() else (kind,)
         for group in self.groups.values():
             for field in group.fields:
-                if field.role not in ("extension", "first") or field.target not in (kind, "soft"):
+                if field.role not in ("extension", "first") or field.target not in targets:
                     continue
                 owners = self.addresses(group.name)
                 if field.target == "soft":  # the head code of the block says what it is
