@@ -88,5 +88,5 @@ def test_a_run_is_resumed_in_a_pass_of_the_cycle_only(wall: MainArray, tmp_path:
     array = wall.copy()
     array.h.ci[offsets.JPHASE] = 7
     path = save(array, tmp_path / "mad.h5", [])
-    with pytest.raises(UdecError, match="JPHASE is 7, not 0 to 3"):
+    with pytest.raises(UdecError, match="JPHASE is 7, not 0 to 4"):
         Model.restore(path)

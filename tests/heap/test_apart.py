@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from udec_ia.heap.accessors import Memory, iget, int64, puti
-from udec_ia.heap.apart import call_entry, entry
+from udec_ia.heap.apart import call_entry, entry, entry_if
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import apart, kernel
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME, Scheme
@@ -54,6 +54,20 @@ def test_there_is_one_for_each_word_scheme() -> None:
     again = [entry(count_down, MainArray(scheme).h, 0) for scheme in ALL_SCHEMES.values()]
     assert where == again
     assert len(set(where)) == (len(ALL_SCHEMES) if isinstance(where[0], int) else 1)
+
+
+def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not hasattr(calls, "whole"):
+        pytest.skip("nothing is compiled, or without our linking")
+    monkeypatch.setattr("udec_ia.heap.jit.CACHE", tmp_path)
+    seldom = apart(count_down.whole.py_func)
+    one, other = (MainArray(ALL_SCHEMES[build]).h for build in ("i32r64", "i32r32"))
+    assert entry_if(False, seldom, one, 0) == 0
+    where = entry_if(True, seldom, one, 0)
+    assert where == entry(seldom, one, 0) == entry_if(False, seldom, one, 0) != 0
+    assert entry_if(False, seldom, other, 0) == 0
 
 
 def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -153,7 +153,7 @@ def test_a_wrong_word_is_named(case: str, sound: MainArray, tmp_path: Path) -> N
         ("NBROKE", -5),
         ("NSOFT", 3),
         ("LSHORT", 2),
-        ("JPHASE", 4),
+        ("JPHASE", 5),
         ("NSPARE", -1),
     ],
 )

@@ -21,15 +21,33 @@ from udec_ia.heap.interpreting import mode
 from udec_ia.heap.views import Memory
 
 
+def _kinds(*given: Any) -> tuple[Any, ...]:
+    """The types of what is given, as numba names them."""
+    return tuple(typeof(one) for one in given)
+
+
+def _address(made: Any) -> int:
+    """Where the machine code of a compiled kernel is."""
+    return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
+
+
 def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """Where `kernel`, made by jit.apart, is for arguments of these types, compiled if it has not been."""
     if mode.python:
         return kernel
-    kinds = tuple(typeof(one) for one in (h, *others))
+    kinds = _kinds(h, *others)
     whole: Any = getattr(kernel, "whole", kernel)
     whole.compile(kinds)
-    made = whole.overloads[kinds]
-    return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
+    return _address(whole.overloads[kinds])
+
+
+def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
+    """The same if it is `wanted`, or compiled in this process; else 0."""
+    if mode.python or wanted:
+        return entry(kernel, h, *others)
+    whole: Any = getattr(kernel, "whole", kernel)
+    made = whole.overloads.get(_kinds(h, *others))
+    return _address(made) if made else 0
 
 
 def call_entry(where: Any, *args: Any) -> bool:

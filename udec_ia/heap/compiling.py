@@ -7,11 +7,13 @@ kernel was found neither in memory nor on disk, and at no other time.
 
 from __future__ import annotations
 
+import gc
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic
 
+RARELY = 100  # numba makes much that stays: looking for garbage among all of it takes a tenth of the time
 STRETCH = 2.0  # seconds without compiling after which it is told anew
 log = logging.getLogger("udec_ia")
 
@@ -30,9 +32,12 @@ def compiling() -> Iterator[None]:
     _Account.began = monotonic()
     if _Account.began - _Account.ended > STRETCH:
         log.warning("compiling once for this machine, up to a minute ...")
+    often = gc.get_threshold()
+    gc.set_threshold(*often[:2], RARELY)
     try:
         yield
     finally:
+        gc.set_threshold(*often)
         _Account.ended = monotonic()
         _Account.seconds += _Account.ended - _Account.began
         _Account.began = None

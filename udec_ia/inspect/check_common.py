@@ -12,7 +12,7 @@ from udec_ia.layout import offsets as g
 
 def check_common(array: MainArray) -> list[Violation]:
     """Size of the array, pass of the cycle, tolerances: violations of invariants 1 and 5."""
-    ci, cr, first, last = array.h.ci, array.h.cr, g.AT_BLOCKS, g.AT_BROKEN
+    ci, cr, first, last = array.h.ci, array.h.cr, g.AT_BLOCKS, g.AT_WAYS
     size, d = len(array.h.ia), cr[g.DTOL]
     tolerances = cr.copy()
     tolset(array.h._replace(cr=tolerances), d)

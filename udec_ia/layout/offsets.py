@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "e7b873ddcb7d545905ceaf1d690ea93e6323b98f8468021568ba2c5310a569e8"
+DIGEST = "cca0c854c67e61282f48906d6d5f988e41f8101988fbffc8fc0688f51bb8ede4"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -33,6 +33,7 @@ AT_BLOCKS = 0  # JPHASE: before the block pass, where a cycle begins
 AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass
 AT_BROKEN = 3  # JPHASE: before the domain pass that follows contacts which were broken
+AT_WAYS = 4  # JPHASE: before the ways of the corners of fast blocks are followed
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list

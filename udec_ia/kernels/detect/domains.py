@@ -29,7 +29,6 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import velocity_at
 from udec_ia.kernels.links.lists import is_corner
@@ -84,10 +83,11 @@ def look_ahead(h: Memory, idm: int) -> int:
 
 
 @kernel
-def accumulate(h: Memory, fastest: float, soft: Any, through: Any) -> bool:
-    """Sum the fictitious displacements of one step; True if a domain is to be updated.
+def accumulate(h: Memory, fastest: float, soft: Any) -> int:
+    """Sum the fictitious displacements of one step; returns what comes next, a value of JPHASE.
 
-    fastest: a bound on the velocity of any point of any block in this step. through: tunnelling.gone_through.
+    AT_WAYS if in a domain something has moved by more than ETOL in this step, else AT_DOMAINS if a domain is
+    to be updated, else AT_CONTACTS. fastest: a bound on the velocity of any point of any block in this step.
     """
     dt = h.cr[g.TDEL]
     bound = (fastest + fastest) * dt
@@ -97,7 +97,7 @@ def accumulate(h: Memory, fastest: float, soft: Any, through: Any) -> bool:
     if waiting + bound < h.cr[g.HTOL]:
         h.cr[g.ULOOK] = unseen
         h.cr[g.UPEND] = waiting + bound
-        return False
+        return int64(g.AT_CONTACTS)
     most = greatest = real(h, 0.0)
     idm = h.ci[g.IDPNT]
     ahead = idm
@@ -111,10 +111,10 @@ def accumulate(h: Memory, fastest: float, soft: Any, through: Any) -> bool:
             umax += moved
         putr(h, idm, g.KUMAX, umax)
         most, greatest = max(most, umax), max(greatest, moved)
-        if moved > h.cr[g.ETOL] and h.ci[g.NERR] == 0:
-            call_entry(through, h, idm)
         idm = iget(h, idm, g.KD)
     h.cr[g.UPEND] = real(h, 0.0)
     to_update = bool(most > h.cr[g.ETOL])
     h.cr[g.ULOOK] = h.cr[g.HTOL] if to_update else unseen + waiting + greatest
-    return to_update
+    if greatest > h.cr[g.ETOL]:
+        return int64(g.AT_WAYS)
+    return int64(g.AT_DOMAINS) if to_update else int64(g.AT_CONTACTS)

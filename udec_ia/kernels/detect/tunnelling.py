@@ -32,6 +32,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.detect.depth import depth_in
+from udec_ia.kernels.detect.domains import relative_velocity
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, tangents
 from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
@@ -249,10 +250,17 @@ def _corner_through(h: Memory, idm: int) -> int:
 
 
 @apart
-def gone_through(h: Memory, idm: int) -> bool:
-    """True, and error 15, if a corner in domain `idm` has gone into another block in this step."""
-    ip = _corner_through(h, idm)
-    if ip != 0:
-        h.ci[g.NERR] = OVERLAP_TOO_GREAT
-        h.ci[g.IERAD] = ip
-    return bool(ip != 0)
+def gone_through(h: Memory) -> bool:
+    """True, and error 15, if in this step a corner has gone into another block of its domain.
+
+    Domains in which nothing has moved by more than ETOL are passed over; so are all after an error.
+    """
+    idm = h.ci[g.IDPNT]
+    while idm != 0 and h.ci[g.NERR] == 0:
+        if relative_velocity(h, idm, True) * h.cr[g.TDEL] > h.cr[g.ETOL]:
+            ip = _corner_through(h, idm)
+            if ip != 0:
+                h.ci[g.NERR] = OVERLAP_TOO_GREAT
+                h.ci[g.IERAD] = ip
+        idm = iget(h, idm, g.KD)
+    return bool(h.ci[g.NERR] != 0)

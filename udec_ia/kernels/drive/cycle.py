@@ -1,7 +1,7 @@
 """The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts.
 
-JPHASE says which pass comes next, so that a cycle that had to stop because an update ran out of memory
-can be taken up again at that very point and goes on as if it had not stopped.
+JPHASE says which pass comes next, so that a cycle that had to stop, because an update ran out of memory or
+a pass is not compiled yet, can be taken up again at that very point and goes on as if it had not stopped.
 """
 
 from __future__ import annotations
@@ -40,7 +40,12 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             fastest = move_all(h, soft, laws)
             if keeps:
                 call_entry(passes[STRESSES], h)
-            h.ci[g.JPHASE] = g.AT_DOMAINS if accumulate(h, fastest, soft, passes[THROUGH]) else g.AT_CONTACTS
+            h.ci[g.JPHASE] = accumulate(h, fastest, soft)
+        if h.ci[g.JPHASE] == g.AT_WAYS:
+            if passes[THROUGH] == 0:
+                return done  # it is not compiled before a step needs it
+            call_entry(passes[THROUGH], h)
+            h.ci[g.JPHASE] = g.AT_DOMAINS
         if h.ci[g.JPHASE] == g.AT_DOMAINS:
             if not call_entry(passes[UPDATE], h, int64(0)):
                 return done

@@ -14,30 +14,33 @@ from udec_ia.heap.jit import kernel
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
-# Offsets of all reals of a kind of group, from the field table.
-REALS = {
-    group.name: tuple(getattr(g, field.name) for field in group.fields if field.real)
+# Offsets of all reals of a kind of group, from the field table, and how many; 0 fills tuples of one length.
+LISTED = {
+    group.name: [getattr(g, field.name) for field in group.fields if field.real]
     for group in read_table().groups
 }
+LONGEST = max(len(fields) for fields in LISTED.values())
+REALS = {name: ((*fields, *(LONGEST - len(fields)) * [HEAD]), len(fields)) for name, fields in LISTED.items()}
 OF_BLOCK, OF_CORNER, OF_CONTACT = REALS["block"], REALS["corner"], REALS["contact"]
 OF_SDEF, OF_FDEF, OF_POINT, OF_ZONE = REALS["sdef"], REALS["fdef"], REALS["gridpoint"], REALS["zone"]
 
 
 @kernel
-def _finite(h: Memory, iad: int, fields: tuple[Offset, ...]) -> bool:
+def _finite(h: Memory, iad: int, reals: tuple[tuple[Offset, ...], int]) -> bool:
     """True if those fields of the group at `iad` are finite."""
+    fields, n = reals
     finite = True
-    for k in fields:
-        finite = finite and bool(np.isfinite(getr(h, iad, k)))
+    for i in range(n):
+        finite = finite and bool(np.isfinite(getr(h, iad, fields[i])))
     return finite
 
 
 @kernel
-def _all_finite(h: Memory, iad: int, following: Offset, fields: tuple[Offset, ...]) -> bool:
+def _all_finite(h: Memory, iad: int, following: Offset, reals: tuple[tuple[Offset, ...], int]) -> bool:
     """True if those fields are finite in all groups of the list that begins at `iad`, or of the ring."""
     first = iad
     while iad != 0:
-        if not _finite(h, iad, fields):
+        if not _finite(h, iad, reals):
             return False
         iad = iget(h, iad, following)
         if iad == first:

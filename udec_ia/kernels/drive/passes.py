@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.apart import entry
+from udec_ia.heap.apart import entry, entry_if
 from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
@@ -25,12 +25,12 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
     """Addresses in the order above, 0 for what a run does not need.
 
     soft: as in run_cycles. recorded: what `record` is called with beside `h`, () if nothing is recorded.
-    ratio: as in run_watched.
+    ratio: as in run_watched. A run of slow blocks does not need THROUGH; one that does stops before it.
     """
     keeps = h.ci[g.LENER] != 0
     return (
         updating(h),
-        entry(gone_through, h, 0),
+        entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
         entry(apply_bounds, h) if soft is not None else 0,
         entry(note_forces, h) if keeps else 0,
         entry(note_stresses, h) if keeps else 0,

@@ -117,7 +117,7 @@ def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> N
         puti(h, ib, g.KBEX, find(h, g.NVSD if kind == g.MSDEF else g.NVFD))
         h.ci[g.NSOFT] += 1
         _put_stress(h, ib, stress)
-    share_mass(h, ib)
+        share_mass(h, ib)
 
 
 def _put_stress(h: Memory, ib: int, stress: Stress) -> None:

@@ -1,0 +1,66 @@
+"""A cycle that stops, because the search for what has gone through is not compiled, goes on all the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from udec_ia import Model
+from udec_ia.heap.accessors import putr
+from udec_ia.heap.apart import entry
+from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.kernels.detect.tunnelling import gone_through
+from udec_ia.kernels.drive import passes
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run import watch
+
+BUILDS = list(ALL_SCHEMES)
+
+
+def thrown(build: str, steps: float) -> Model:
+    """Two blocks on a fixed one; the upper one moves along it by so many ETOL a step."""
+    m = Model(build=build)
+    m.property(1, density=2000, kn=1e7, ks=1e7, friction=0.1)
+    m.gravity(0, -10)
+    m.block(0, 0, 0, 3, 8, 3, 8, 0)
+    m.split(-1, 1, 9, 1)
+    m.split(-1, 2, 9, 2)
+    m.fix(0, 8, 0, 1)
+    m.cycle(5)
+    top = m.table("block")
+    ib = int(top["address"][top["KY"] > 2][0])
+    putr(m.h, ib, g.KXD, m.h.cr.dtype.type(steps * m.h.cr[g.ETOL] / m.h.cr[g.TDEL]))
+    return m
+
+
+def runs_of(monkeypatch: pytest.MonkeyPatch, found: bool) -> list[int]:
+    """The values of JPHASE with which pieces of runs begin. found: whether all have the search at hand."""
+    phases: list[int] = []
+    find = passes.passes
+
+    def told(h, soft, recorded, ratio):
+        phases.append(int(h.ci[g.JPHASE]))
+        these = list(find(h, soft, recorded, ratio))
+        wanted = found or phases[-1] == g.AT_WAYS
+        these[passes.THROUGH] = entry(gone_through, h) if wanted else 0
+        return tuple(these)
+
+    monkeypatch.setattr(watch, "passes", told)
+    return phases
+
+
+@pytest.mark.parametrize("build", BUILDS)
+@pytest.mark.parametrize("steps", [0.2, 3.0])
+def test_a_fast_step_stops_before_the_search_and_goes_on(
+    build: str, steps: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A slow one does not."""
+    words = []
+    for found in (True, False):
+        m = thrown(build, steps)
+        phases = runs_of(monkeypatch, found)
+        m.cycle(4)
+        monkeypatch.undo()
+        assert (g.AT_WAYS in phases) == (steps > 1 and not found)
+        assert m.check() == []
+        words.append((m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes(), m.h.cd.tobytes()))
+    assert words[0] == words[1]
