@@ -1,14 +1,9 @@
 """The contact pass: forces from relative displacements (FORD, CVEL, PUTFCE); report 2.6.
 
-Constitutive number 1: a linear spring normal to the contact, one along it, and Coulomb friction:
-
-    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0
-    dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
-
-The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
-apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
-Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
-stored forces; it vanishes along a contact that slips and in an open one.
+Each contact in its turn: its geometry, which may give it another code or place, or end it; the relative
+velocity of its two blocks; its law, number 1 (springs.py) or one of the user's (joint_law.py); and what the
+blocks feel. An account of the energy is told what the contact feels while it still holds what it felt before
+(energy/contacts.py).
 """
 
 from __future__ import annotations
@@ -17,12 +12,13 @@ from typing import Any
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
+from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
+from udec_ia.kernels.contact.springs import by_springs
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
-from udec_ia.kernels.energy.works import note_corners, note_damping, note_law_damping, note_opening
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
 from udec_ia.kernels.links.lists import is_contact
 from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
@@ -150,10 +146,14 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
     vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
     vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
-    xd, yd = vxj - vxi, vyj - vyi
+    return vxj - vxi, vyj - vyi
+
+
+@inlined
+def put_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
+    """Relative velocity of contact `ic` := (xd, yd)."""
     putr(h, ic, g.KXDC, xd)
     putr(h, ic, g.KYDC, yd)
-    return xd, yd
 
 
 @inlined
@@ -175,69 +175,48 @@ def push(
 
 
 @inlined
-def ford(h: Memory, ic: int, soft: Any, joints: Any) -> None:
+def opens(h: Memory, ic: int, account: Any) -> None:
+    """Contact `ic` overlaps no more, and loses what its springs held. account: as in ford."""
+    if account != 0 and getr(h, ic, g.KCFN) != 0:
+        zero = real(h, 0.0)
+        none = zero, zero
+        call_entry(account, h, ic, False, zero, none, none, none, none)
+    no_force(h, ic)
+
+
+@inlined
+def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any) -> None:
     """Force and displacement calculation for contact `ic` (FORD), which may vanish in it.
 
-    soft, joints: as in run_cycles.
+    Geometry, motion, law, and what the blocks feel. soft, joints: as in run_cycles. account: where
+    energy.contacts.note_contact is, 0 if no account is kept.
     """
-    before = getr(h, ic, g.KCN)
+    before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, g.KCN, overlap)
-    zero = real(h, 0.0)
-    idle = overlap <= zero or getr(h, ic, g.KCFN) == zero
-    by_springs = True
-    if joints is not None and has_law(h, joints, ic):
-        by_springs = False
-        idle = is_open(h, ic, overlap)
-    if overlap <= zero and by_springs and h.ci[g.LENER] != 0:
-        note_opening(h, ic)
+    own = joints is not None and has_law(h, joints, ic)
+    if not own and overlap <= zero:
+        opens(h, ic, account)
+    idle = is_open(h, ic, overlap) if own else getr(h, ic, g.KCFN) == zero
     still = h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= zero
     if idle and not still and drop(h, ic, nx, ny, overlap):
         return  # an open contact looks at its neighbours only when the domain pass says so
-    keeps = h.ci[g.LENER] != 0
-    was_x = was_y = zero
-    if keeps and before > zero:
-        was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
     xd, yd = cvel(h, ic, soft)
-    if joints is not None and has_law(h, joints, ic):
-        normal, shear = by_law(h, joints, ic, before, yd * nx - xd * ny)
-        if keeps:
-            note_law_damping(h, ic, normal, shear, -(xd * nx + yd * ny), yd * nx - xd * ny)
-        push(h, ic, nx, ny, normal, shear, overlap, soft)
+    if not own and overlap <= zero:
+        put_velocity(h, ic, xd, yd)
         return
-    if overlap <= zero:
-        no_force(h, ic)
-        return
-    m = iget(h, ic, g.KCM) - 1
-    kn, ks, dt = h.cr[g.AKN + m], h.cr[g.AKS + m], h.cr[g.TDEL]
-    closing = -(xd * nx + yd * ny)
-    sliding = yd * nx - xd * ny
-    dus = sliding * dt
-    fn = getr(h, ic, g.KCFN) + kn * (overlap - max(before, zero))
-    held = getr(h, ic, g.KCFS)
-    fs = held + ks * dus
-    putr(h, ic, g.KCS, getr(h, ic, g.KCS) + dus)
-    if fn <= zero:
-        if keeps:
-            h.cd[g.WFRIC] += held * fs / (ks + ks)
-        fn, fs = zero, zero
-    most = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
-    dashpot = h.cr[g.BETA] * ks * sliding
-    if abs(fs) > most:
-        slip = (abs(fs) - most) / ks
-        h.cd[g.WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
-        fs = most if fs > zero else -most
-        dashpot = zero
-    if keeps and soft is not None and before > zero and fn > zero:
-        note_corners(h, ic, fn, closing, overlap - before)
-    if keeps and h.cr[g.BETA] != zero:
-        held_fn = getr(h, ic, g.KCFN)
-        stuck = abs(held) < h.cr[g.COH + m] + h.cr[g.AMU + m] * held_fn or held_fn == zero
-        was = -(was_x * nx + was_y * ny), was_y * nx - was_x * ny if stuck else zero
-        note_damping(h, kn, ks, was, (closing, sliding), sliding if dashpot != zero else zero)
+    closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
+    if own:
+        fn, fs, us, dn, ds = by_law(h, joints, ic, before, sliding)
+    else:
+        fn, fs, us, dn, ds = by_springs(h, ic, before, closing, sliding)
+    if account != 0:
+        call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
+    put_velocity(h, ic, xd, yd)
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
-    push(h, ic, nx, ny, fn + h.cr[g.BETA] * kn * closing, fs + dashpot, overlap, soft)
+    putr(h, ic, g.KCS, us)
+    push(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft)
 
 
 @inlined
@@ -248,7 +227,7 @@ def look_ahead(h: Memory, ic: int) -> int:
     fetch(h, ic, g.NVCN, LEAD)
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
-    if getr(h, ic, g.KCFN) == 0:  # it may look at the first words of its neighbours
+    if h.cr[g.ULOOK] >= h.cr[g.HTOL] and getr(h, ic, g.KCFN) == 0:  # it looks at its neighbours' first words
         fetch(h, iget(h, ic, g.KL1), g.NVDO)
         fetch(h, iget(h, ic, g.KL2), g.NVDO)
         fetch(h, iget(h, ic, g.KLB1), g.NVDO)
@@ -257,7 +236,7 @@ def look_ahead(h: Memory, ic: int) -> int:
 
 
 @kernel
-def ford_all(h: Memory, soft: Any, joints: Any) -> None:
+def ford_all(h: Memory, soft: Any, joints: Any, account: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15."""
     ic = h.ci[g.ICPNT]
     ahead = ic
@@ -267,7 +246,7 @@ def ford_all(h: Memory, soft: Any, joints: Any) -> None:
         ahead = look_ahead(h, ahead)  # not `ic`, which may vanish
         following = iget(h, ic, g.KC)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            ford(h, ic, soft, joints)
+            ford(h, ic, soft, joints, account)
         ic = following
 
 

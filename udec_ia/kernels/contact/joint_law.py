@@ -6,11 +6,10 @@ holds its blocks apart. It closes when blocks overlap, and it bears no tension.
 
 from __future__ import annotations
 
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import inlined
 from udec_ia.kernels.body.law_call import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.kernels.body.laws import failed
-from udec_ia.kernels.map.bridge import no_force
 from udec_ia.layout import offsets as g
 
 
@@ -43,10 +42,11 @@ def is_open(h: Memory, ic: int, overlap: float) -> bool:
 
 
 @inlined
-def by_law(h: Memory, laws: Laws, ic: int, before: float, sliding: float) -> tuple[float, float]:
-    """Forces of contact `ic` after one step, and those that its blocks feel: normal, shear.
+def by_law(
+    h: Memory, laws: Laws, ic: int, before: float, sliding: float
+) -> tuple[float, float, float, float, float]:
+    """As by_springs, by the law of the user's that contact `ic` follows.
 
-    before: the overlap before the step; that after it is in the contact. sliding: relative shear velocity.
     Stiffness damping is BETA times the rate of the forces. WFRIC grows by the work that the springs KN and KS
     have not kept.
     """
@@ -54,8 +54,7 @@ def by_law(h: Memory, laws: Laws, ic: int, before: float, sliding: float) -> tup
     fn, fs, overlap, us = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), getr(h, ic, g.KCN), getr(h, ic, g.KCS)
     if fn == zero:
         if overlap <= zero:
-            no_force(h, ic)
-            return zero, zero
+            return zero, zero, zero, zero, zero
         before = max(before, zero)
     dt = h.cr[g.TDEL]
     dun, dus = overlap - before, sliding * dt
@@ -63,14 +62,10 @@ def by_law(h: Memory, laws: Laws, ic: int, before: float, sliding: float) -> tup
     m = iget(h, ic, g.KCM) - 1
     if fn + dfn <= zero:
         h.cd[g.WFRIC] += fs * (dus + fs / h.cr[g.AKS + m]) * half
-        no_force(h, ic)
-        return zero, zero
+        return zero, zero, zero, zero, zero
     lost = (fn + dfn * half) * (dun - dfn / h.cr[g.AKN + m]) + (fs + dfs * half) * (
         dus - dfs / h.cr[g.AKS + m]
     )
     h.cd[g.WFRIC] += lost
-    putr(h, ic, g.KCFN, fn + dfn)
-    putr(h, ic, g.KCFS, fs + dfs)
-    putr(h, ic, g.KCS, us + dus)
     rate = h.cr[g.BETA] / dt
-    return fn + dfn + rate * dfn, fs + dfs + rate * dfs
+    return fn + dfn, fs + dfs, us + dus, rate * dfn, rate * dfs

@@ -15,7 +15,7 @@ from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.drive.passes import BOUNDS, FORCES, STRESSES, THROUGH, UPDATE
+from udec_ia.kernels.drive.passes import BOUNDS, CONTACT, FORCES, STRESSES, THROUGH, UPDATE
 from udec_ia.layout import offsets as g
 
 
@@ -52,7 +52,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             h.ci[g.JPHASE] = g.AT_CONTACTS
         if h.ci[g.JPHASE] == g.AT_CONTACTS:
             broken = h.ci[g.NBROKE]
-            ford_all(h, soft, joints)
+            ford_all(h, soft, joints, passes[CONTACT])
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are looked through at once
             if not call_entry(passes[UPDATE], h, int64(0)):

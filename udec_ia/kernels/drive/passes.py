@@ -15,10 +15,11 @@ from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.recording import record
 from udec_ia.kernels.drive.unbalanced import at_rest
+from udec_ia.kernels.energy.contacts import note_contact
 from udec_ia.kernels.energy.works import note_forces, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, FORCES, STRESSES, RECORD, REST = range(7)
+UPDATE, THROUGH, BOUNDS, FORCES, STRESSES, CONTACT, RECORD, REST = range(8)
 
 
 def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tuple[Any, ...]:
@@ -28,12 +29,15 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
     ratio: as in run_watched. A run of slow blocks does not need THROUGH; one that does stops before it.
     """
     keeps = h.ci[g.LENER] != 0
+    none = h.cr.dtype.type(0)
+    pair = none, none
     return (
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
         entry(apply_bounds, h) if soft is not None else 0,
         entry(note_forces, h) if keeps else 0,
         entry(note_stresses, h) if keeps else 0,
+        entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
         entry(record, h, *recorded) if recorded else 0,
         entry(at_rest, h, ratio) if ratio >= 0 else 0,
     )

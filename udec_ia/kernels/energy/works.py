@@ -17,8 +17,8 @@ block deforms, its corners are rounded anew, by which overlaps change although n
 motion of a simply-deformable block (2.6) take its moment of inertia and Euler tensor as constant, although
 they change.
 
-Two passes over the model stand before and after the block pass, and are compiled once ENERGY ON is given
-(drive/passes.py). The contact pass notes its own.
+Two passes over the model stand before and after the block pass, and the contact pass tells of each contact
+(contacts.py); all are compiled once ENERGY ON is given (drive/passes.py).
 """
 
 from __future__ import annotations
@@ -203,44 +203,3 @@ def point_power(h: Memory, ib: int) -> float:
         total -= getr(h, ig, g.KGFX) * getr(h, ig, g.KXDG) + getr(h, ig, g.KGFY) * getr(h, ig, g.KYDG)
         ig = iget(h, ig, g.KG)
     return total
-
-
-@kernel
-def note_opening(h: Memory, ic: int) -> None:
-    """What the shear spring of contact `ic` held, whose hold is broken because it opens."""
-    fs = getr(h, ic, g.KCFS)
-    ks = h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
-    h.cd[g.WFRIC] += fs * fs / (ks + ks)
-
-
-@inlined
-def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) -> None:
-    """Work against the normal force of contact `ic`, which becomes `fn`, that its overlap does not show.
-
-    closing: velocity at which the blocks approach. grown: what the overlap has grown by. Rigid blocks keep
-    their shape: what differs there is an error of the step.
-    """
-    if iget(h, iget(h, ic, g.KB1), HEAD) != g.MRIG or iget(h, iget(h, ic, g.KB2), HEAD) != g.MRIG:
-        mean = (getr(h, ic, g.KCFN) + fn) * real(h, 0.5)
-        h.cd[g.WSHAPE] += mean * (closing * h.cr[g.TDEL] - grown)
-
-
-@inlined
-def note_damping(
-    h: Memory, kn: float, ks: float, before: tuple[float, float], now: tuple[float, float], shear: float
-) -> None:
-    """What the dashpots of a contact take in this step.
-
-    before: closing and sliding velocity that they answered to half a step ago. now: closing and sliding
-    velocity now. shear: sliding velocity that the dashpot answers to now, 0 if the contact slips.
-    """
-    closing, sliding = now
-    done = kn * closing * (before[0] + closing) + ks * sliding * (before[1] + shear)
-    h.cd[g.WSTIF] += h.cr[g.BETA] * h.cr[g.TDEL] * real(h, 0.5) * done
-
-
-@inlined
-def note_law_damping(h: Memory, ic: int, normal: float, shear: float, closing: float, sliding: float) -> None:
-    """What contact `ic`, which follows a law, takes by what its blocks feel beyond the forces it holds."""
-    done = (normal - getr(h, ic, g.KCFN)) * closing + (shear - getr(h, ic, g.KCFS)) * sliding
-    h.cd[g.WSTIF] += done * h.cr[g.TDEL]

@@ -1,0 +1,45 @@
+"""Constitutive number 1: a spring normal to the contact, one along it, and Coulomb friction; report 2.6.
+
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0
+    dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
+
+The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
+apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
+Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
+stored forces; it vanishes along a contact that slips and in an open one.
+
+A law is told the contact, which holds its overlap and, still, the forces and the shear displacement before
+the step, and returns those after it and the forces of the dashpots.
+"""
+
+from __future__ import annotations
+
+from udec_ia.heap.accessors import Memory, getr, iget, real
+from udec_ia.heap.jit import inlined
+from udec_ia.layout import offsets as g
+
+
+@inlined
+def by_springs(
+    h: Memory, ic: int, before: float, closing: float, sliding: float
+) -> tuple[float, float, float, float, float]:
+    """Forces of contact `ic`, which overlaps, after one step, its shear displacement, and of its dashpots.
+
+    Normal and shear force; displacement; normal and shear force. before: the overlap before the step; that
+    after it is in the contact. closing, sliding: relative velocities along the normal and across.
+    """
+    zero, m = real(h, 0.0), iget(h, ic, g.KCM) - 1
+    kn, ks = h.cr[g.AKN + m], h.cr[g.AKS + m]
+    held, dus = getr(h, ic, g.KCFS), sliding * h.cr[g.TDEL]
+    fn = getr(h, ic, g.KCFN) + kn * (getr(h, ic, g.KCN) - max(before, zero))
+    fs = held + ks * dus
+    if fn <= zero:
+        fn, fs = zero, zero
+    most = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
+    dashpot = h.cr[g.BETA] * ks * sliding
+    if abs(fs) > most:
+        slip = (abs(fs) - most) / ks
+        h.cd[g.WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
+        fs = most if fs > zero else -most
+        dashpot = zero
+    return fn, fs, getr(h, ic, g.KCS) + dus, h.cr[g.BETA] * kn * closing, dashpot
