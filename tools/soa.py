@@ -18,7 +18,7 @@ from numba import njit
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import loop
-from udec_ia.kernels.contact.ford import TURNED
+from udec_ia.kernels.contact.changes import TURNED
 from udec_ia.layout import offsets as g
 
 # Flags of the program's kernels; no counting of references to arrays, which its kernels do not have either.

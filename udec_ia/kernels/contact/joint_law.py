@@ -1,4 +1,4 @@
-"""Contacts that follow a law of the user's (CLJ2 to CLJ5; Appendix IV-4); number 1 is in ford.py.
+"""Contacts that follow a law of the user's (CLJ2 to CLJ5; Appendix IV-4); number 1 is in springs.py.
 
 Such a contact is closed as long as its normal force is positive, whatever its overlap: a joint that dilates
 holds its blocks apart. It closes when blocks overlap, and it bears no tension.

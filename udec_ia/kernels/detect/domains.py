@@ -16,9 +16,9 @@ While everything is slow the pass need not run at all: no relative velocity exce
 block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
 hundredth of ETOL. A scene at rest pays nothing for its domains.
 
-An open contact looks at its neighbours (ford.py) in a cycle in which a domain is going to be updated, or the
-greatest displacement within any domain, summed since they last looked (ULOOK), has reached HTOL. What flies
-together pays nothing for that.
+An open contact looks at its neighbours (changes.py) in a cycle in which a domain is going to be updated, or
+the greatest displacement within any domain, summed since they last looked (ULOOK), has reached HTOL. What
+flies together pays nothing for that.
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ no contact: none is formed there, and one that stands there is given up, which m
 
 What comes into a gap slowly has a contact with one of the two blocks, for a gap is narrower than 2 ATOL. In
 the lists it stands beside the contact, which looks at these neighbours each time something in a domain has
-moved by HTOL, a 280th of the rounding length (ford.py, domains.py). What may have come there in one step is
-looked for by the update (update.py).
+moved by HTOL, a 280th of the rounding length (changes.py, domains.py). What may have come there in one step
+is looked for by the update (update.py).
 """
 
 from __future__ import annotations

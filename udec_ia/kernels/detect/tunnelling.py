@@ -13,7 +13,7 @@ The argument why two blocks never overlap by more than CTOL without a contact or
     deeper in another block of the domain than CTOL, nor have come in and gone out again when it was deeper
     than FTOL; and no edge may lie deeper than CTOL in another block. That is what this file does.
 5.  Contacts part domains like walls. One that is open is no wall any more as soon as another block comes
-    between the two (gaps.py); one that is closed ends the run if a tip is squeezed through it (ford.py).
+    between the two (gaps.py); one that is closed ends the run if a tip is squeezed through it (changes.py).
 6.  Commands that change outlines flag all domains, which are updated before the next cycle; what is too
     deep then is refused, and nothing is changed (ops/commands/rounding.py).
 

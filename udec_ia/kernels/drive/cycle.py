@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from udec_ia.heap.accessors import Memory, int64
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
@@ -15,7 +17,7 @@ from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.drive.passes import BOUNDS, CONTACT, FORCES, STRESSES, THROUGH, UPDATE
+from udec_ia.kernels.drive.passes import BOUNDS, CHANGES, CONTACT, FORCES, STRESSES, THROUGH, UPDATE
 from udec_ia.layout import offsets as g
 
 
@@ -28,6 +30,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     drive.passes.
     """
     keeps = h.ci[g.LENER] != 0
+    waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
     while done < n:
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
@@ -52,7 +55,9 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             h.ci[g.JPHASE] = g.AT_CONTACTS
         if h.ci[g.JPHASE] == g.AT_CONTACTS:
             broken = h.ci[g.NBROKE]
-            ford_all(h, soft, joints, passes[CONTACT])
+            if len(waiting) < h.ci[g.NCON]:
+                waiting = np.empty(2 * h.ci[g.NCON], np.int64)
+            ford_all(h, soft, joints, passes[CHANGES], passes[CONTACT], waiting)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are looked through at once
             if not call_entry(passes[UPDATE], h, int64(0)):

@@ -19,7 +19,7 @@ from udec_ia.heap.apart import call_entry, entry
 from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.masses import share_extension
-from udec_ia.kernels.contact.ford import restart, settle_all
+from udec_ia.kernels.contact.changes import restart, settle_all
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding

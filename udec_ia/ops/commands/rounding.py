@@ -5,7 +5,7 @@ from __future__ import annotations
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.contact.ford import settle_all
+from udec_ia.kernels.contact.changes import settle_all
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
 from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT

@@ -1,0 +1,87 @@
+"""What a contact touches as its force is calculated: itself, and what its blocks feel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import scenes
+import soft_scenes
+from interpreted import both_ways
+
+from udec_ia import Model
+from udec_ia.heap.accessors import int64, size_of
+from udec_ia.heap.interpreting import interpreted, observe
+from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.kernels.contact.ford import ford
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
+
+pytestmark = both_ways
+
+SUMS = {  # what blocks feel
+    "block": ("KBFX", "KBFY", "KBFT"),
+    "gridpoint": ("KGFX", "KGFY"),
+    "sdef": ("KSA11", "KSA12", "KSA21", "KSA22"),
+}
+NEVER_READ = {"contact", "domain"}  # but for the contact's own words
+SEEDS = range(4)
+
+
+class Touched:
+    """The groups of a model by their words, and what has been done to which."""
+
+    def __init__(self, model: Model) -> None:
+        h = self.h = model.h
+        self.ratio = h.ra.itemsize // h.ia.itemsize
+        self.at = np.full(len(h.ia) + 1, -1)
+        self.groups: list[tuple[str, int]] = []
+        for group in read_table().groups:
+            size = size_of(h, getattr(g, group.size_name))
+            for iad in model.table(group.name)["address"].tolist():
+                self.at[iad : iad + size] = len(self.groups)
+                self.groups.append((group.name, iad))
+        self.begin()
+
+    def begin(self) -> None:
+        """Nothing has been done yet."""
+        self.read: set[tuple[str, int]] = set()
+        self.written: set[tuple[str, int]] = set()
+        self.common: set[tuple[str, int]] = set()
+
+    def tell(self, name: str, where: Any, value: Any, written: bool) -> None:
+        """Note the group; a sum of forces is not noted."""
+        if name.startswith("c"):
+            if written:
+                self.common.add((name, int(where)))
+            return
+        word = int(where) + 1 if name == "ia" else int(where) * self.ratio + 1
+        kind, iad = self.groups[self.at[word]]
+        sums = [getattr(g, field)[self.ratio >> 1] for field in SUMS.get(kind, ())]
+        start = (iad - 1) // self.ratio - 1
+        if name == "ra" and int(where) - start in sums:
+            return
+        (self.written if written else self.read).add((kind, iad))
+
+
+@pytest.mark.parametrize("module", [scenes, soft_scenes], ids=["rigid", "soft"])
+@pytest.mark.parametrize("build", ALL_SCHEMES)
+def test_a_force_needs_no_other_contact(build: str, module: Any) -> None:
+    """Nor a domain; one that has to wait leaves no more than where it is."""
+    found = []
+    for seed in SEEDS:
+        model = module.play(seed, Model(build), cycles=(2, 8)).model
+        touched = Touched(model)
+        contacts = model.table("contact")
+        for ic in contacts["address"][contacts["KCCOD"] != g.VIRTUAL].tolist():
+            touched.begin()
+            with interpreted():
+                waits = ford(observe(model.h, touched.tell), int64(ic), True, None, 0, False)
+            assert waits in (0, ic)
+            found.append(waits != 0)
+            assert touched.written <= {("contact", ic)}
+            assert {one for one in touched.read if one[0] in NEVER_READ} <= {("contact", ic)}
+            allowed = {("ci", g.NERR), ("ci", g.IERAD), ("cd", g.WFRIC)}
+            assert touched.common <= (set() if waits else allowed)
+    assert {*found} == {True, False}

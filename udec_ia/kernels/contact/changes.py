@@ -1,0 +1,201 @@
+"""What the contact pass changes in the map: contacts get another code or place, and contacts go.
+
+The force of a contact needs the contact alone, its two blocks and its material. Whatever looks at its
+neighbours, or changes the map, waits until all others have their forces (ford.py): then the contacts that had
+to wait are brought up to date here, one after the other in list order, and get their forces at last. So what
+the others feel does not depend on the order in which they are visited.
+
+A contact waits if it is no longer where its code and its corners say, if it is open and has to look at its
+neighbours (domains.py) or is open too far, if it touches without a force, or if it overlaps so much that its
+tip may have been squeezed through.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.apart import call_entry
+from udec_ia.heap.jit import apart, inlined, kernel
+from udec_ia.kernels.contact.joint_law import is_open
+from udec_ia.kernels.detect.depth import do_not_meet
+from udec_ia.kernels.detect.gaps import gap_taken
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
+from udec_ia.kernels.links.lists import is_contact
+from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.map.reclass import settle
+from udec_ia.kernels.map.segments import ahead_by, same_segment
+from udec_ia.layout import offsets as g
+
+TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
+
+
+@kernel
+def restart(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Settle contact `ic` in a changed geometry, its forces as they are; normal (x, y) and overlap."""
+    nx, ny, overlap = settle(h, ic)
+    putr(h, ic, g.KCN, overlap)
+    return nx, ny, overlap
+
+
+@inlined
+def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
+    """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
+    if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
+        return False
+    dx, dy = getr(h, jc, g.KXC) - getr(h, ic, g.KXC), getr(h, jc, g.KYC) - getr(h, ic, g.KYC)
+    return dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL] and iget(h, jc, g.KCCOD) != g.VIRTUAL
+
+
+@inlined
+def has_twin(h: Memory, ic: int) -> bool:
+    """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
+    ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    return is_twin(h, ic, iget(h, ic, g.KL1), ib, jb) or is_twin(h, ic, iget(h, ic, g.KLB1), ib, jb)
+
+
+@inlined
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: float, ny: float) -> bool:
+    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other.
+
+    (nx, ny): normal of the contact, away from the block of the corner.
+    """
+    x, y, most = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -most:
+        return True
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > most
+
+
+@inlined
+def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if contact `ic`, of the normal (nx, ny), and a neighbour on the same segment are past each other.
+
+    If it is open, something has slipped through its gap.
+    """
+    code = iget(h, ic, g.KCCOD)
+    after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
+    if passed(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
+        return True
+    after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
+    return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
+
+
+@inlined
+def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if the arc of a corner on an edge has turned away from it by more than TURNED.
+
+    The circle of a blunt corner reaches far beyond its arc, even beyond its block. (nx, ny) is the contact's
+    normal.
+    """
+    code = iget(h, ic, g.KCCOD)
+    if code == g.CORNER_EDGE:
+        return not faces(h, iget(h, ic, g.KCP1), nx, ny, real(h, TURNED))
+    return code == g.EDGE_CORNER and not faces(h, iget(h, ic, g.KCP2), -nx, -ny, real(h, TURNED))
+
+
+@inlined
+def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+        return True
+    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+
+
+@kernel
+def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if contact `ic` overlaps by more than a narrow tip can stand.
+
+    Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
+    arc's centre is in the other block and the contact has passed a neighbour: the tip is squeezed out between
+    two blocks that touch.
+    """
+    gap = nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    if do_not_meet(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), gap):
+        return True
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if (code == g.EDGE_CORNER or getr(h, ip, g.KRAD) >= overlap) and (
+        code == g.CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
+    ):
+        return False
+    return overtaken(h, ic, nx, ny)
+
+
+@inlined
+def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """Delete contact `ic` if it is open too far or no wall any more, or idle beside a twin.
+
+    A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
+    """
+    if overlap > 0 and getr(h, ic, g.KCFN) != 0:
+        return False
+    is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
+    if overlap >= -h.cr[g.BTOL]:
+        gone = overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap)
+        if not gone and (is_bridge or not has_twin(h, ic)):
+            return False
+    h.ci[g.NBROKE] += 1
+    if is_bridge:
+        to_virtual(h, ic)
+    else:
+        delc(h, ic)
+    return True
+
+
+@inlined
+def opens(h: Memory, ic: int, account: Any) -> None:
+    """Contact `ic` overlaps no more, and loses what its springs held. account: as in ford_all."""
+    if account != 0 and getr(h, ic, g.KCFN) != 0:
+        zero = real(h, 0.0)
+        none = zero, zero
+        call_entry(account, h, ic, False, zero, none, none, none, none)
+    no_force(h, ic)
+
+
+@inlined
+def is_still(h: Memory, overlap: float) -> bool:
+    """True if an open contact need not look at its neighbours, nor go, with that overlap."""
+    return h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= real(h, 0.0)
+
+
+@kernel
+def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
+    """Bring contact `ic` up to date; False if it goes. own: whether it follows a law of the user's."""
+    nx, ny, overlap = settle(h, ic)
+    if own:
+        idle = is_open(h, ic, overlap)
+    else:
+        idle = overlap <= 0 or getr(h, ic, g.KCFN) == 0
+    if idle and not is_still(h, overlap):
+        if overlap <= 0 and not own:
+            opens(h, ic, account)
+        if drop(h, ic, nx, ny, overlap):
+            return False
+    if overlap > h.cr[g.FTOL] and squeezed(h, ic, nx, ny, overlap) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = OVERLAP_TOO_GREAT
+        h.ci[g.IERAD] = ic
+    return True
+
+
+@apart
+def change_map(h: Memory, waiting: Any, n: int, account: Any) -> bool:
+    """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
+
+    waiting: their addresses; negative if they follow a law of the user's. account: as in ford_all.
+    """
+    for k in range(n):
+        if not change(h, abs(waiting[k]), waiting[k] < 0, account):
+            waiting[k] = 0
+    return True
+
+
+@apart
+def settle_all(h: Memory) -> bool:
+    """Bring every contact up to date with a changed geometry, its force as it is."""
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        following = iget(h, ic, g.KC)
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            nx, ny, overlap = restart(h, ic)
+            drop(h, ic, nx, ny, overlap)
+        ic = following
+    return True
