@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import apart, inlined, kernel
@@ -27,6 +29,7 @@ from udec_ia.kernels.map.reclass import settle
 from udec_ia.kernels.map.segments import ahead_by, same_segment
 from udec_ia.layout import offsets as g
 
+ALL, NOBODY = -1, np.zeros(0, np.int64)  # all contacts, whoever waits
 TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
 
 
@@ -176,21 +179,9 @@ def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
     return True
 
 
-@apart
-def change_map(h: Memory, waiting: Any, n: int, account: Any) -> bool:
-    """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
-
-    waiting: their addresses; negative if they follow a law of the user's. account: as in ford_all.
-    """
-    for k in range(n):
-        if not change(h, abs(waiting[k]), waiting[k] < 0, account):
-            waiting[k] = 0
-    return True
-
-
-@apart
-def settle_all(h: Memory) -> bool:
-    """Bring every contact up to date with a changed geometry, its force as it is."""
+@kernel
+def settle_all(h: Memory) -> None:
+    """Bring every contact up to date with a changed geometry, its force as it is; it may go."""
     ic = h.ci[g.ICPNT]
     while ic != 0:
         following = iget(h, ic, g.KC)
@@ -198,4 +189,18 @@ def settle_all(h: Memory) -> bool:
             nx, ny, overlap = restart(h, ic)
             drop(h, ic, nx, ny, overlap)
         ic = following
+
+
+@apart
+def change_map(h: Memory, waiting: Any, n: int, account: Any) -> bool:
+    """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
+
+    waiting: their addresses; negative if they follow a law of the user's. account: as in ford_all. ALL for
+    `n`: a command has changed the geometry, and all contacts follow it.
+    """
+    if n == ALL:
+        settle_all(h)
+    for k in range(n):
+        if not change(h, abs(waiting[k]), waiting[k] < 0, account):
+            waiting[k] = 0
     return True

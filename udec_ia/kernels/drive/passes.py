@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.apart import entry, entry_if
 from udec_ia.kernels.body.bounds import apply_bounds
-from udec_ia.kernels.contact.changes import change_map
+from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.recording import record
@@ -41,7 +39,7 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
         entry(note_forces, h) if keeps else 0,
         entry(note_stresses, h) if keeps else 0,
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
-        entry(change_map, h, np.zeros(0, np.int64), 0, 0),
+        entry(change_map, h, NOBODY, 0, 0),
         entry(record, h, *recorded) if recorded else 0,
         entry(at_rest, h, ratio) if ratio >= 0 else 0,
     )

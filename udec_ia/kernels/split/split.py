@@ -14,12 +14,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
 from udec_ia.heap.apart import call_entry, entry
 from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.heap.memory import room
 from udec_ia.kernels.body.masses import share_extension
-from udec_ia.kernels.contact.changes import restart, settle_all
+from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map, restart
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
@@ -155,7 +157,7 @@ def share(h: Memory, ib: int, jb: int) -> bool:
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
     """What `cut_path` calls by its address (heap.apart), 0 for what it need not. soft: as in run_cycles."""
-    return updating(h), entry(settle_all, h), entry(share, h, 0, 0) if soft is not None else 0
+    return updating(h), entry(change_map, h, NOBODY, ALL, 0), entry(share, h, 0, 0) if soft is not None else 0
 
 
 @kernel
@@ -250,7 +252,7 @@ def cut_path(
             enter_box(h, blocks[n], boxes[n])
             n += 1
     if h.cr[g.DTOL] != rounding_length:
-        call_entry(passes[SETTLE], h)
+        call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL), int64(0))
         flag_all(h)
         return (DONE if call_entry(passes[UPDATE], h, int64(0)) else NO_MEMORY), n
     return (DONE if update_cracks(h, blocks, first, n, passes[UPDATE]) else NO_MEMORY), n

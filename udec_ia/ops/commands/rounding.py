@@ -5,7 +5,7 @@ from __future__ import annotations
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.contact.changes import settle_all
+from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
 from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
@@ -100,7 +100,7 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
 
 def refresh(array: MainArray) -> None:
     """Bring contacts and domains up to date with a changed rounding length, whatever lies in what."""
-    settle_all(array.h)
+    change_map(array.h, NOBODY, ALL, 0)
     flag_all(array.h)
     bring_up(array)
 
