@@ -8,12 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
+from udec_ia.version import __version__
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
 
-__all__ = ["Model", "UdecError"]
-__version__ = "0.1.0"
+__all__ = ["Model", "UdecError", "__version__"]
 
 
 def __getattr__(name: str) -> Any:

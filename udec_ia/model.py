@@ -12,26 +12,24 @@ Every command is obeyed as a whole or not at all, whatever ends it (transaction.
 from __future__ import annotations
 
 import io
-import logging
 import operator
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from itertools import chain
 from pathlib import Path
-from time import perf_counter
-from typing import TYPE_CHECKING, Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
+from typing import Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
-import numpy as np
-
+from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.reference import explain, summary
 from udec_ia.errors import UdecError, spoilt
-from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import compile_seconds
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.inspect.check import check, check_shapes
+from udec_ia.inspect.check_common import check_common
+from udec_ia.inspect.table import table
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.keywords import takes
@@ -60,25 +58,20 @@ from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.remarks import on_laws, on_loads, on_moduli, on_properties, on_rest, on_rounding
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.timestep import bound, describe, kind_of
-from udec_ia.ops.run.watch import Series, Solution, Watch, unsolved
+from udec_ia.ops.run.watch import Series, Solution, Watch
+from udec_ia.output.dump import dump
+from udec_ia.output.printout import printout
 from udec_ia.printable import printable
-from udec_ia.recorder import Recorder
-from udec_ia.transaction import Step, Undo, beside, command, looking, numbers, once, steady
-
-if TYPE_CHECKING:
-    from udec_ia.output.animate import Animation
-    from udec_ia.output.plot import Plots
+from udec_ia.session import NAME, Session
+from udec_ia.transaction import Undo, beside, command, looking, numbers, once, steady
 
 R = TypeVar("R")
-log = logging.getLogger("udec_ia")
-
 RESTART_FILE = "restart.h5"
-NAME = "udec"  # what names of files begin with
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 
-class Model:
+class Model(Session):
     """A block system and everything that was done to it.
 
     build: word scheme, "i16r32", "i32r32", "i16r64", "i32r64" or "i64r64".
@@ -100,45 +93,20 @@ class Model:
         constitutive: Given | Iterable[Given] | None = None,
         name: str = NAME,
     ) -> None:
+        super().__init__(out, name)
         self.mtop = None if mtop is None else _words(mtop)
         self.scheme = scheme(build)
         self.array = MainArray(self.scheme, self.mtop)
-        self.out = out
         self.laws = LawBook(constitutive)
-        self.name = name
-        self.logs_calls = True  # False while a monitor does, which knows the lines themselves
-        self._log: list[str | Step] = []
-        self._cycles: int | None = None  # of the CYCLEs at the end of the log
-        self.progress: TextIO | None = None
-        self.animate = False
-        self.tell: Callable[[str], None] = log.warning
-        self.inform: Callable[[str], None] = log.info
-        self.explain_step = False
         self.started = False
         self.undo = Undo()
         self.writes = Writes()
         self._lent: tuple[Memory, Memory] | None = None  # memory of IA(), and that which was lent for it
-        self._goes_on = False  # from a restart file: pictures of the run before are left alone
-        self._files: list[Path] = []
-        self._recorder = Recorder()
-        self._plots: Plots | None = None
-        self._animation: Animation | None = None
         self._boxes = Boxes()
         self._touched = False  # by RSET or through `h`, since links and outlines were last proved sound
         self._unproved = False  # outlines are those of a restart file, of which the links alone are proved
-        self._runaway = Runaway(self._warn)
-        self._said: set[str] = set()  # remarks, which are not repeated
-        self._clock, self._compiled = perf_counter(), compile_seconds()
+        self._runaway = Runaway(self.warn)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
-
-    @property
-    def out(self) -> Path:
-        """The folder for files; a str that it is set to becomes a path."""
-        return self._out
-
-    @out.setter
-    def out(self, folder: str | Path) -> None:
-        self._out = Path(folder)
 
     @property
     def h(self) -> Memory:
@@ -154,48 +122,13 @@ class Model:
 
     def parts(self) -> Iterator[object]:
         """The objects that hold what is not in the main array."""
-        plots = self._plots
-        frame = None if plots is None else plots.frame
-        held = self._recorder, self.laws, self._runaway, plots, frame, self._animation
-        for part in (self, *held, *self._recorder.series):
-            if part is not None:
-                yield part
+        yield from super().parts()
+        yield self.laws
+        yield self._runaway
 
     def whole(self, action: Callable[[], R]) -> R:
         """Have all that `action` does with this model done, or nothing of it if it raises."""
         return self.undo.whole(self, action)
-
-    def log_call(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """Log what was done, to be said as a deck says it when somebody asks."""
-        if not self.logs_calls:
-            return
-        if method.__name__ == "cycle":
-            self._cycles = (self._cycles or 0) + int(args[0] if args else named["n"])
-            return
-        step = Step(method, tuple(args), named)
-        self.log_lines([step] if step.lasts else step.lines)
-
-    def log_lines(self, lines: Sequence[str | Step]) -> None:
-        """Log what a deck says."""
-        if self._cycles is not None:
-            self._log.append(f"CYCLE {self._cycles}")
-        self._log += lines
-        self._cycles = None
-
-    @property
-    def deck_log(self) -> list[str]:
-        """The lines of a deck that say what was done."""
-        last = [] if self._cycles is None else [f"CYCLE {self._cycles}"]
-        said = ([one] if isinstance(one, str) else one.lines for one in self._log)
-        return [*chain.from_iterable(said), *last]
-
-    def deck(self) -> str:
-        """The deck that does what was done until now, in decks and in Python: all but SAVE and RESTART.
-
-        What was given as `constitutive` is given with it again; of words that were written through `h` it
-        says nothing. The deck of a model from a restart file begins as that of the model that was saved.
-        """
-        return "".join(line + "\n" for line in self.deck_log)
 
     def note_writes(self) -> None:
         """Something was written to the words that `h` lends: what follows them proves them first."""
@@ -216,10 +149,10 @@ class Model:
         self.array = MainArray(self.scheme, self.mtop)
         settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
         self.laws.note({})
-        self._recorder.series, self._recorder.solutions = [], []
+        self.begin()
         self._boxes.forget()
-        self._touched = self._unproved = self._goes_on = False
-        self._runaway, self._said = Runaway(self._warn), set()
+        self._touched = self._unproved = False
+        self._runaway = Runaway(self.warn)
         self.started = True
 
     @beside
@@ -236,7 +169,7 @@ class Model:
         target = self.out / RESTART_FILE if path is None else Path(path)
         folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
         written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
-        self._note([written])
+        self.note([written])
         if makes:
             self.inform(f"the folder {printable(str(folder))} was not there and has been made")
         return written
@@ -254,16 +187,14 @@ class Model:
         source = self.out / RESTART_FILE if path is None else path
         array, deck_log, laws, series = load(source)
         refit(array, self.mtop)
-        self.array, self._recorder.series = array, series
-        self._log, self._cycles = [*deck_log], None
+        self.array = array
+        self.go_on(deck_log, series)
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
         self._touched, self._unproved = False, True
-        self._runaway = Runaway(self._warn)
-        self.started = self._goes_on = True
-        if self._plots is not None:
-            self._plots.count = max(self._plots.count, self._last_picture("-plot"))
+        self._runaway = Runaway(self.warn)
+        self.started = True
         ci, name = array.h.ci, array.scheme.name
         self.inform(
             f"{printable(str(source))}: {ci[NBLK]} blocks, {ci[NCON]} contacts, {ci[MCTOT]} cycles, "
@@ -297,39 +228,12 @@ class Model:
     @looking
     def stop(self) -> str:
         """STOP: write what is still open and return the line that sums up the run."""
-        if self._plots is not None:
-            self._note(self._plots.close())
-        if self._animation is not None:
-            path = self.out / f"{self.name}.gif"
-            if self._goes_on and path.exists():
-                path = self.out / f"{self.name}-{max(self._last_picture(''), 1) + 1}.gif"
-            self._note([self._animation.save(path, self.array.h)])
-            self._animation = None
-        self._recorder.close()
+        self.close(self.array)
         return self.summary()
 
     def summary(self) -> str:
         """The line that sums up the run until now: what STOP returns, of files that are written by now."""
-        from udec_ia.inspect.table import table
-        from udec_ia.inspect.walk import Unsound
-        from udec_ia.output.progress import summary
-
-        try:
-            forces = table(self.array, "contact")["KCFN"]
-        except Unsound:  # RSET has damaged the contact list, and the run ends all the same
-            forces = np.zeros(0)
-        h = self.array.h
-        return summary(
-            int(h.ci[MCTOT]),
-            float(h.cd[TIME]),
-            int(h.ci[NBLK]),
-            int(h.ci[NCON]),
-            float(forces.max(initial=0)),
-            self._files,
-            perf_counter() - self._clock,
-            compile_seconds() - self._compiled,
-            unsolved(self._recorder.solutions),
-        )
+        return self.summary_of(self.array)
 
     def end(self) -> str:
         """END: the same as STOP, for a run that has not been stopped."""
@@ -338,8 +242,6 @@ class Model:
     @staticmethod
     def help(command: str | None = None) -> str:
         """HELP: the forms of all commands, or what one of them does. Error 2 if there is no such command."""
-        from udec_ia.deck.reference import explain, summary
-
         return summary() if command is None else explain(command)
 
     def _ready(self, sound: bool = True, shapes: bool = False) -> None:
@@ -360,9 +262,6 @@ class Model:
 
         whole: with the first of all; else words that are lost for good are left to SAVE.
         """
-        from udec_ia.inspect.check import check_shapes
-        from udec_ia.inspect.check_common import check_common
-
         broken = check_common(self.array) or check_shapes(self.array)
         for one in broken:
             if whole or one.misleads:
@@ -580,7 +479,7 @@ class Model:
         """
         self._ready()
         settings.set_property(self.array, material, **values)
-        self._remark(on_properties(self.array, material, dict[str, float | None](**values)))
+        self.remark(on_properties(self.array, material, dict[str, float | None](**values)))
 
     @numbers
     def gravity(self, gx: float, gy: float) -> None:
@@ -642,7 +541,7 @@ class Model:
         """
         self._ready()
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
-        self._remark(on_rest(self.array))
+        self.remark(on_rest(self.array))
         watch = Watch(self.array, self._recorder.series, ratio)
         cycles = self._cycle(limit, watch)
         h, kinds = self.array.h, soft(self.array)
@@ -657,19 +556,13 @@ class Model:
 
     def _cycle(self, n: int, watch: Watch | None) -> int:
         """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were."""
-        from udec_ia.output.report import Report
-
         self._boxes.forget()
         if self.array.h.ci[MCTOT] == 0:
             self.undo.keep(self.array)  # to be arranged, rounded and given its masses
         moved = arrange(self.array)
-        if moved is not None and self._plots is not None:
-            self._plots.renumber(moved)
-        if self.animate and self._animation is None:
-            from udec_ia.output.animate import Animation
-
-            self._animation = Animation(self.name)
-        report = Report(lambda: self.array.h, n, self.progress, self._animation)
+        if moved is not None:
+            self.renumber(moved)
+        report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])
         try:
             every = max(1, n // PICTURES) if self.animate else None
@@ -688,12 +581,12 @@ class Model:
             self.log_call(Model.cycle, (int(self.array.h.ci[MCTOT]) - before,), {})  # they stay
             finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts
-                self._keep(watch)
+                self.keep(watch)
             raise
         finally:
             report.close()
         self.undo.afresh(self)
-        self._keep(watch)
+        self.keep(watch)
         return done
 
     def _settle(self, watch: Watch | None) -> None:
@@ -716,31 +609,10 @@ class Model:
         self._runaway.judge(self.array, self.explain_step)
         if self.explain_step:
             self.inform(describe(self.array, self._runaway.safe))
-        self._remark(on_moduli(self.array, self.laws.block_laws))
-        self._remark(on_laws(self.array))
-        self._remark(on_loads(self.array))
-        self._remark(on_rounding(self.array))
-
-    def _warn(self, text: str) -> None:
-        self.tell(text)  # not bound beforehand: a monitor changes it
-
-    def _remark(self, remarks: Iterable[str]) -> None:
-        """Tell `remarks`, each once."""
-        for text in remarks:
-            if text not in self._said:
-                self._said = self._said | {text}
-                self.tell(text)
-
-    def _keep(self, watch: Watch | None) -> None:
-        self._note(self._recorder.keep(watch, self.out / f"{self.name}-history", self.tell))
-
-    def _last_picture(self, kind: str) -> int:
-        """The last number of a picture to be left alone: of the run that this one goes on from, or 0."""
-        return last_number(self.out, self.name + kind) if self._goes_on else 0
-
-    def _note(self, files: Iterable[Path]) -> None:
-        """Have STOP name `files`, each once."""
-        self._files += [path for path in files if path not in self._files]
+        self.remark(on_moduli(self.array, self.laws.block_laws))
+        self.remark(on_laws(self.array))
+        self.remark(on_loads(self.array))
+        self.remark(on_rounding(self.array))
 
     @once
     def history(
@@ -768,8 +640,6 @@ class Model:
 
         FileNotFoundError if there is no file of that name, and it cannot be meant as a command either.
         """
-        from udec_ia.deck.monitor import run_deck
-
         out = io.StringIO() if stream is None else stream
         run_deck(self, text_or_path, out)
         return out.getvalue() if isinstance(out, io.StringIO) else None
@@ -778,20 +648,15 @@ class Model:
 
     def table(self, kind: str) -> Any:
         """One row a group: `address`, then the fields by the names of the table (see inspect.table)."""
-        from udec_ia.inspect.table import table
-
         return table(self.array, kind)
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""
-        from udec_ia.inspect.check import check
-
         return list(check(self.array))
 
     @staticmethod
     def check_file(path: str | Path) -> list[Any]:
         """All violations in the restart file `path`. Error 29 if RESTART would refuse it."""
-        from udec_ia.inspect.check import check
         from udec_ia.restart import load
 
         return list(check(load(path).array))
@@ -799,8 +664,6 @@ class Model:
     @looking
     def print(self, *what: str) -> str:
         """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "energy", "histories"."""
-        from udec_ia.output.printout import printout
-
         if any(word.lower() == "energy" for word in what):
             self._ready()
         return printout(self.array.h, *(word.lower() for word in what), series=self._recorder.series)
@@ -808,8 +671,6 @@ class Model:
     @looking
     def dump(self, n: int, m: int) -> str:
         """DUMP: the words from address n to address m."""
-        from udec_ia.output.dump import dump
-
         return dump(self.array.h, whole(n=n), whole(m=m))
 
     @looking
@@ -833,7 +694,7 @@ class Model:
         `history`, which stands alone, what was recorded is drawn instead. A frame of more than ten states is
         written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
         """
-        from udec_ia.output.plot import Plots, What
+        from udec_ia.output.plot import What
 
         what = What(
             contacts, domains, addresses, stresses, velocities, displacements, contour.lower(), window
@@ -842,18 +703,9 @@ class Model:
             if n is not None or what != What():
                 advice = "give PLOT HISTORY for the one, PLOT 0 for the other"
                 raise UdecError(10, "histories are not plotted with blocks", advice, parameter="history")
-            files = self._recorder.plot(self.name, self.out, self._last_picture("-history"))
-            self._note(files)
-            return files
-
+            return self.draw_histories()
         self._ready()
-        if self._plots is None:
-            self._plots = Plots(self.out, self.name, self._last_picture("-plot"))
-        files = self._plots.draw(self.array.h, n or 0, what)
-        for remark in self._plots.remarks(self.array.h, what):
-            self.inform(remark)
-        self._note(self._plots.files)
-        return files
+        return self.draw(self.array, n or 0, what)
 
 
 def _words(mtop: SupportsIndex) -> int:

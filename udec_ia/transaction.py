@@ -20,10 +20,10 @@ Interpreted ones stop at any place: there the words are copied between the piece
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import wraps
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, TypeVar
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
@@ -31,11 +31,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import mode
+from udec_ia.heap.lent import Writes
 from udec_ia.layout import offsets as g
+from udec_ia.log import Step
 from udec_ia.signals import hold, passing
-
-if TYPE_CHECKING:
-    from udec_ia.model import Model
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -43,7 +42,6 @@ Method = Callable[Concatenate[Any, P], R]
 
 REPEATED = 100.0  # a copy is made anew when the commands since then have taken as long as so many copies
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
-PLAIN = (bool, int, float, str, np.generic, type(None))
 
 
 def command(method: Method[P, R]) -> Method[P, R]:
@@ -113,28 +111,22 @@ def _obeyed(
     return obeyed
 
 
-class Step(NamedTuple):
-    """A command as it can be obeyed again."""
+class Undoable(Protocol):
+    """What has to be known of a model to take back what is done with it."""
 
-    method: Callable[..., object]
-    args: tuple[Any, ...]
-    named: dict[str, Any]
+    array: MainArray
+    writes: Writes
+    tell: Callable[[str], None]
+    inform: Callable[[str], None]
 
-    @property
-    def lines(self) -> list[str]:
-        """The command as a deck says it."""
-        from udec_ia.deck.spelling import spell
+    def parts(self) -> Iterator[object]:
+        """The objects that hold what is not in the main array."""
 
-        return spell(*self)
+    def note_writes(self) -> None:
+        """Words that were lent have been written to."""
 
-    @property
-    def lasts(self) -> bool:
-        """True if nobody can change what it was given."""
-        return all(map(_is_plain, (*self.args, *self.named.values())))
-
-
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, PLAIN) or (type(value) is tuple and all(map(_is_plain, value)))
+    def forget_boxes(self) -> None:
+        """Blocks are not where they were."""
 
 
 class Before:
@@ -143,7 +135,7 @@ class Before:
     A list of the model is put in place of another, or grows at its end: its length says how it was.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Undoable) -> None:
         self.array: MainArray = model.array
         self.h: Memory = model.array.h
         self.numbers = [part.copy() for part in common(self.h)]
@@ -152,7 +144,7 @@ class Before:
             (value, len(value)) for _, held in self.parts for value in held.values() if type(value) is list
         ]
 
-    def put_back(self, model: Model) -> None:
+    def put_back(self, model: Undoable) -> None:
         """Make the model as it was."""
         for one, held in self.parts:
             vars(one).clear()
@@ -207,7 +199,7 @@ class Undo:
         self.before: Before | None = None
         self.doing: list[Step | None] = []
 
-    def whole(self, model: Model, action: Callable[[], R]) -> R:
+    def whole(self, model: Undoable, action: Callable[[], R]) -> R:
         """Have all that `action` does done or, if it raises, undone, with whatever is done within it."""
         if self.busy:
             return action()
@@ -239,7 +231,7 @@ class Undo:
                 self._copy(array)
             self.covered = True
 
-    def settle(self, model: Model) -> None:
+    def settle(self, model: Undoable) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
         if mode.python:
@@ -248,7 +240,7 @@ class Undo:
         else:
             self.release()
 
-    def afresh(self, model: Model) -> None:
+    def afresh(self, model: Undoable) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
         self.covered, self.doing, self.before = False, [], Before(model)
@@ -257,7 +249,7 @@ class Undo:
         """Let go of the copy, and of its memory."""
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
 
-    def _begin(self, model: Model) -> None:
+    def _begin(self, model: Undoable) -> None:
         if model.writes.made:
             model.note_writes()
             model.writes.made = False
@@ -265,7 +257,7 @@ class Undo:
         self.before = Before(model)
         self.busy = True
 
-    def _end(self, model: Model) -> None:
+    def _end(self, model: Undoable) -> None:
         """Note what was done, or that the copy is of no use any more.
 
         What was done is to stay before it is noted: an end in between costs the copy and no more.
@@ -293,7 +285,7 @@ class Undo:
         self.seconds, self.cost = 0.0, perf_counter() - start
         self.array = array
 
-    def _take_back(self, model: Model, error: BaseException) -> None:
+    def _take_back(self, model: Undoable, error: BaseException) -> None:
         """Make everything as it was before what is being done."""
         before = self.before
         if before is None:
@@ -307,7 +299,7 @@ class Undo:
             model.tell(f"the last {len(self.since)} commands are lost: they could not be obeyed once more")
             self.array = None
 
-    def _repeat(self, model: Model, before: Before) -> bool:
+    def _repeat(self, model: Undoable, before: Before) -> bool:
         """Put the copy back and obey the commands since then once more; False if that gives another state."""
         self._put_words(before.h)
         model.tell = model.inform = lambda _: None

@@ -10,18 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from platformdirs import user_state_dir
 
 from udec_ia.deck.language import COMMANDS, Command, match
 from udec_ia.deck.monitor import Monitor
+from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.reader import CONTINUATION, WORD, Reader, Statement, obeyed
 from udec_ia.errors import UdecError
 from udec_ia.signals import Terminated
-
-if TYPE_CHECKING:
-    from udec_ia.model import Model
 
 PROMPT = "> "
 MORE = f"{CONTINUATION} "
@@ -30,7 +28,7 @@ NUMERIC = "+-.0123456789"  # what a number begins with
 HISTORY_LENGTH = 1000
 
 
-def converse(model: Model, out: TextIO, ask: Callable[[str], str] = input) -> None:
+def converse(model: Obeying, out: TextIO, ask: Callable[[str], str] = input) -> None:
     """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
 
     Raises UdecError if STOP itself fails, and Terminated, after the state has been saved as in a run.

@@ -14,19 +14,17 @@ import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from udec_ia.deck.advice import at
 from udec_ia.deck.language import COMMANDS, match
+from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
-
-if TYPE_CHECKING:
-    from udec_ia.model import Model
 
 DAMAGED = 20  # after this error the main array is not worth saving: RESTART would refuse it
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
@@ -50,7 +48,7 @@ class Monitor:
     echo: False where the user sees what he types. ended: True after STOP or END.
     """
 
-    def __init__(self, model: Model, out: TextIO, *, echo: bool = True) -> None:
+    def __init__(self, model: Obeying, out: TextIO, *, echo: bool = True) -> None:
         self.model = model
         self.out = out
         self.echo = echo
@@ -214,7 +212,7 @@ def _awaited(lines: Iterable[str]) -> Iterator[str]:
         yield line
 
 
-def run_deck(model: Model, deck: str | Path, out: TextIO) -> Monitor:
+def run_deck(model: Obeying, deck: str | Path, out: TextIO) -> Monitor:
     """Obey a whole deck on `model` and return the monitor that did.
 
     deck: the path of a deck, or its text; a str is a path if there is a file of that name, or if it looks
@@ -244,7 +242,7 @@ def _names_a_file(text: str) -> bool:
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def counted(call: Call, n: int, model: Model) -> str:
+def counted(call: Call, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:

@@ -18,7 +18,6 @@ import h5py
 import numba
 import numpy as np
 
-import udec_ia
 from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
 from udec_ia.layout import offsets as g
@@ -29,6 +28,7 @@ from udec_ia.restart.layout import common_places, field_rows, text
 from udec_ia.restart.recorded import RECORDED, store
 from udec_ia.restart.refusal import RefusedError
 from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
+from udec_ia.version import __version__
 
 HOST_LENGTH = 64
 
@@ -150,7 +150,7 @@ def _write_laws(file: h5py.File, laws: Mapping[str, tuple[str, str]]) -> None:
 def _write_provenance(file: h5py.File) -> None:
     """/provenance: the programs that made the state."""
     attrs = file.create_group("provenance").attrs
-    attrs["udec_ia"] = text(udec_ia.__version__)
+    attrs["udec_ia"] = text(__version__)
     attrs["python"] = text(platform.python_version())
     attrs["numpy"] = text(np.__version__)
     attrs["numba"] = text(numba.__version__)

@@ -1,0 +1,50 @@
+"""What the monitor needs of a model, beside a method for every command of the table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from udec_ia.heap.accessors import Memory
+
+R = TypeVar("R")
+
+
+class Obeying(Protocol):
+    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+
+    started: bool
+    tell: Callable[[str], None]
+    inform: Callable[[str], None]
+    explain_step: bool
+    logs_calls: bool
+
+    @property
+    def out(self) -> Path:
+        """The folder for files."""
+
+    @property
+    def h(self) -> Memory:
+        """The array."""
+
+    def whole(self, action: Callable[[], R]) -> R:
+        """Have all that `action` does done, or nothing of it."""
+
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
+        """Why a command has found nothing."""
+
+    def save(self, path: str | Path | None = None) -> Path:
+        """SAVE."""
+
+    def check_file(self, path: str | Path) -> list[Any]:
+        """All violations in a restart file."""
+
+    def stop(self) -> str:
+        """STOP."""
+
+    def summary(self) -> str:
+        """The line that sums up the run."""

@@ -1,0 +1,69 @@
+"""The log of a session: what was done, said as a deck says it.
+
+A command given in Python is kept as it was called, and said when somebody asks; one of a deck is kept as its
+lines. Successive CYCLEs are one line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.deck.spelling import spell
+
+PLAIN = (bool, int, float, str, np.generic, type(None))
+
+
+class Step(NamedTuple):
+    """A command as it can be obeyed again."""
+
+    method: Callable[..., object]
+    args: tuple[Any, ...]
+    named: dict[str, Any]
+
+    @property
+    def lines(self) -> list[str]:
+        """The command as a deck says it."""
+        return spell(*self)
+
+    @property
+    def lasts(self) -> bool:
+        """True if nobody can change what it was given."""
+        return all(map(_is_plain, (*self.args, *self.named.values())))
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, PLAIN) or (type(value) is tuple and all(map(_is_plain, value)))
+
+
+class Log:
+    """steps: commands, or lines of a deck. cycles: of the CYCLEs at the end, None if it does not end so."""
+
+    def __init__(self, lines: Sequence[str] = ()) -> None:
+        self.steps: list[str | Step] = [*lines]
+        self.cycles: int | None = None
+
+    def add(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """A command was obeyed."""
+        if method.__name__ == "cycle":
+            self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
+            return
+        step = Step(method, tuple(args), named)
+        self.add_lines([step] if step.lasts else step.lines)
+
+    def add_lines(self, lines: Sequence[str | Step]) -> None:
+        """So was what a deck says."""
+        if self.cycles is not None:
+            self.steps.append(f"CYCLE {self.cycles}")
+        self.steps += lines
+        self.cycles = None
+
+    @property
+    def lines(self) -> list[str]:
+        """The lines of a deck that say what was done."""
+        last = [] if self.cycles is None else [f"CYCLE {self.cycles}"]
+        said = ([one] if isinstance(one, str) else one.lines for one in self.steps)
+        return [*chain.from_iterable(said), *last]
