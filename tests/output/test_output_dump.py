@@ -12,7 +12,7 @@ from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import corners, groups
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
-from udec_ia.output.dump import dump, reach
+from udec_ia.output.dump import dump
 
 
 def words(text: str) -> dict[int, int]:
@@ -78,15 +78,6 @@ def test_the_five_pointers() -> None:
     names = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
     expected = "  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in names)
     assert dump(h, 1, 1).splitlines()[0] == expected
-
-
-@pytest.mark.parametrize("scheme", ALL_SCHEMES)
-def test_reach_finds_exactly_the_live_groups(scheme: str) -> None:
-    h = two_blocks(scheme).h
-    found = {kind: list(addresses) for kind, addresses in reach(h).items() if len(addresses)}
-    walked = {kind: sorted(groups(h, kind)) for kind in ("block", "contact", "domain")}
-    walked["corner"] = sorted(c for block in walked["block"] for c in corners(h, block))
-    assert found == walked
 
 
 def spare(h: Memory) -> tuple[int, int, int]:

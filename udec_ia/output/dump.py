@@ -1,25 +1,20 @@
 """DUMP: the words of IA() as they are, and what each of them means.
 
-The words alone do not say what they are: only four of the eight kinds of group carry a head code. But
-every live group can be reached from the list heads, and the field table says which kind of group each
-pointer leads to. So all groups are typed by following all pointers from the list heads; what no pointer
-leads to is either on the junk list, or not linked at all. Nothing is trusted: a pointer that leads nowhere
-is not followed, so a damaged heap is dumped like any other.
+The words alone do not say what they are: what belongs to which group is found by following all pointers from
+the list heads (inspect/census.py). What no pointer leads to is either on the junk list, or not linked at all.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.walk import HEADS, SOFT
+from udec_ia.inspect.census import census
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, Group, layouts, read_table
+from udec_ia.layout.table import Field, layouts, read_table
 
 TABLE = read_table()
 POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
@@ -50,57 +45,8 @@ def dump(h: Memory, n: int, m: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-class Shape(NamedTuple):
-    """What groups of one kind look like in a word scheme: words, head codes, pointers with their targets."""
-
-    size: int
-    heads: tuple[int, ...]
-    pointers: list[tuple[int, str]]
-
-
-def reach(h: Memory) -> dict[str, Any]:
-    """Addresses of the groups that pointers lead to, by kind, each an ascending array."""
-    read, top, ratio = h.ia.item, int(h.ci[g.MFREE]), _ratio(h)
-    shapes = {group.name: _shape(group, ratio) for group in TABLE.groups}
-    found: dict[str, list[int]] = {kind: [] for kind in shapes}
-    seen = bytearray(top + 1)
-    heads = [field for field in TABLE.common if field.role == "head" and field.target]
-    ahead = [(int(h.ci[getattr(g, field.name)]), str(field.target)) for field in heads]
-    while ahead:
-        iad, kind = ahead.pop()
-        if not 1 <= iad < top or seen[iad] or (iad - 1) % ratio:
-            continue
-        head = read(iad - 1)
-        if kind == "item":
-            kind = "corner" if head in HEADS["corner"] else "contact"
-        shape = shapes[kind]
-        if iad + shape.size > top or (shape.heads and head not in shape.heads):
-            continue
-        seen[iad] = True
-        found[kind].append(iad)
-        for offset, target in shape.pointers:
-            to = read(iad + offset - 1)
-            if to and target != "soft":
-                ahead.append((to, target))
-            elif to and head in SOFT:  # the owner's head code says what its extension is
-                ahead.append((to, SOFT[head]))
-    return {kind: np.sort(np.array(addresses, np.int64)) for kind, addresses in found.items()}
-
-
 def _ratio(h: Memory) -> int:
     return int(h.ra.itemsize // h.ia.itemsize)
-
-
-def _shape(group: Group, ratio: int) -> Shape:
-    """What groups of a kind look like. What may be of any kind is reached by its own lists, not from here."""
-    layout = layouts(ratio)[group.name]
-    pointers = [
-        (layout.offset[field.name] + i, str(field.target))
-        for field in group.fields
-        if field.target and field.target != "any"
-        for i in range(field.count)
-    ]
-    return Shape(layout.size, HEADS.get(group.name, ()), pointers)
 
 
 def _junk(h: Memory) -> list[Span]:
@@ -121,7 +67,7 @@ def _junk(h: Memory) -> list[Span]:
 def _spans(h: Memory, n: int, m: int) -> Iterator[Span]:
     """What the words n to m belong to, in rising order and without gaps."""
     known = _junk(h)
-    for kind, addresses in reach(h).items():
+    for kind, addresses in census(h).items():
         size = layouts(_ratio(h))[kind].size
         near = addresses[(addresses > n - size) & (addresses <= m)]
         known += [Span(int(iad), int(iad) + size - 1, f"{kind}@{iad}", kind) for iad in near]
