@@ -21,7 +21,7 @@ from statistics import median
 
 ROOT = Path(__file__).parent.parent
 PAIRS = 4  # of processes
-BALLS = 3  # of each tree, by turns
+BALLS = 5  # of each tree, by turns
 TURNS = 9  # of each process, in each of the two states
 SLAB = """
 import json

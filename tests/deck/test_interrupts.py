@@ -69,7 +69,7 @@ def test_a_command_is_taken_back_also_by_repeating_others(
     def fail(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("udec_ia.model.log.warning", fail)
+    monkeypatch.setattr("udec_ia.session.log.warning", fail)
 
     def split_and_fail() -> None:
         for y in range(1, 30):
