@@ -292,7 +292,7 @@ def bench_laws(calls: int = 500_000) -> None:
         for _ in range(TURNS + 1):
             for law in laws:
                 start = process_time()
-                call_often(law.call, calls, material.ctypes.data)
+                call_often(law.address, calls, material.ctypes.data)
                 times.append((process_time() - start) / calls * 1e9)
         checked, unchecked = np.array(times[2:]).reshape(TURNS, 2).T
         ratio = np.median(checked / unchecked)

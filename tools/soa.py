@@ -101,6 +101,7 @@ class Contacts(NamedTuple):
     un: Any
     fs: Any
     fn: Any
+    waiting: Any  # room for the rows of those that get their forces after all others
 
 
 class Domains(NamedTuple):
@@ -160,6 +161,7 @@ def extract(array: MainArray) -> Slab:
         k["KCCOD"].astype(np.uint8),
         (k["KCM"] - 1).astype(np.uint8),
         *_columns(k, "KXC KYC KXDC KYDC KCS KCN KCFS KCFN"),
+        np.empty(len(k), np.int64),
     )
     names = (
         g.TDEL,
@@ -414,44 +416,72 @@ def stays(s: Slab, j: int, nx: float, ny: float) -> bool:
 
 
 @compiled
+def waits(s: Slab, j: int) -> bool:
+    """True if contact `j` gets its force after the others: it looks at its neighbours before."""
+    k, c = s.contacts, s.constants
+    if k.un[j] <= 0.0:
+        return s.sums[ULOOK] >= c.htol
+    return k.fn[j] == 0.0 or k.un[j] > c.ftol
+
+
+@compiled
+def force(s: Slab, j: int, nx: float, ny: float, before: float) -> None:
+    """Relative velocity, spring forces and friction of contact `j`, and force sums of its blocks."""
+    b, k, c = s.blocks, s.contacts, s.constants
+    ib, jb, x, y, overlap = k.b1[j], k.b2[j], k.x[j], k.y[j], k.un[j]
+    xi, yi, xj, yj = x - b.x[ib], y - b.y[ib], x - b.x[jb], y - b.y[jb]
+    xd = (b.xd[jb] - b.td[jb] * yj) - (b.xd[ib] - b.td[ib] * yi)
+    yd = (b.yd[jb] + b.td[jb] * xj) - (b.yd[ib] + b.td[ib] * xi)
+    k.xd[j], k.yd[j] = xd, yd
+    if overlap <= 0.0:
+        k.fn[j] = k.fs[j] = k.us[j] = 0.0
+        return
+    m = k.mat[j]
+    kn, ks = s.kn[m], s.ks[m]
+    closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
+    held, dus = k.fs[j], sliding * c.dt
+    fn, fs = k.fn[j] + kn * (overlap - max(before, 0.0)), held + ks * dus
+    k.us[j] += dus
+    if fn <= 0.0:
+        fn, fs = 0.0, 0.0
+    most = s.coh[m] + s.mu[m] * fn
+    dashpot = c.beta * ks * sliding
+    if abs(fs) > most:
+        s.sums[WORK] += (abs(fs) - most) / ks * (most + (held if fs > 0.0 else -held)) * 0.5
+        fs = most if fs > 0.0 else -most
+        dashpot = 0.0
+    k.fn[j], k.fs[j] = fn, fs
+    normal, shear = fn + c.beta * kn * closing, fs + dashpot
+    fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
+    b.fx[ib] -= fx
+    b.fy[ib] -= fy
+    b.ft[ib] -= xi * fy - yi * fx
+    b.fx[jb] += fx
+    b.fy[jb] += fy
+    b.ft[jb] += xj * fy - yj * fx
+
+
+@compiled
 def forces(s: Slab) -> None:
-    """All contacts: geometry, relative velocity, spring forces, friction, force sums of the blocks."""
-    b, p, k, c = s.blocks, s.corners, s.contacts, s.constants
+    """All contacts: geometry and force; those that wait, when all others have theirs."""
+    p, k, c = s.corners, s.contacts, s.constants
+    n = 0
     for j in range(len(k.x)):
         nx, ny, before, fits = touch(p, k, j, c)
-        if not (fits and stays(s, j, nx, ny)):
+        if not fits:
             s.sums[EVENTS] += 1
-        ib, jb, x, y, overlap = k.b1[j], k.b2[j], k.x[j], k.y[j], k.un[j]
-        xi, yi, xj, yj = x - b.x[ib], y - b.y[ib], x - b.x[jb], y - b.y[jb]
-        xd = (b.xd[jb] - b.td[jb] * yj) - (b.xd[ib] - b.td[ib] * yi)
-        yd = (b.yd[jb] + b.td[jb] * xj) - (b.yd[ib] + b.td[ib] * xi)
-        k.xd[j], k.yd[j] = xd, yd
-        if overlap <= 0.0:
-            k.fn[j] = k.fs[j] = k.us[j] = 0.0
-            continue
-        m = k.mat[j]
-        kn, ks = s.kn[m], s.ks[m]
-        closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-        held, dus = k.fs[j], sliding * c.dt
-        fn, fs = k.fn[j] + kn * (overlap - max(before, 0.0)), held + ks * dus
-        k.us[j] += dus
-        if fn <= 0.0:
-            fn, fs = 0.0, 0.0
-        most = s.coh[m] + s.mu[m] * fn
-        dashpot = c.beta * ks * sliding
-        if abs(fs) > most:
-            s.sums[WORK] += (abs(fs) - most) / ks * (most + (held if fs > 0.0 else -held)) * 0.5
-            fs = most if fs > 0.0 else -most
-            dashpot = 0.0
-        k.fn[j], k.fs[j] = fn, fs
-        normal, shear = fn + c.beta * kn * closing, fs + dashpot
-        fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
-        b.fx[ib] -= fx
-        b.fy[ib] -= fy
-        b.ft[ib] -= xi * fy - yi * fx
-        b.fx[jb] += fx
-        b.fy[jb] += fy
-        b.ft[jb] += xj * fy - yj * fx
+        if waits(s, j):
+            k.un[j] = before
+            k.waiting[n] = j
+            n += 1
+        else:
+            force(s, j, nx, ny, before)
+    for i in range(n):
+        j = k.waiting[i]
+        nx, ny, before, _ = touch(p, k, j, c)
+        if not stays(s, j, nx, ny):
+            s.sums[EVENTS] += 1
+        force(s, j, nx, ny, before)
 
 
 @compiled
