@@ -408,8 +408,10 @@ def stays(s: Slab, j: int, nx: float, ny: float) -> bool:
     """False if contact `j` carries no force and would be given up."""
     k, c = s.contacts, s.constants
     overlap = k.un[j]
-    if overlap > 0.0:
-        return k.fn[j] != 0.0 or not has_twin(k, j, c)
+    if overlap > 0.0 and k.fn[j] != 0.0:
+        return True
+    if overlap > 0.0 and s.sums[ULOOK] >= c.htol:
+        return not has_twin(k, j, c)
     if s.sums[ULOOK] < c.htol:
         return True
     return in_place(s, j, nx, ny) and not has_twin(k, j, c)
@@ -419,9 +421,8 @@ def stays(s: Slab, j: int, nx: float, ny: float) -> bool:
 def waits(s: Slab, j: int) -> bool:
     """True if contact `j` gets its force after the others: it looks at its neighbours before."""
     k, c = s.contacts, s.constants
-    if k.un[j] <= 0.0:
-        return s.sums[ULOOK] >= c.htol
-    return k.fn[j] == 0.0 or k.un[j] > c.ftol
+    idle = k.un[j] <= 0.0 or k.fn[j] == 0.0
+    return k.un[j] > c.ftol or (idle and s.sums[ULOOK] >= c.htol)
 
 
 @compiled

@@ -84,4 +84,4 @@ def test_a_force_needs_no_other_contact(build: str, module: Any) -> None:
             assert {one for one in touched.read if one[0] in NEVER_READ} <= {("contact", ic)}
             allowed = {("ci", g.NERR), ("ci", g.IERAD), ("cd", g.WFRIC)}
             assert touched.common <= (set() if waits else allowed)
-    assert {*found} == {True, False}
+    assert not all(found)

@@ -5,9 +5,9 @@ neighbours, or changes the map, waits until all others have their forces (ford.p
 to wait are brought up to date here, one after the other in list order, and get their forces at last. So what
 the others feel does not depend on the order in which they are visited.
 
-A contact waits if it is no longer where its code and its corners say, if it is open and has to look at its
-neighbours (domains.py) or is open too far, if it touches without a force, or if it overlaps so much that its
-tip may have been squeezed through.
+A contact waits if it is no longer where its code and its corners say, if it has no force and is to look at
+its neighbours (domains.py) or is open too far, or if it overlaps so much that its tip may have been squeezed
+through.
 """
 
 from __future__ import annotations
@@ -156,8 +156,8 @@ def opens(h: Memory, ic: int, account: Any) -> None:
 
 @inlined
 def is_still(h: Memory, overlap: float) -> bool:
-    """True if an open contact need not look at its neighbours, nor go, with that overlap."""
-    return h.cr[g.ULOOK] < h.cr[g.HTOL] and -h.cr[g.BTOL] <= overlap <= real(h, 0.0)
+    """True if a contact without a force need not look at its neighbours, nor go, with that overlap."""
+    return h.cr[g.ULOOK] < h.cr[g.HTOL] and overlap >= -h.cr[g.BTOL]
 
 
 @kernel
