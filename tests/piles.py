@@ -19,7 +19,7 @@ from udec_ia.layout.offsets import AKN, KBM
 Rng = np.random.Generator
 
 PILES = ("long", "extreme")
-MOST_BLOCKS = 60
+MAX_BLOCKS = 60
 CYCLES = 2000
 STEP = 40  # cycles from one look to the next
 
@@ -38,7 +38,7 @@ def pile(stage: Stage, kind: str, rng: Rng) -> None:
     if stage.do("block", *(number for point in ring for number in point)) is None:
         return
     for cut in cuts:
-        if len(stage.bodies()) < MOST_BLOCKS / 2:
+        if len(stage.bodies()) < MAX_BLOCKS / 2:
             stage.do("split", *cut)
     addresses = list(stage.bodies())
     if len(addresses) < 3:
@@ -108,7 +108,7 @@ def _event(stage: Stage, rng: Rng) -> Any:
         stage.do("boundary", *_all(stage), free=True)
     elif what == 3:
         stage.do("free" if rng.random() < 0.5 else "fix", *near(stage, ib))
-    elif what == 4 and len(blocks) < MOST_BLOCKS:
+    elif what == 4 and len(blocks) < MAX_BLOCKS:
         (x, y), far = stage.centroid(ib), _extent(stage, ib)
         dx, dy = far * cos(turn), far * sin(turn)
         stage.do("split", float(x - dx), float(y - dy), float(x + dx), float(y + dy))

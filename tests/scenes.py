@@ -41,7 +41,7 @@ from udec_ia.layout.offsets import (
 )
 from udec_ia.model import Model
 
-MOST_BLOCKS = 30
+MAX_BLOCKS = 30
 ENDS = (
     14,
     15,
@@ -278,7 +278,7 @@ def _centroid(scene: Scene, ib: int) -> Point:
 
 def _line(scene: Scene, p: Point, q: Point, before: float = 1.0, after: float = 1.0) -> bool:
     """SPLIT from p to q, lengthened at both ends by parts of the size of the scene."""
-    if scene.model.h.ci[NBLK] >= MOST_BLOCKS or p == q:
+    if scene.model.h.ci[NBLK] >= MAX_BLOCKS or p == q:
         return False
     low, high = _box(scene)
     size = hypot(high[0] - low[0], high[1] - low[1])

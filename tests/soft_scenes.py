@@ -18,7 +18,7 @@ from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.layout.offsets import DTOL, KBM, KX, KY, MFDEF, MRIG, NBLK, TDEL
 from udec_ia.model import Model
 
-MOST_BLOCKS = 10
+MAX_BLOCKS = 10
 TYPES = ("rigid", "sdef", "fdef")
 FIRST_FUNCTION = 1
 
@@ -138,7 +138,7 @@ def play(
         if scene.do("block", *(number for point in corners for number in point), material=1):
             break
     for _ in range(60):
-        if scene.model.h.ci[NBLK] >= 2 + rng.integers(MOST_BLOCKS - 2):
+        if scene.model.h.ci[NBLK] >= 2 + rng.integers(MAX_BLOCKS - 2):
             break
         scenes.split_somehow(scene, rng)
     if rng.random() < 0.5:

@@ -18,7 +18,10 @@ from time import monotonic
 
 ROOT = Path(__file__).parent.parent
 RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of tests/scenes.py, and of tests/soft_scenes.py
-MOST_USED = ("i32r32", "i32r64")  # schemes in which the tests have joint laws and keep accounts of the energy
+OFTEN_USED = (
+    "i32r32",
+    "i32r64",
+)  # schemes in which the tests have joint laws and keep accounts of the energy
 
 
 def compile_for(build: str) -> str:
@@ -33,7 +36,7 @@ def compile_for(build: str) -> str:
 
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]
     soft = [soft_scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in SOFT]
-    if build in MOST_USED:
+    if build in OFTEN_USED:
         model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)
         model.cycle(1)
         model.property(1, bulk=1e9, g=1e9)

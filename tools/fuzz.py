@@ -43,8 +43,8 @@ from udec_ia.restart.seal import SIZE, seal
 
 BATCH = 250  # cases to a process
 FIRST_CASE, NEXT_CASE = 600.0, 180.0  # seconds of silence after which a process hangs; any may compile
-MOST_CYCLES = 20
-MOST_COMMANDS = 40
+MAX_CYCLES = 20
+MAX_COMMANDS = 40
 Rng = np.random.Generator
 
 NUMBERS = [
@@ -98,10 +98,10 @@ class Tame(Model):
         self._plots = Unseen(self.out, self.name)
 
     def cycle(self, n: int) -> int:
-        return super().cycle(min(n, MOST_CYCLES))
+        return super().cycle(min(n, MAX_CYCLES))
 
-    def solve(self, ratio: float, limit: int = MOST_CYCLES) -> Solution:
-        return super().solve(ratio, min(limit, MOST_CYCLES))
+    def solve(self, ratio: float, limit: int = MAX_CYCLES) -> Solution:
+        return super().solve(ratio, min(limit, MAX_CYCLES))
 
     def save(self, path: str | Path | None = None) -> Path:
         return super().save(None)
@@ -239,7 +239,7 @@ def deck(rng: Rng) -> str:
         kinds.append(poke)
     if kind > 0.3 and rng.random() < 0.3:
         lines += SOFT
-    lines += [kinds[int(rng.integers(len(kinds)))](rng) for _ in range(int(rng.integers(1, MOST_COMMANDS)))]
+    lines += [kinds[int(rng.integers(len(kinds)))](rng) for _ in range(int(rng.integers(1, MAX_COMMANDS)))]
     if rng.random() < 0.4:
         for k in rng.integers(0, len(lines), int(rng.integers(1, 4))):
             lines[k] = mangle(rng, lines[k])

@@ -285,7 +285,7 @@ def accumulate(s: Slab, fastest: float) -> None:
 
 
 @compiled
-def lean(mx: float, my: float, r: float, d: float, x: float, y: float) -> float:
+def over_ends(mx: float, my: float, r: float, d: float, x: float, y: float) -> float:
     """How far (x, y) leans over either end of an arc whose centre lies at (mx, my) from its corner."""
     mm = mx * mx + my * my
     along, across = d * (x * mx + y * my), r * (x * my - y * mx)
@@ -296,8 +296,8 @@ def lean(mx: float, my: float, r: float, d: float, x: float, y: float) -> float:
 def corner_corner(p: Corners, i: int, j: int, c: Constants) -> tuple[float, float, float, float, bool]:
     """Normal, overlap, distance of the contact point from the centre of `i`; False if it must change."""
     dx, dy = p.xc[j] - p.xc[i], p.yc[j] - p.yc[i]
-    one = lean(p.xc[i] - p.x[i], p.yc[i] - p.y[i], p.rad[i], c.dtol, dx, dy)
-    two = lean(p.xc[j] - p.x[j], p.yc[j] - p.y[j], p.rad[j], c.dtol, -dx, -dy)
+    one = over_ends(p.xc[i] - p.x[i], p.yc[i] - p.y[i], p.rad[i], c.dtol, dx, dy)
+    two = over_ends(p.xc[j] - p.x[j], p.yc[j] - p.y[j], p.rad[j], c.dtol, -dx, -dy)
     z = np.sqrt(dx * dx + dy * dy)
     overlap = p.rad[i] + p.rad[j] - z
     return dx / z, dy / z, overlap, p.rad[i] - overlap * 0.5, max(one, two) <= c.gtol

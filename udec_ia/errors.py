@@ -162,6 +162,9 @@ MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
 ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 
 
+DISORDERED = (14, 15, 32, 36)  # errors that leave blocks deeper in each other or thinner than contacts allow
+
+
 def spoilt(number: int, cycle: int) -> str:
     """What is to be said of a state that error `number` has ended a run of, in `cycle` (NSPOIL, MCSPOI)."""
     return f"error {number} in cycle {cycle}, {MESSAGES[number]}, has ended a run of this state"

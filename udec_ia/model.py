@@ -27,6 +27,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.inspect.arrange import arrange
 from udec_ia.inspect.check import check, check_shapes
 from udec_ia.inspect.check_common import check_common
 from udec_ia.inspect.table import table
@@ -53,7 +54,6 @@ from udec_ia.ops.common.ranges import limits_turned, why_no_block
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.laws import LawBook
-from udec_ia.ops.run.arrange import arrange
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.remarks import on_laws, on_loads, on_moduli, on_properties, on_rest, on_rounding
 from udec_ia.ops.run.runaway import Runaway

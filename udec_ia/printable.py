@@ -11,9 +11,9 @@ NAME = 100  # characters of a name that somebody else has chosen
 MESSAGE = 2000  # characters of a whole message, in which there may be paths of the user's own
 
 
-def printable(text: str, most: int = NAME) -> str:
+def printable(text: str, limit: int = NAME) -> str:
     """The first `most` characters of `text`, each of which takes its place on a line."""
-    cut = text if len(text) <= most else f"{text[:most]}..."
+    cut = text if len(text) <= limit else f"{text[:limit]}..."
     if cut.isprintable():
         return cut
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)

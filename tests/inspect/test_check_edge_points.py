@@ -71,11 +71,16 @@ def test_a_point_of_an_edge_has_no_radius(model: Model) -> None:
 
 
 def test_a_flat_corner_of_the_block_has_no_arc(model: Model) -> None:
-    """The same corner without the mark at its grid-point."""
+    """The same corner without the mark at its grid-point: a contact that it has lasts until it opens."""
     corner = point_of_edge(model)
     contact = contact_of(model, corner)
+    what = f"contact@{contact} stands on the arc of corner@{corner}"
     puti(model.h, iget(model.h, corner, g.KGP), g.KGEDGE, 0)
-    assert names(model, 7, f"contact@{contact} stands on the arc of corner@{corner}")
+    assert not names(model, 7, what)
+    putr(model.h, contact, g.KCFN, 0.0)
+    for offset in (g.KXP, g.KXCP):
+        putr(model.h, corner, offset, getr(model.h, corner, offset) + D)
+    assert names(model, 7, what)
 
 
 def test_a_point_of_an_edge_that_overlaps_needs_its_contact(model: Model) -> None:

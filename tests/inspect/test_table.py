@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from handmade import two_blocks
+from kinds import every_kind
 
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.array import MainArray
@@ -125,6 +126,17 @@ def test_lists_that_run_in_circles() -> None:
     puti(array.h, block, g.KB, block)
     with pytest.raises(Unsound, match="does not come to an end"):
         table(array, "block")
+
+
+def test_lists_of_blocks_that_run_in_circles_or_meet() -> None:
+    m = every_kind()
+    blocks, points = m.table("fdef"), m.table("gridpoint")["address"].tolist()
+    first, second = blocks["KFG"][:2].tolist()
+    last_of_first = points[points.index(second) - 1]
+    for to, says in ((first, "does not come to an end"), (second, "two lists of gridpoints meet")):
+        puti(m.array.h, last_of_first, g.KG, to)
+        with pytest.raises(Unsound, match=says):
+            table(m.array, "gridpoint")
 
 
 @pytest.mark.parametrize("name", ["i32r32", "i32r64", "i64r64"])

@@ -201,6 +201,7 @@ def test_what_the_search_has_found(deck: str) -> None:
         ("needles", 1000, 406),  # a contact that crossed another one of two tips that have crossed
         ("needles", 6000, 806),  # deepest between two sub-steps of the judge
         ("needles", 1000, 671),  # two contacts on an arc, deeper than its circle is wide
+        ("acute", 12100, 979),  # the corner of a deformable block that turns from convex to concave in a step
     ],
 )
 def test_scenes_that_the_search_has_found(kind: str, seed: int, number: int) -> None:
@@ -253,7 +254,7 @@ def test_however_fast_a_block_is_looking_where_it_went_takes_no_time(speed: floa
         assert time.process_time() - start < 5 + compile_seconds()
 
 
-@pytest.mark.parametrize("kind", SHAPES)
+@pytest.mark.parametrize("kind", [*SHAPES, "bends"])
 def test_random_impacts(kind: str) -> None:
     """Nothing is missed, and no error 15 comes without an overlap."""
     found = [impacts.play(kind, SEED, number, "i32r64") for number in range(BATCH)]

@@ -17,7 +17,7 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.timestep import Limit, bound, estimate
+from udec_ia.ops.run.timestep import Limit, bound, estimate, instability
 
 D = 0.05
 JOINTS = (3e8, 1e8)
@@ -176,6 +176,18 @@ def test_after_a_zone_has_turned_inside_out_the_limits_are_numbers() -> None:
     shares = re.findall(r"(\S+) of the (?:estimate|safe bound) (\S+) s ", m.step_limits())
     assert len(shares) == 2
     assert all(float(number) > 0 for share in shares for number in share)
+
+
+def test_moments_of_inertia_that_are_no_numbers_set_a_step_of_nothing() -> None:
+    m = model(*box(0, 2, -1, 1), d=D, stiffness=JOINTS)
+    m.property(1, bulk=1e8, g=5e7)
+    m.split(-1, 0, 3, 0)
+    m.change(0, 2, -1, 1, "sdef")
+    m.cycle(0)
+    putr(m.array.h, int(m.table("sdef")["address"][1]), g.KSJ12, np.nan)
+    limit = bound(m.array)
+    assert limit == Limit(0.0, int(m.table("block")["address"][1]))
+    assert "no time-step is safe: a mass or a stiffness of block@" in instability(m.array, limit)
 
 
 def test_what_is_squashed_flat_sets_a_step_of_nothing() -> None:

@@ -23,7 +23,7 @@ EPS = float(np.finfo(float).eps)
 SQUARE = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]
 ELL = [(0.0, 0.0), (0.0, 2.0), (1.0, 2.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0)]
 TOOL = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "studies" / "meshes.py"))
-LEAST = {False: 20.0, True: 15.0}  # degrees: what docs/meshes.md promises, and with MIXED
+SMALLEST_ANGLE = {False: 20.0, True: 15.0}  # degrees: what docs/meshes.md promises, and with MIXED
 SHARP = 0.75  # of the sharpest corner, as docs/meshes.md promises
 
 
@@ -90,7 +90,7 @@ def test_shapes_are_as_good_as_the_documents_say(fraction: float, paired: bool) 
     found = TOOL["measure"](outlines, fraction, paired)
     assert len(found) > 50
     for quality in found:
-        assert quality.angles.min() >= min(LEAST[paired], SHARP * quality.corner)
+        assert quality.angles.min() >= min(SMALLEST_ANGLE[paired], SHARP * quality.corner)
 
 
 def test_the_same_block_gets_the_same_mesh() -> None:
@@ -175,7 +175,7 @@ def test_what_makes_no_mesh(corners: Any, edge: float, says: str) -> None:
 
 def test_zones_smaller_than_the_digits_of_their_coordinates() -> None:
     far = np.array(SQUARE) + 1e5  # where 32-bit reals are 1/128 apart
-    assert mesh(far, 0.01).least_angle > 15
+    assert mesh(far, 0.01).smallest_angle > 15
     with pytest.raises(UdecError, match="digits") as caught:
         mesh(far, 0.01, real=np.float32)
     assert caught.value.number == 28

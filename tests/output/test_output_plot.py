@@ -24,7 +24,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import corners, groups
 from udec_ia.layout import offsets as g
-from udec_ia.output.animate import MOST, Animation
+from udec_ia.output.animate import MAX_STATES, Animation
 from udec_ia.output.draw import LARGEST, limits, moved_blocks, scale_for, to_draw
 from udec_ia.output.outline import (
     ARC_POINTS,
@@ -372,13 +372,13 @@ def test_matplotlib_is_loaded_only_to_draw() -> None:
 def test_animation_keeps_evenly_spaced_states() -> None:
     h = two_blocks().h
     animation = Animation("deck")
-    offered = 2 * MOST + 10
+    offered = 2 * MAX_STATES + 10
     for cycle in range(offered):
         h.ci[g.MCTOT] = cycle
         animation.add(h)
     cycles = [state.cycle for state in animation.states]
     assert cycles == list(range(0, offered, animation.stride))
-    assert MOST / 2 <= len(cycles) <= MOST
+    assert MAX_STATES / 2 <= len(cycles) <= MAX_STATES
 
 
 def test_animation_is_written_with_its_last_state(tmp_path: Path) -> None:

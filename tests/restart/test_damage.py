@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from kinds import every_kind
 
+from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
 from udec_ia.heap.array import MainArray
@@ -171,6 +172,23 @@ def test_no_other_domain_is_the_outer_one(sound: MainArray) -> None:
         array = sound.copy()
         array.h.ci[g.IODPNT] = domain
         assert any(f"domain@{outer} lies around" in str(violation) for violation in check_links(array))
+
+
+def test_where_blocks_lie_in_each_other_no_domain_is_judged_by_its_area(tmp_path: Path) -> None:
+    """A state that error 15 has ended a run of is saved and restored, however deep its blocks have gone."""
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.block(0, 0, 0, 4, 6, 4, 6, 0)
+    for line in ((-1, 1, 7, 1), (-1, 2, 7, 2), (2, 1, 2, 4), (4, 1, 4, 4)):
+        m.split(*line)
+    m.fix(0, 6, 0, 1)
+    m.gravity(0, -10)
+    m.fraction(4.916)
+    with pytest.raises(UdecError, match="error 15"):
+        m.cycle(3)
+    assert any("around all blocks" not in str(one) for one in m.check())
+    assert check_links(m.array) == []
+    assert Model.restore(m.save(tmp_path / "spoilt.h5")).h.ci[g.NSPOIL] == 15
 
 
 def move(h: Memory, group: int, kx: Offset, dx: float) -> None:

@@ -105,7 +105,7 @@ def pulse() -> list[Figure]:
     """A stress pulse runs along a bar with Cp and leaves through a viscous edge, with its energy."""
     length = 10.0
     m = pulsed(length, 0.4 * length / CP, -1e4)
-    centre, t, s, most = [], [], [], 0.0
+    centre, t, s, largest = [], [], [], 0.0
     while m.h.cd[g.TIME] < 2 * length / CP:
         m.cycle(5)
         zones, points = m.table("zone"), m.table("gridpoint")
@@ -115,7 +115,7 @@ def pulse() -> list[Figure]:
             centre = [abs(place - at).argmin() for at in (2.5, 7.5)]
         t.append(float(m.h.cd[g.TIME]))
         s.append(-zones["KZS11"][centre])
-        most = max(most, sum(energies(m)))
+        largest = max(largest, sum(energies(m)))
     arrival = []
     for history in np.array(s).T:  # of the peak, by the parabola through the three highest samples
         k = int(history.argmax())
@@ -124,7 +124,7 @@ def pulse() -> list[Figure]:
     speed = float(place[centre[1]] - place[centre[0]]) / (arrival[1] - arrival[0])
     return [
         Figure("speed of a plane wave (m/s)", speed, CP, 0.01),
-        Figure("share of a pulse's energy that a viscous edge leaves", sum(energies(m)) / most, 0.0, 0.01),
+        Figure("share of a pulse's energy that a viscous edge leaves", sum(energies(m)) / largest, 0.0, 0.01),
     ]
 
 

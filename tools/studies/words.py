@@ -76,8 +76,11 @@ def sizes() -> list[str]:
     lines = [head("scheme", "words of IA(), at most", "bytes for a block of a wall", "blocks, about")]
     for name, scheme in ALL_SCHEMES.items():
         blocks, words = wall(name)
-        each, most = words * scheme.int_bits / 8 / blocks, float(f"{scheme.top_address * blocks / words:.2g}")
-        lines.append(row(name, f"{scheme.top_address:,}", f"{each:.0f}", f"{most:,.0f}"))
+        each, largest = (
+            words * scheme.int_bits / 8 / blocks,
+            float(f"{scheme.top_address * blocks / words:.2g}"),
+        )
+        lines.append(row(name, f"{scheme.top_address:,}", f"{each:.0f}", f"{largest:,.0f}"))
     return lines
 
 

@@ -2,7 +2,8 @@
 
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
 pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
-needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
+needs a contact of the two blocks nearby, or of that arc with that edge: the circle of a blunt corner goes on
+beyond its arc, and such a contact with it. Nearer to each other than FTOL there are never two.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
@@ -22,6 +23,7 @@ import numpy as np
 
 from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check_groups import HOSTS, Numbers, State
+from udec_ia.layout import offsets as g
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
@@ -43,6 +45,10 @@ class Joined:
         pair = self._key(one, two)
         order = np.argsort(pair, kind="stable")
         self.pair, self.point, self.overlap = pair[order], touch.point[order], touch.overlap[order]
+        on_edge, turned = touch.code != g.CORNER_CORNER, touch.code == g.EDGE_CORNER
+        self.corners = len(o.corner)
+        arc, edge = np.where(turned, touch.j, touch.i), np.where(turned, touch.i, touch.j)
+        self.on_edges = (arc * self.corners + edge)[on_edge]
 
     def _key(self, one: Numbers, two: Numbers) -> Numbers:
         return np.minimum(one, two) * self.blocks + np.maximum(one, two)
@@ -59,6 +65,10 @@ class Joined:
         row, place = ragged(np.searchsorted(self.pair, key, "right") - first)
         away = np.hypot(*(point[row] - self.point[first[row] + place]).T)
         return np.bincount(row[away <= reach[row]], minlength=len(key)) > 0
+
+    def stands(self, arc: Numbers, edge: Numbers) -> Numbers:
+        """True for each arc that has a contact with that edge, by their corners."""
+        return np.isin(arc * self.corners + edge, self.on_edges)
 
     @cached_property
     def points(self) -> dict[tuple[int, int], list[tuple[float, float, float]]]:
@@ -93,7 +103,10 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     ones, twos = o.owner[arc], o.owner[other]
-    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth)):
+    told = joined.near(ones, twos, point, near + depth)
+    if what == "edge":
+        told |= joined.stands(arc, other)
+    for k in np.flatnonzero(~told):
         one, two = int(ones[k]), int(twos[k])
         (x, y), overlap = point[k].tolist(), float(depth[k])
         points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []
@@ -208,7 +221,7 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
     near = np.ones(len(i), bool)
     for axis in (0, 1):
         at = o.p[i, axis]
-        near &= (at >= o.least[j, axis] - reach) & (at <= o.most[j, axis] + reach)
+        near &= (at >= o.low_corner[j, axis] - reach) & (at <= o.high_corner[j, axis] + reach)
     return i[near], j[near]
 
 
@@ -285,15 +298,15 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
     edge = o.straight
     low, high = np.maximum(o.low[a], o.low[b]), np.minimum(o.high[a], o.high[b])  # the box that both share
 
-    def common(block: Numbers, least: Numbers, most: Numbers) -> tuple[Numbers, Numbers]:
-        """Pair and corner for what the corners of `block` have, from `least` to `most`, in that box."""
+    def common(block: Numbers, low_corner: Numbers, high_corner: Numbers) -> tuple[Numbers, Numbers]:
+        """Pair and corner for what the corners of `block` have, from low to high, in that box."""
         pair, place = ragged(o.count[block])
         k = o.first[block[pair]] + place
-        meet = (least[k, 0] <= high[pair, 0]) & (most[k, 0] >= low[pair, 0])
-        meet &= (least[k, 1] <= high[pair, 1]) & (most[k, 1] >= low[pair, 1])
+        meet = (low_corner[k, 0] <= high[pair, 0]) & (high_corner[k, 0] >= low[pair, 0])
+        meet &= (low_corner[k, 1] <= high[pair, 1]) & (high_corner[k, 1] >= low[pair, 1])
         return pair[meet], k[meet]
 
-    one, two = common(a, o.least, o.most), common(b, o.least, o.most)
+    one, two = common(a, o.low_corner, o.high_corner), common(b, o.low_corner, o.high_corner)
     count, first = (np.bincount(two[0], minlength=len(a)), np.searchsorted(two[0], np.arange(len(a))))
     row, place = ragged(count[one[0]])
     pair, i = one[0][row], one[1][row]

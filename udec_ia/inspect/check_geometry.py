@@ -148,12 +148,12 @@ class Outlines:
         return start + self.start[:, None] * self.t, start + self.end[:, None] * self.t
 
     @cached_property
-    def least(self) -> Numbers:
+    def low_corner(self) -> Numbers:
         """Lower left of the box around the straight part."""
         return np.asarray(np.minimum(*self.straight))
 
     @cached_property
-    def most(self) -> Numbers:
+    def high_corner(self) -> Numbers:
         """Upper right of it."""
         return np.asarray(np.maximum(*self.straight))
 
@@ -253,8 +253,8 @@ def check_outlines(state: State, o: Outlines) -> None:
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
     rows = state.rows("block", o.block)
     roundings = 2.0 - o.pointed - o.pointed[o.before]
-    room, least = roundings * o.d, roundings * (o.d - state.tolerance("FTOL") / 2)
-    for i in np.flatnonzero(~(o.z >= least - 2 * o.slack)):
+    room, shortest = roundings * o.d, roundings * (o.d - state.tolerance("FTOL") / 2)
+    for i in np.flatnonzero(~(o.z >= shortest - 2 * o.slack)):
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
@@ -354,8 +354,8 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
             f"KXC, KYC of contact@{contacts[k]} are {where[k, 0]}, {where[k, 1]}, but the outlines meet at "
             f"{touch.point[k, 0]}, {touch.point[k, 1]}",
         )
-    most = state.tolerance("DTOL2")
-    for k in np.flatnonzero(np.maximum(noted, touch.overlap) > most + touch.slack):
+    limit = state.tolerance("DTOL2")
+    for k in np.flatnonzero(np.maximum(noted, touch.overlap) > limit + touch.slack):
         state.report(
-            7, f"the overlap of contact@{contacts[k]} is {max(noted[k], touch.overlap[k])}, DTOL2 is {most}"
+            7, f"the overlap of contact@{contacts[k]} is {max(noted[k], touch.overlap[k])}, DTOL2 is {limit}"
         )

@@ -148,13 +148,13 @@ def cycles(following: Numbers) -> Numbers:
 
     In each round the least of twice as many steps is known.
     """
-    least, ahead = np.arange(len(following)), following
-    least[-1] = -1
+    smallest, ahead = np.arange(len(following)), following
+    smallest[-1] = -1
     while True:
-        lower = np.minimum(least, least[ahead])
-        if (lower == least).all():
-            return np.asarray(least[:-1])
-        least, ahead = lower, ahead[ahead]
+        lower = np.minimum(smallest, smallest[ahead])
+        if (lower == smallest).all():
+            return np.asarray(smallest[:-1])
+        smallest, ahead = lower, ahead[ahead]
 
 
 def _check_loops(state: State) -> None:
@@ -245,17 +245,17 @@ def _check_connected(state: State) -> None:
     one, two = (state.rows("block", state.column("contact", name)) for name in HOSTS)
     known = (one >= 0) & (two >= 0)
     one, two = one[known], two[known]
-    least = np.arange(len(blocks))
+    smallest = np.arange(len(blocks))
     while True:
-        lower = least.copy()
-        heard = np.minimum(least[one], least[two])
-        for hearer in (one, two, least[one], least[two]):
+        lower = smallest.copy()
+        heard = np.minimum(smallest[one], smallest[two])
+        for hearer in (one, two, smallest[one], smallest[two]):
             np.minimum.at(lower, hearer, heard)
         lower = lower[lower]
-        if (lower == least).all():
+        if (lower == smallest).all():
             break
-        least = lower
-    for block in blocks[least != 0]:
+        smallest = lower
+    for block in blocks[smallest != 0]:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 

@@ -80,7 +80,8 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
 def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
-    for k in np.flatnonzero(~o.arc[here.corner] & ~here.on_edge):
+    idle = (touch.overlap <= 0) & (state.column("contact", "KCFN")[touch.row] == 0)
+    for k in np.flatnonzero(~o.arc[here.corner] & ~here.on_edge & ((touch.code == g.CORNER_CORNER) | idle)):
         state.report(
             7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
         )

@@ -25,8 +25,8 @@ def clj2(fn, fs, dun, dus, un, us, m):
     weak = min(slip / m.critical_slip, 1) if m.critical_slip > 0 else 0
     friction = m.friction + weak * (m.residual_friction - m.friction)
     cohesion = m.cohesion + weak * (m.residual_cohesion - m.cohesion)
-    most = cohesion + friction * pressed
-    held = max(-most, min(trial, most))
+    strength = cohesion + friction * pressed
+    held = max(-strength, min(trial, strength))
     slipped = abs(us + dus - held / m.ks)
     opened = m.dilation * (min(slipped, m.critical_slip) - min(slip, m.critical_slip))
     return pressed + m.kn * opened - fn, held - fs

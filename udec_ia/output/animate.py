@@ -21,7 +21,7 @@ from udec_ia.output.outline import State, snapshot
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
-MOST = 150  # states that are kept
+MAX_STATES = 150  # states that are kept
 SHRINK = 0.8  # size against that of a plot
 DPI = 100
 TICK = 60  # milliseconds for each picture
@@ -43,7 +43,7 @@ class Animation:
         if self.offered % self.stride == 0:
             self.states.append(snapshot(h))
         self.offered += 1
-        if len(self.states) > MOST:
+        if len(self.states) > MAX_STATES:
             self.states = self.states[::2]
             self.stride *= 2
 

@@ -43,13 +43,13 @@ def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float 
     from matplotlib.colors import Normalize
 
     values = measure(now.stress, name)
-    least, most, palette = float(values.min(initial=0.0)), float(values.max(initial=0.0)), "RdBu_r"
-    if least < 0 < most:
-        most = max(most, -least)
-        least = -most
+    low, high, palette = float(values.min(initial=0.0)), float(values.max(initial=0.0)), "RdBu_r"
+    if low < 0 < high:
+        high = max(high, -low)
+        low = -high
     elif len(values):
-        least, most, palette = float(values.min()), float(values.max()), "viridis"
-    colour = ScalarMappable(Normalize(least, most), colormaps[palette])
+        low, high, palette = float(values.min()), float(values.max()), "viridis"
+    colour = ScalarMappable(Normalize(low, high), colormaps[palette])
     shades = colour.to_rgba(values)
     n = len(now.zone)
     if n:
@@ -88,16 +88,16 @@ def draw_principal(axes: Axes, now: Field, size: float) -> str:
     s11, s12, s22 = now.stress.T
     angle = np.arctan2(2 * s12, s11 - s22) / 2
     mean, radius = (s11 + s22) / 2, np.hypot((s11 - s22) / 2, s12)
-    most = float((np.abs(mean) + radius).max(initial=0.0)) or 1.0
+    largest = float((np.abs(mean) + radius).max(initial=0.0)) or 1.0
     for value, turn in ((mean + radius, 0.0), (mean - radius, np.pi / 2)):
         along = np.stack([np.cos(angle + turn), np.sin(angle + turn)], axis=-1)
-        half = along * (np.abs(value) / most * size * LONGEST / 2)[:, None]
+        half = along * (np.abs(value) / largest * size * LONGEST / 2)[:, None]
         for chosen, colour in ((value > 0, TENSION), (value < 0, COMPRESSION)):
             lines = np.stack([now.middle - half, now.middle + half], axis=1)[chosen]
             crosses = LineCollection(list(lines), colors=colour, linewidths=0.9, zorder=4)
             crosses.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
             axes.add_collection(crosses)
-    return f"largest principal stress: {most:.4g} Pa (red: tension)"
+    return f"largest principal stress: {largest:.4g} Pa (red: tension)"
 
 
 def draw_velocities(axes: Axes, now: Field, size: float) -> str:
@@ -116,9 +116,9 @@ def draw_displacements(axes: Axes, first: Field, now: Field, size: float) -> str
 
 def _arrows(axes: Axes, place: Any, vector: Any, size: float) -> float:
     """Arrows with their tails at `place`, the longest LONGEST of the picture; returns the greatest length."""
-    most = float(np.hypot(*vector.T).max(initial=0.0))
-    if most > 0:
-        reach = vector * (size * LONGEST / most)
+    largest = float(np.hypot(*vector.T).max(initial=0.0))
+    if largest > 0:
+        reach = vector * (size * LONGEST / largest)
         style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0025}
         axes.quiver(*place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style)
-    return most
+    return largest

@@ -25,7 +25,7 @@ from udec_ia.restart.seal import HDF5_SIGNATURE, SIZE
 
 CHUNK = 65536  # words of the heap in one piece
 CHECKSUM = 4  # bytes of Fletcher-32 behind each piece; a SHA-256 covers all of them
-MOST_TEXT = 4096  # bytes of an attribute
+MAX_TEXT = 4096  # bytes of an attribute
 # How the HDF5 part begins: version 2, addresses and lengths of 8 bytes, written to its end, byte SIZE is its
 # first, and no extension, in which ways of storage could be told that are not ours.
 SUPERBLOCK = HDF5_SIGNATURE + bytes((2, 8, 8, 0)) + SIZE.to_bytes(8, "little") + b"\xff" * 8
@@ -99,7 +99,7 @@ class Contents:
         found = self._attribute(place, name, ())
         kind = found.get_type()
         where = f"{place}, {name}"
-        text = np.empty((), f"S{_size_of_text(kind, where, MOST_TEXT)}")
+        text = np.empty((), f"S{_size_of_text(kind, where, MAX_TEXT)}")
         found.read(text, kind)
         return bytes(text[()])
 
@@ -193,11 +193,11 @@ def _check_type(found: Any, kind: Any, place: str) -> None:
         raise _damaged(place, f"holds {what}, not little-endian {np.dtype(kind).name}")
 
 
-def _size_of_text(found: Any, place: str, most: int | None = None) -> int:
+def _size_of_text(found: Any, place: str, limit: int | None = None) -> int:
     """Bytes of a text of fixed length."""
     if found.get_class() != h5t.STRING or found.is_variable_str():
         raise _damaged(place, "is no text of fixed length")
     size = int(found.get_size())
-    if most is not None and size > most:
+    if limit is not None and size > limit:
         raise _damaged(place, f"is a text of {size} bytes")
     return size

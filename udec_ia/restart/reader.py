@@ -27,8 +27,8 @@ from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
 SHOWN = 3  # differences or violations that a refusal lists
-MOST_FAULT = 200  # characters of one of them
-MOST_TABLE = 2**20  # bytes of another field table, which is read like a program
+MAX_FAULT = 200  # characters of one of them
+MAX_TABLE = 2**20  # bytes of another field table, which is read like a program
 
 
 class Restored(NamedTuple):
@@ -101,7 +101,7 @@ def read_their_table(file: Contents) -> Table:
         raise RefusedError("is damaged: the checksum of its field table is wrong")
     if digest == read_table().digest:
         return read_table()
-    if len(written) > MOST_TABLE:
+    if len(written) > MAX_TABLE:
         raise RefusedError(f"has a field table of {len(written)} bytes")
     try:
         return parse(written.decode())
@@ -120,7 +120,7 @@ def _other_table(file: Contents, faults: list[str]) -> RefusedError:
 def shorten(faults: list[str]) -> str:
     """The first few of `faults`, and how many there are."""
     more = [f"and {len(faults) - SHOWN} more"] if len(faults) > SHOWN else []
-    return "; ".join([printable(fault, MOST_FAULT) for fault in faults[:SHOWN]] + more)
+    return "; ".join([printable(fault, MAX_FAULT) for fault in faults[:SHOWN]] + more)
 
 
 def read_scheme(file: Contents) -> Scheme:

@@ -26,8 +26,8 @@ FINE = 1e-10  # reals that cannot tell 1 + FINE from 1 need that
 @inlined
 def check_place(h: Memory, ib: int) -> None:
     """Error 36 if block `ib` is where reals no longer tell x from x + FTOL, or if its place is no number."""
-    x, y, least = abs(getr(h, ib, g.KX)), abs(getr(h, ib, g.KY)), h.cr[g.FTOL]
-    if not (x + least > x and y + least > y) and h.ci[g.NERR] == 0:
+    x, y, tolerance = abs(getr(h, ib, g.KX)), abs(getr(h, ib, g.KY)), h.cr[g.FTOL]
+    if not (x + tolerance > x and y + tolerance > y) and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = TOO_FAR
         h.ci[g.IERAD] = ib
 

@@ -71,12 +71,12 @@ def share_extension(h: Memory, ib: int, jb: int) -> None:
 @kernel
 def greatest_block(h: Memory) -> float:
     """Greatest distance of a corner from the centroid of its block."""
-    most = real(h, 0.0)
+    largest = real(h, 0.0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
-        most = max(most, getr(h, ib, g.KBRO))
+        largest = max(largest, getr(h, ib, g.KBRO))
         ib = iget(h, ib, g.KB)
-    return most
+    return largest
 
 
 @kernel

@@ -66,8 +66,8 @@ def strain(h: Memory, ie: int) -> tuple[float, float, float]:
     """New strain rates 11, 12, 22 from applied and internal stress (STRAIN)."""
     j11, j12, j22 = getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22)
     f11, f12, f22 = straining_force(h, ie)
-    lean = j12 / j11 + j12 / j22
-    a12 = (f12 + f12 - f11 * (j12 / j11) - f22 * (j12 / j22)) / (j11 + j22 - j12 * lean)
+    coupling = j12 / j11 + j12 / j22
+    a12 = (f12 + f12 - f11 * (j12 / j11) - f22 * (j12 / j22)) / (j11 + j22 - j12 * coupling)
     a11, a22 = (f11 - a12 * j12) / j11, (f22 - a12 * j12) / j22
     dt, c1, c2 = h.cr[g.TDEL], h.cr[g.C1B], h.cr[g.C2B]
     e11 = (c1 * getr(h, ie, g.KED11) + dt * a11) * c2

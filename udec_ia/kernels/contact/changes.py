@@ -5,9 +5,9 @@ neighbours, or changes the map, waits until all others have their forces (ford.p
 to wait are brought up to date here, one after the other in list order, and get their forces at last. So what
 the others feel does not depend on the order in which they are visited.
 
-A contact waits if it is no longer where its code and its corners say, if it has no force and is to look at
-its neighbours (domains.py) or is open too far, or if it overlaps so much that its tip may have been squeezed
-through.
+A contact waits if it is no longer where its code and its corners say, if its corner has no arc any more, if
+it has no force and is to look at its neighbours (domains.py) or is open too far, or if it overlaps so much
+that its tip may have been squeezed through.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.contact.joint_law import is_open
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, ce, faces, has_no_arc
 from udec_ia.kernels.links.lists import is_contact
 from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.map.reclass import settle
@@ -63,10 +63,10 @@ def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: 
 
     (nx, ny): normal of the contact, away from the block of the corner.
     """
-    x, y, most = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
-    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -most:
+    x, y, tolerance = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -tolerance:
         return True
-    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > most
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > tolerance
 
 
 @inlined
@@ -84,6 +84,32 @@ def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 
 @inlined
+def lost_its_arc(h: Memory, ic: int) -> bool:
+    """True if a corner on an edge has no arc any more: its block has been strained."""
+    code = iget(h, ic, g.KCCOD)
+    if code == g.CORNER_EDGE:
+        return has_no_arc(h, iget(h, ic, g.KCP1))
+    return code == g.EDGE_CORNER and has_no_arc(h, iget(h, ic, g.KCP2))
+
+
+@inlined
+def in_the_wall(h: Memory, ip: int, iq: int) -> bool:
+    """True if corner `ip` is beyond an end of the edge of `iq` by more than D, in a notch."""
+    d, ia = h.cr[g.DTOL], iget(h, iq, g.KR)
+    _, _, _, along, z = ce(h, ip, iq)
+    return (along > z + d and getr(h, iq, g.KRAD) < 0) or (along < -d and getr(h, ia, g.KRAD) < 0)
+
+
+@inlined
+def left_its_edge(h: Memory, ic: int) -> bool:
+    """True if a corner has slid out of a notch: it has a contact with the other edge there."""
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if code == g.CORNER_EDGE:
+        return in_the_wall(h, ip, iq)
+    return code == g.EDGE_CORNER and in_the_wall(h, iq, ip)
+
+
+@inlined
 def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """True if the arc of a corner on an edge has turned away from it by more than TURNED.
 
@@ -98,8 +124,8 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
-    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+    """True if open contact `ic` is no longer where two blocks may meet: see each of the tests."""
+    if lost_its_arc(h, ic) or left_its_edge(h, ic) or turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
@@ -168,7 +194,7 @@ def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
         idle = is_open(h, ic, overlap)
     else:
         idle = overlap <= 0 or getr(h, ic, g.KCFN) == 0
-    if idle and not is_still(h, overlap):
+    if idle and (lost_its_arc(h, ic) or left_its_edge(h, ic) or not is_still(h, overlap)):
         if overlap <= 0 and not own:
             opens(h, ic, account)
         if drop(h, ic, nx, ny, overlap):

@@ -35,11 +35,11 @@ def by_springs(
     fs = held + ks * dus
     if fn <= zero:
         fn, fs = zero, zero
-    most = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
+    strength = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
     dashpot = h.cr[g.BETA] * ks * sliding
-    if abs(fs) > most:
-        slip = (abs(fs) - most) / ks
-        h.cd[g.WFRIC] += slip * (most + (held if fs > zero else -held)) * real(h, 0.5)
-        fs = most if fs > zero else -most
+    if abs(fs) > strength:
+        slip = (abs(fs) - strength) / ks
+        h.cd[g.WFRIC] += slip * (strength + (held if fs > zero else -held)) * real(h, 0.5)
+        fs = strength if fs > zero else -strength
         dashpot = zero
     return fn, fs, getr(h, ic, g.KCS) + dus, h.cr[g.BETA] * kn * closing, dashpot

@@ -8,7 +8,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, real
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import lean
+from udec_ia.kernels.geometry.contact_geometry import over_ends
 from udec_ia.layout import offsets as g
 
 
@@ -32,7 +32,7 @@ def _under_arc(h: Memory, ip: int, x: float, y: float, back: float, depth: float
     far = fx * fx + fy * fy
     if rad <= 0 or far > mx * mx + my * my:
         return depth
-    ahead, behind = lean(h, ip, fx, fy)
+    ahead, behind = over_ends(h, ip, fx, fy)
     if ahead > 0 or behind > 0:
         return depth
     return min(depth, rad - np.sqrt(far))
@@ -46,7 +46,7 @@ def depth_in(h: Memory, ib: int, x: float, y: float, back: float) -> float:
     corner the distance is that from the edges that meet there.
     """
     inside = False
-    least = real(h, np.inf)
+    nearest = real(h, np.inf)
     ip0 = iget(h, ib, g.KP)
     ip = ip0
     while True:
@@ -58,11 +58,11 @@ def depth_in(h: Memory, ib: int, x: float, y: float, back: float) -> float:
         ex, ey = bx - ax, by - ay
         part = min(max(-(ax * ex + ay * ey) / (ex * ex + ey * ey), real(h, 0.0)), real(h, 1.0))
         px, py = ax + part * ex, ay + part * ey
-        least = min(least, px * px + py * py)
+        nearest = min(nearest, px * px + py * py)
         ip = ia
         if ip == ip0:
             break
-    depth = np.sqrt(least)
+    depth = np.sqrt(nearest)
     if not inside:
         return -depth
     while True:

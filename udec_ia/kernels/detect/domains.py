@@ -98,7 +98,7 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> int:
         h.cr[g.ULOOK] = unseen
         h.cr[g.UPEND] = waiting + bound
         return int64(g.AT_CONTACTS)
-    most = greatest = real(h, 0.0)
+    largest = greatest = real(h, 0.0)
     idm = h.ci[g.IDPNT]
     ahead = idm
     for _ in range(LEAD):
@@ -110,10 +110,10 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> int:
         if umax + moved > h.cr[g.ETOL]:
             umax += moved
         putr(h, idm, g.KUMAX, umax)
-        most, greatest = max(most, umax), max(greatest, moved)
+        largest, greatest = max(largest, umax), max(greatest, moved)
         idm = iget(h, idm, g.KD)
     h.cr[g.UPEND] = real(h, 0.0)
-    to_update = bool(most > h.cr[g.ETOL])
+    to_update = bool(largest > h.cr[g.ETOL])
     h.cr[g.ULOOK] = h.cr[g.HTOL] if to_update else unseen + waiting + greatest
     if greatest > h.cr[g.ETOL]:
         return int64(g.AT_WAYS)

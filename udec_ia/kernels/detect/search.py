@@ -18,7 +18,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.crossed_tips import AROUND, would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between
-from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, lean, meet, past
+from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, meet, over_ends, past
 from udec_ia.kernels.geometry.sorting import stable_order
 from udec_ia.kernels.links.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.segments import (
@@ -51,7 +51,7 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
     rad = getr(h, iq, g.KRAD)
     if rad > 0:
         dx, dy = getr(h, ip, g.KXCP) - getr(h, iq, g.KXCP), getr(h, ip, g.KYCP) - getr(h, iq, g.KYCP)
-        ahead, behind = lean(h, iq, dx, dy)
+        ahead, behind = over_ends(h, iq, dx, dy)
         return ahead if leaving else behind
     if rad < 0:
         return along
@@ -60,13 +60,13 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
 
 
 @kernel
-def arc_on_edge(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
+def arc_on_edge(h: Memory, ip: int, iq: int, limit: float) -> tuple[bool, float]:
     """Can the arc of corner `ip` and the edge that ends at `iq` have a contact of at most that overlap?
 
     Also returned: their overlap.
     """
     ex, ey, overlap, along, z = ce(h, ip, iq)
-    if overlap < -h.cr[g.ATOL] or overlap > most:
+    if overlap < -h.cr[g.ATOL] or overlap > limit:
         return False, overlap
     if _past(h, ip, iget(h, iq, g.KR), along, True) < 0 or _past(h, ip, iq, z - along, False) < 0:
         return False, overlap
@@ -74,7 +74,7 @@ def arc_on_edge(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
 
 
 @kernel
-def arc_on_arc(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
+def arc_on_arc(h: Memory, ip: int, iq: int, limit: float) -> tuple[bool, float]:
     """Can the arcs of corners `ip` and `iq` have a contact of at most that overlap?
 
     Also returned: their overlap. Two points of edges, both without a radius, cannot: each of them touches the
@@ -86,10 +86,10 @@ def arc_on_arc(h: Memory, ip: int, iq: int, most: float) -> tuple[bool, float]:
     if radii == 0 or dx * dx + dy * dy > reach * reach:
         return False, -reach
     _, _, overlap = cc(h, ip, iq)
-    if overlap > most:
+    if overlap > limit:
         return False, overlap
-    ahead1, behind1 = lean(h, ip, dx, dy)
-    ahead2, behind2 = lean(h, iq, -dx, -dy)
+    ahead1, behind1 = over_ends(h, ip, dx, dy)
+    ahead2, behind2 = over_ends(h, iq, -dx, -dy)
     return max(max(ahead1, behind1), max(ahead2, behind2)) <= h.cr[g.GTOL], overlap
 
 
@@ -149,7 +149,7 @@ def _misplaced(
 
 
 @kernel
-def facing(h: Memory, seg: Any, i: int, j: int, most: float) -> tuple[int, float]:
+def facing(h: Memory, seg: Any, i: int, j: int, limit: float) -> tuple[int, float]:
     """Code of the contact, of at most that overlap, that segments `i` and `j` can have, 0 for none.
 
     One of them at least is an arc. Also returned: their overlap.
@@ -157,13 +157,13 @@ def facing(h: Memory, seg: Any, i: int, j: int, most: float) -> tuple[int, float
     ip, jp = seg[i, CORNER], seg[j, CORNER]
     if seg[i, ARC] + seg[j, ARC] == 2:
         code = g.CORNER_CORNER
-        can, overlap = arc_on_arc(h, ip, jp, most)
+        can, overlap = arc_on_arc(h, ip, jp, limit)
     elif seg[i, ARC] == 1:
         code = g.CORNER_EDGE
-        can, overlap = arc_on_edge(h, ip, jp, most)
+        can, overlap = arc_on_edge(h, ip, jp, limit)
     else:
         code = g.EDGE_CORNER
-        can, overlap = arc_on_edge(h, jp, ip, most)
+        can, overlap = arc_on_edge(h, jp, ip, limit)
     return (code if can else 0), overlap
 
 
@@ -256,10 +256,10 @@ def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float
 
 
 @inlined
-def goes_before(code: int, urgent: float, best: int, most: float) -> bool:
+def goes_before(code: int, urgent: float, best: int, highest: float) -> bool:
     """True if a contact of that code and urgency goes before the best one until now; STRAY comes last."""
     if code > 0:
-        return best <= 0 or urgent > most
+        return best <= 0 or urgent > highest
     return code == STRAY and best == 0
 
 
@@ -267,7 +267,7 @@ def goes_before(code: int, urgent: float, best: int, most: float) -> bool:
 def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
     best, bi, bj = 0, 0, 0
-    most = real(h, 0.0)
+    highest = real(h, 0.0)
     half = h.cr[g.ATOL] * real(h, 0.5)
     for i in range(n):
         ax, ay, bx, by = box(h, seg, i, half)
@@ -278,8 +278,8 @@ def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
             if cx > bx or dx < ax or cy > by or dy < ay:
                 continue
             code, urgent = judge(h, seg, i, j)
-            if goes_before(code, urgent, best, most):
-                best, bi, bj, most = code, i, j, urgent
+            if goes_before(code, urgent, best, highest):
+                best, bi, bj, highest = code, i, j, urgent
     return best, bi, bj
 
 
@@ -325,7 +325,7 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     _cells(h, seg, n, cell, key, row)
     order = stable_order(key)
     best, bi, bj = 0, 0, 0
-    most = real(h, 0.0)
+    highest = real(h, 0.0)
     first = 0
     while first < m:
         last = first
@@ -337,8 +337,8 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
                 if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                     continue
                 code, urgent = judge(h, seg, i, j)
-                if goes_before(code, urgent, best, most):
-                    best, bi, bj, most = code, i, j, urgent
+                if goes_before(code, urgent, best, highest):
+                    best, bi, bj, highest = code, i, j, urgent
         first = last
     return best, bi, bj
 

@@ -144,7 +144,7 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
         fx, fy = carried(h, jb, iget(h, jb, g.KP), fx, fy)
         back = real(h, 0.0)
     before, now = depth_in(h, jb, fx, fy, back), depth_in(h, jb, x, y, real(h, 0.0))
-    most = now
+    deepest = now
     lx, ly, hx, hy = _surroundings(h, jb)
     (enters, leaves), (above, below) = _between(fx, x - fx, lx, hx), _between(fy, y - fy, ly, hy)
     first, last = max(enters, above), min(leaves, below)
@@ -154,10 +154,10 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
         for i in range(n + 1):
             part = real(h, first + (last - first) * i / n)
             place = fx + (x - fx) * part, fy + (y - fy) * part
-            most = max(most, depth_in(h, jb, place[0], place[1], back * (real(h, 1.0) - part)))
-            if most > h.cr[g.CTOL]:
+            deepest = max(deepest, depth_in(h, jb, place[0], place[1], back * (real(h, 1.0) - part)))
+            if deepest > h.cr[g.CTOL]:
                 break
-    return before, most, now
+    return before, deepest, now
 
 
 @kernel
@@ -167,8 +167,8 @@ def _has_gone_in(h: Memory, ib: int, ip: int, jb: int) -> bool:
     Or deeper than FTOL, and it has come in and gone out again.
     """
     for k in range(POINTS if getr(h, ip, g.KRAD) > 0 else 1):
-        before, most, now = _depths(h, ib, ip, jb, k)
-        if most > h.cr[g.CTOL] or (before <= 0 and now <= 0 and most > h.cr[g.FTOL]):
+        before, deepest, now = _depths(h, ib, ip, jb, k)
+        if deepest > h.cr[g.CTOL] or (before <= 0 and now <= 0 and deepest > h.cr[g.FTOL]):
             return True
     return False
 

@@ -10,29 +10,29 @@ from udec_ia.layout import offsets as g
 
 
 @kernel
-def least_mass(h: Memory) -> tuple[float, int, int]:
+def smallest_mass(h: Memory) -> tuple[float, int, int]:
     """Least mass of a free block (of any if none is free), that block, and a block without mass or 0."""
-    free, least = real(h, np.inf), real(h, np.inf)
-    at_free, at_least, massless = int64(0), int64(0), int64(0)
+    free, smallest = real(h, np.inf), real(h, np.inf)
+    at_free, at_smallest, massless = int64(0), int64(0), int64(0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
         mass = getr(h, ib, g.KBM)
         if not mass > 0:
             massless = ib
-        if mass < least:
-            least, at_least = mass, ib
+        if mass < smallest:
+            smallest, at_smallest = mass, ib
         if iget(h, ib, g.KBFIX) == 0 and mass < free:
             free, at_free = mass, ib
         ib = iget(h, ib, g.KB)
     if at_free == 0:
-        return least, at_least, massless
+        return smallest, at_smallest, massless
     return free, at_free, massless
 
 
 @kernel
 def greatest_stiffness(h: Memory) -> tuple[float, int]:
     """Greatest joint stiffness of a contact, and a contact without stiffness or 0."""
-    most = real(h, 0.0)
+    largest = real(h, 0.0)
     undefined = int64(0)
     ic = h.ci[g.ICPNT]
     while ic != 0:
@@ -40,6 +40,6 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
         kn, ks = h.cr[g.AKN + m], h.cr[g.AKS + m]
         if not min(kn, ks) > 0:
             undefined = ic
-        most = max(most, max(kn, ks))
+        largest = max(largest, max(kn, ks))
         ic = iget(h, ic, g.KC)
-    return most, undefined
+    return largest, undefined

@@ -41,8 +41,8 @@ def internal_mode(h: Memory, ib: int) -> float:
     j11, j12, j22 = getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22)
     half = real(h, 0.5)
     mean, diff = (j11 + j22) * half, (j11 - j22) * half
-    least = mean - np.sqrt(diff * diff + j12 * j12)
-    return least / (getr(h, ie, g.KSAREA) * h.cr[g.ALAM1 + iget(h, ib, g.KMAT) - 1])
+    smallest = mean - np.sqrt(diff * diff + j12 * j12)
+    return smallest / (getr(h, ie, g.KSAREA) * h.cr[g.ALAM1 + iget(h, ib, g.KMAT) - 1])
 
 
 @kernel
@@ -64,12 +64,12 @@ def zone_stiffness(h: Memory, ib: int, stiffness: Any) -> None:
 def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
     """Add the stiffness of contact `ic` at the grid-points on both its sides."""
     m = iget(h, ic, g.KCM) - 1
-    most = max(h.cr[g.AKN + m], h.cr[g.AKS + m])
+    stiffer = max(h.cr[g.AKN + m], h.cr[g.AKS + m])
     for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
         if iget(h, ib, HEAD) == g.MFDEF:
             ip = corner_of(h, ib, ic)
-            stiffness[iget(h, ip, g.KGP)] += most
-            stiffness[iget(h, iget(h, ip, g.KR), g.KGP)] += most
+            stiffness[iget(h, ip, g.KGP)] += stiffer
+            stiffness[iget(h, iget(h, ip, g.KR), g.KGP)] += stiffer
 
 
 @kernel
@@ -79,14 +79,14 @@ def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
     A grid-point with given velocities counts as any other, lest its zones strain too much in one step.
     stiffness: one real for every word of IA() in use, all zero.
     """
-    least, at = real(h, np.inf), int64(0)
+    smallest, at = real(h, np.inf), int64(0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
         kind, fixed = iget(h, ib, HEAD), iget(h, ib, g.KBFIX) == g.FIXED
         if kind == g.MFDEF and not fixed:
             zone_stiffness(h, ib, stiffness)
-        elif kind == g.MSDEF and not fixed and internal_mode(h, ib) < least:
-            least, at = internal_mode(h, ib), ib
+        elif kind == g.MSDEF and not fixed and internal_mode(h, ib) < smallest:
+            smallest, at = internal_mode(h, ib), ib
         ib = iget(h, ib, g.KB)
     ic = h.ci[g.ICPNT]
     while ic != 0:
@@ -98,8 +98,8 @@ def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
         if iget(h, ib, g.KBFIX) != g.FIXED and iget(h, ib, HEAD) == g.MFDEF:
             ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
             while ig != 0:
-                if getr(h, ig, g.KGPM) < least * stiffness[ig]:
-                    least, at = getr(h, ig, g.KGPM) / stiffness[ig], ig
+                if getr(h, ig, g.KGPM) < smallest * stiffness[ig]:
+                    smallest, at = getr(h, ig, g.KGPM) / stiffness[ig], ig
                 ig = iget(h, ig, g.KG)
         ib = iget(h, ib, g.KB)
-    return least, at
+    return smallest, at

@@ -55,17 +55,17 @@ def strain_force(h: Memory, ib: int) -> float:
 @kernel
 def point_force(h: Memory, ib: int) -> tuple[float, int]:
     """Greatest unbalanced force on a grid-point of block `ib`, and the grid-point; 0 if there is none."""
-    most, at = real(h, 0.0), int64(0)
+    largest, at = real(h, 0.0), int64(0)
     ig = int64(0) if iget(h, ib, g.KBFIX) == g.FIXED else iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
         fx = real(h, 0.0) if fix & g.ALONG_X else getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX]
         fy = real(h, 0.0) if fix & g.ALONG_Y else getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
         force = np.sqrt(fx * fx + fy * fy)
-        if force > most:
-            most, at = force, ig
+        if force > largest:
+            largest, at = force, ig
         ig = iget(h, ig, g.KG)
-    return most, at
+    return largest, at
 
 
 @kernel
@@ -74,7 +74,7 @@ def greatest(h: Memory, soft: Any) -> tuple[float, int]:
 
     That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
     """
-    most, at = real(h, 0.0), int64(0)
+    largest, at = real(h, 0.0), int64(0)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if soft is not None and iget(h, ib, HEAD) == g.MFDEF:
@@ -83,10 +83,10 @@ def greatest(h: Memory, soft: Any) -> tuple[float, int]:
             force, on = block_force(h, ib), ib
         if soft is not None and iget(h, ib, HEAD) == g.MSDEF and strain_force(h, ib) > force:
             force, on = strain_force(h, ib), iget(h, ib, g.KBEX)
-        if force > most:
-            most, at = force, on
+        if force > largest:
+            largest, at = force, on
         ib = iget(h, ib, g.KB)
-    return most, at
+    return largest, at
 
 
 @kernel
@@ -133,10 +133,10 @@ def greatest_under_loads(h: Memory) -> tuple[float, int]:
         fx, fy, x, y = load(h, iu)
         push_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, g.KU)
-    most, at = greatest(h, True)
+    largest, at = greatest(h, True)
     for i in range(n - 1, -1, -1):
         put_sums_back(h, conditions[i], words[i])
-    return most, at
+    return largest, at
 
 
 @kernel
@@ -188,10 +188,10 @@ def force_ratio(h: Memory, soft: Any) -> float:
             total += inner
             count += stressed
             ib = iget(h, ib, g.KB)
-    most, _ = unbalanced(h, soft)
-    if most == 0:
-        return most
-    return most * count / total if total > 0 else real(h, np.inf)
+    largest, _ = unbalanced(h, soft)
+    if largest == 0:
+        return largest
+    return largest * count / total if total > 0 else real(h, np.inf)
 
 
 @kernel

@@ -20,15 +20,15 @@ CHECK = 10  # cycles between two looks at the force ratio
 
 
 @kernel
-def until_due(h: Memory, at_most: int) -> int:
+def until_due(h: Memory, limit: int) -> int:
     """Cycles until the next history is due, or `at_most` if that comes first."""
-    least = int64(at_most)
+    cycles = int64(limit)
     ih = int64(h.ci[g.IHPNT])
     while ih != 0:
         every = iget(h, ih, g.KHN)
-        least = min(least, every - h.ci[g.MCTOT] % every)
+        cycles = min(cycles, every - h.ci[g.MCTOT] % every)
         ih = iget(h, ih, g.KH)
-    return least
+    return cycles
 
 
 @kernel

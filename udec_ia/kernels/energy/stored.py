@@ -98,7 +98,7 @@ def _moves(h: Memory, ib: int, speed: float) -> bool:
 @kernel
 def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
     """As `liveliest`, of the grid-points of block `ib`."""
-    total, most, at = 0.0, 0.0, int64(0)
+    total, largest, at = 0.0, 0.0, int64(0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         xd, yd = np.float64(getr(h, ig, g.KXDG)), np.float64(getr(h, ig, g.KYDG))
@@ -107,10 +107,10 @@ def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
             total += energy
         else:
             energy = 0.0
-        if energy > most:
-            most, at = energy, ig
+        if energy > largest:
+            largest, at = energy, ig
         ig = iget(h, ig, g.KG)
-    return total, most, at
+    return total, largest, at
 
 
 @kernel
@@ -139,7 +139,7 @@ def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
     Then what the block or grid-point has of it that has most, and the address of that; 0 if nothing moves.
     What is so slow that a step does not change its place is at rest.
     """
-    total, most, at = 0.0, 0.0, int64(0)
+    total, largest, at = 0.0, 0.0, int64(0)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
@@ -149,10 +149,10 @@ def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
                 energy = _motion_of_block(h, ib, soft)
                 best, on = energy, ib
             total += energy
-            if best > most:
-                most, at = best, on
+            if best > largest:
+                largest, at = best, on
         ib = iget(h, ib, g.KB)
-    return total, most, at
+    return total, largest, at
 
 
 @kernel

@@ -12,6 +12,9 @@ a contact passes from edge to arc, both forms give the same normal and the same 
 A point of an edge (KRAD = 0: a flat corner, or one that GENERATE has put there) is a circle of radius zero
 that may touch edges and arcs of others. Whatever slides past it goes from the one edge to the other where
 their bisector is: there both give the same overlap.
+
+A corner of a deformable block that has become straight or concave has no arc any more. What touched it there
+by an arc of its own goes to one of its two edges; its contact with an edge stays until it opens.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.shape import zcs
+from udec_ia.kernels.geometry.shape import is_edge_point, zcs
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g
 
@@ -68,7 +71,7 @@ def past(h: Memory, iq: int, ip: int) -> float:
 
 
 @inlined
-def lean(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
+def over_ends(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
     """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
 
     Returns its component along the edge that leaves the corner and minus its component along the edge
@@ -94,7 +97,7 @@ def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
     arc is no longer than half a circle, so for slacks up to 0.5 what faces it is less than 120 degrees from
     its middle, and what does not is more than 150 degrees away.
     """
-    ahead, behind = lean(h, ip, x, y)
+    ahead, behind = over_ends(h, ip, x, y)
     if getr(h, ip, g.KRAD) <= 0:  # a point of an edge: outwards is to the left of its edges
         tx, ty, ux, uy = tangents(h, ip)
         return max(ahead, behind) <= slack and y * (tx + ux) - x * (ty + uy) > 0
@@ -102,6 +105,12 @@ def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
     inwards = x * mx + y * my
     opposite = inwards > 0 and inwards * inwards > real(h, 0.25) * (mx * mx + my * my)
     return max(ahead, behind) <= slack and not opposite
+
+
+@inlined
+def has_no_arc(h: Memory, ip: int) -> bool:
+    """True if corner `ip` is straight or concave, and no point of an edge."""
+    return getr(h, ip, g.KRAD) <= 0 and not is_edge_point(h, ip)
 
 
 @inlined
@@ -116,22 +125,30 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
     """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2.
 
     The last number is the margin of the code: below zero, the normal has left an arc or the contact
-    point has left the straight part of an edge, and the contact may have to be re-classified.
+    point has left the straight part of an edge, and the contact may have to be re-classified; or there is no
+    such arc.
     """
+    gone = real(h, -1.0)
     if code == g.CORNER_CORNER:
         nx, ny, overlap = cc(h, ip, iq)
         x, y = point_on(h, ip, nx, ny, overlap)
         dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
-        margin = h.cr[g.GTOL] - max(max(lean(h, ip, dx, dy)), max(lean(h, iq, -dx, -dy)))
+        margin = h.cr[g.GTOL] - max(max(over_ends(h, ip, dx, dy)), max(over_ends(h, iq, -dx, -dy)))
+        if has_no_arc(h, ip) or has_no_arc(h, iq):
+            margin = gone
     elif code == g.CORNER_EDGE:
         ex, ey, overlap, along, z = ce(h, ip, iq)
         nx, ny = -ex, -ey
         x, y = point_on(h, ip, nx, ny, overlap)
         margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+        if overlap <= 0 and has_no_arc(h, ip):
+            margin = gone
     else:
         nx, ny, overlap, along, z = ce(h, iq, ip)
         x, y = point_on(h, iq, -nx, -ny, overlap)
         margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+        if overlap <= 0 and has_no_arc(h, iq):
+            margin = gone
     return nx, ny, overlap, x, y, margin
 
 

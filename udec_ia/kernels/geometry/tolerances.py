@@ -37,7 +37,7 @@ def tolset(h: Memory, d: float) -> None:
 @kernel
 def edges(h: Memory) -> tuple[float, float, int]:
     """Mean span of all edges, span of the shortest one and the corner where it ends."""
-    total, least = real(h, 0.0), real(h, np.inf)
+    total, shortest_length = real(h, 0.0), real(h, np.inf)
     n, shortest = 0, int64(0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
@@ -49,30 +49,30 @@ def edges(h: Memory) -> tuple[float, float, int]:
             if z < real(h, np.inf):
                 total += z
                 n += 1
-                if z < least:
-                    least, shortest = z, ip
+                if z < shortest_length:
+                    shortest_length, shortest = z, ip
             ip = iget(h, ip, g.KR)
             if ip == ip0:
                 break
         ib = iget(h, ib, g.KB)
-    return total / real(h, n), least, shortest
+    return total / real(h, n), shortest_length, shortest
 
 
 @kernel
 def extent(h: Memory) -> float:
     """Greatest |x| + |y| of any corner."""
-    most = real(h, 0.0)
+    largest = real(h, 0.0)
     ib = h.ci[g.IBPNT]
     while ib != 0:
         ip0 = iget(h, ib, g.KP)
         ip = ip0
         while True:
-            most = max(most, abs(getr(h, ip, g.KXP)) + abs(getr(h, ip, g.KYP)))
+            largest = max(largest, abs(getr(h, ip, g.KXP)) + abs(getr(h, ip, g.KYP)))
             ip = iget(h, ip, g.KR)
             if ip == ip0:
                 break
         ib = iget(h, ib, g.KB)
-    return most
+    return largest
 
 
 @kernel
@@ -89,5 +89,5 @@ def set_rounding(h: Memory, d: float) -> None:
 @kernel
 def default_rounding(h: Memory) -> float:
     """Our rounding length where no ROUND was given."""
-    mean, least, _ = edges(h)
-    return min(mean * real(h, 0.05), least * real(h, 0.125))
+    mean, shortest_length, _ = edges(h)
+    return min(mean * real(h, 0.05), shortest_length * real(h, 0.125))

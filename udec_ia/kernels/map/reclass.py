@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import ce, coord, lean, past
+from udec_ia.kernels.geometry.contact_geometry import ce, coord, has_no_arc, over_ends, past
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.lists import (
     corner_of,
@@ -198,7 +198,7 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
     (nx, ny) points from the circle's centre to the edge.
     """
     code = iget(h, ic, g.KCCOD)
-    ahead, behind = lean(h, ip, nx, ny)
+    ahead, behind = over_ends(h, ip, nx, ny)
     slack = h.cr[g.GTOL] / h.cr[g.DTOL]
     if ahead > slack:
         return _all_rounding(h, next_corner(h, ib, ip)) and mvfor(h, ic, ib, code)
@@ -206,20 +206,33 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
 
 
 @kernel
+def _to_an_edge(h: Memory, ic: int, ib: int, ip: int, iq: int) -> bool:
+    """Corner `ip` of block `ib` has no arc any more: its contact with corner `iq` goes to the nearer edge."""
+    code = g.EDGE_CORNER if iget(h, ic, g.KB1) == ib else g.CORNER_EDGE
+    if not (past(h, ip, iq) > 0 and mvfor(h, ic, ib, code)):
+        puti(h, ic, g.KCCOD, code)
+    return True
+
+
+@kernel
 def _off_the_corner(h: Memory, ic: int) -> bool:
-    """A corner/corner contact whose line of centres has left one of the two arcs."""
+    """A corner/corner contact whose line of centres has left one of the two arcs, or that has lost one."""
     ip, iq = iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if has_no_arc(h, ip):
+        return _to_an_edge(h, ic, iget(h, ic, g.KB1), ip, iq)
+    if has_no_arc(h, iq):
+        return _to_an_edge(h, ic, iget(h, ic, g.KB2), iq, ip)
     dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
-    ahead1, behind1 = lean(h, ip, dx, dy)
-    ahead2, behind2 = lean(h, iq, -dx, -dy)
-    most = max(max(ahead1, behind1), max(ahead2, behind2))
-    if most <= h.cr[g.GTOL]:
+    ahead1, behind1 = over_ends(h, ip, dx, dy)
+    ahead2, behind2 = over_ends(h, iq, -dx, -dy)
+    furthest = max(max(ahead1, behind1), max(ahead2, behind2))
+    if furthest <= h.cr[g.GTOL]:
         return False
-    if most == ahead1:
+    if furthest == ahead1:
         return mvfor(h, ic, iget(h, ic, g.KB1), g.EDGE_CORNER)
-    if most == ahead2:
+    if furthest == ahead2:
         return mvfor(h, ic, iget(h, ic, g.KB2), g.CORNER_EDGE)
-    puti(h, ic, g.KCCOD, g.EDGE_CORNER if most == behind1 else g.CORNER_EDGE)
+    puti(h, ic, g.KCCOD, g.EDGE_CORNER if furthest == behind1 else g.CORNER_EDGE)
     return True
 
 

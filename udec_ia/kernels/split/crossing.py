@@ -31,7 +31,7 @@ from udec_ia.layout import offsets as g
 
 OK, TOO_CLOSE, TOO_SHORT, TOO_MANY = 0, 1, 2, 3
 GRAZING = 0.01  # sine of the smallest angle between a cut and an edge
-LEAST, SLACK = 5, 6  # columns of a line
+SHORTEST, SLACK = 5, 6  # columns of a line
 T, X, Y = 0, 1, 2
 CORNER, AT = 0, 1
 
@@ -176,7 +176,7 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
         if at == 0:
             vx, vy = x - getr(h, ia, g.KXP), y - getr(h, ia, g.KYP)
             part = np.sqrt(vx * vx + vy * vy)
-            if min(part, z - part) < line[LEAST]:
+            if min(part, z - part) < line[SHORTEST]:
                 return TOO_SHORT
     return OK
 
@@ -190,7 +190,7 @@ def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
         if what != OK:
             where[0, X], where[0, Y] = x, y
             return what
-    if where[k + 1, T] - where[k, T] < line[LEAST]:
+    if where[k + 1, T] - where[k, T] < line[SHORTEST]:
         where[0, X], where[0, Y] = where[k, X], where[k, Y]
         return TOO_SHORT
     return OK

@@ -136,13 +136,13 @@ def _settle_around(h: Memory, ib: int, ip: int) -> None:
 def _shortest(h: Memory, ib: int) -> float:
     """Length of the shortest edge of block `ib`."""
     ip0 = iget(h, ib, g.KP)
-    least, _, _ = zcs(h, ip0)
+    shortest, _, _ = zcs(h, ip0)
     ip = iget(h, ip0, g.KR)
     while ip != ip0:
         z, _, _ = zcs(h, ip)
-        least = min(least, z)
+        shortest = min(shortest, z)
         ip = iget(h, ip, g.KR)
-    return least
+    return shortest
 
 
 @apart
@@ -172,9 +172,9 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, passes: Any) 
     if passes[SHARE] != 0:
         call_entry(passes[SHARE], h, ib, jb)
     if rounding_is_open(h):
-        least = min(_shortest(h, ib), _shortest(h, jb))
-        if least < h.cr[g.DTOL] * real(h, 4.0):
-            set_rounding(h, least * real(h, 0.125))
+        shortest = min(_shortest(h, ib), _shortest(h, jb))
+        if shortest < h.cr[g.DTOL] * real(h, 4.0):
+            set_rounding(h, shortest * real(h, 0.125))
     crad(h, ib)
     crad(h, jb)
     end = iget(h, iget(h, jb, g.KP), g.KR)  # the crack runs from this corner to KP

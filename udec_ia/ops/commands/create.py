@@ -71,10 +71,10 @@ def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
     """How far the block reaches. Error 28 unless the reals can hold its fourth power."""
     reals = np.finfo(array.scheme.real_type)
     size = max(abs(x) + abs(y) for x, y in corners)
-    least, most = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
-    if not least <= size <= most:
+    smallest, largest = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
+    if not smallest <= size <= largest:
         bits = array.scheme.real_bits
-        detail = f"a block {size:g} across, where {bits}-bit reals bear {least:.0e} to {most:.0e}"
+        detail = f"a block {size:g} across, where {bits}-bit reals bear {smallest:.0e} to {largest:.0e}"
         raise UdecError(28, detail, "take another unit of length", parameter="x1")
     return size
 
@@ -82,12 +82,12 @@ def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
 def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
     """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings."""
     ends = zip(corners, (*corners[1:], corners[0]), strict=True)
-    least, x, y = min((math.dist(a, b), *b) for a, b in ends)
+    shortest, x, y = min((math.dist(a, b), *b) for a, b in ends)
     size = max(abs(x) + abs(y) for x, y in corners)
-    check_resolution(array, "x1", "an edge", least, EDGE_DIGITS, size)
+    check_resolution(array, "x1", "an edge", shortest, EDGE_DIGITS, size)
     if array.h.ci[g.LROUND]:
         d = float(array.h.cr[g.DTOL])
-        check_rounding(d, least, x, y)
+        check_rounding(d, shortest, x, y)
         check_resolution(array, "x1", "a rounding length", d, ROUNDING_DIGITS, size)
 
 

@@ -198,11 +198,11 @@ def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
     for one, two in zip(found, found[1:] + found[:1], strict=True):
         a, b = places[one], places[two]
         need = d * ((not a.on_edge) + (not b.on_edge))
-        least = math.hypot(b.x - a.x, b.y - a.y)
-        if least < need * (1 - 1e-6) or least == 0:
+        distance = math.hypot(b.x - a.x, b.y - a.y)
+        if distance < need * (1 - 1e-6) or distance == 0:
             raise UdecError(
                 14,
-                f"grid-points {one + 1} and {two + 1} are {least:g} apart, which leaves no room for "
+                f"grid-points {one + 1} and {two + 1} are {distance:g} apart, which leaves no room for "
                 f"rounding by {d:g}",
                 "set them farther apart, or take a smaller ROUND",
             )

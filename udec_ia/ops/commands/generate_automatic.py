@@ -32,7 +32,7 @@ def generate_automatically(array: MainArray, ib: int, edge: float, paired: bool 
     divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
     return (
         f"block@{ib} has {len(found.zones)} zones and {len(found.points)} grid-points, "
-        f"the least angle is {found.least_angle:.1f} degrees"
+        f"the least angle is {found.smallest_angle:.1f} degrees"
     )
 
 
@@ -40,14 +40,14 @@ def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
     """Error 14 if a grid-point on an edge stands in the rounding of a corner."""
     ends = np.append(found.ring, found.ring[0])
     for i, j in pairwise(ends.tolist()):
-        least = float(np.hypot(*(found.points[i] - found.points[j])))
-        if (i < corners) != (j < corners) and least < d * (1 - SLACK):
+        distance = float(np.hypot(*(found.points[i] - found.points[j])))
+        if (i < corners) != (j < corners) and distance < d * (1 - SLACK):
             x, y = found.points[min(i, j)]
-            detail = f"an edge of {edge:g} sets a grid-point {least:g} from the corner ({x:g}, {y:g})"
+            detail = f"an edge of {edge:g} sets a grid-point {distance:g} from the corner ({x:g}, {y:g})"
             raise UdecError(
                 14,
                 f"{detail}, which is rounded by {d:g}",
-                f"take a longer edge, or ROUND {0.9 * least:.2g} before",
+                f"take a longer edge, or ROUND {0.9 * distance:.2g} before",
                 parameter="edge",
             )
 

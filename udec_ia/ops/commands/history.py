@@ -51,9 +51,11 @@ def define(array: MainArray, what: Recordable, groups: Sequence[int], every: int
 
     Error 28 for an interval that is none, error 1 without memory; then nothing is changed.
     """
-    most = array.scheme.top_address
-    if not 1 <= whole(n=every) <= most:
-        raise UdecError(28, f"n is {every}", f"a history is recorded every 1 to {most} cycles", parameter="n")
+    limit = array.scheme.top_address
+    if not 1 <= whole(n=every) <= limit:
+        raise UdecError(
+            28, f"n is {every}", f"a history is recorded every 1 to {limit} cycles", parameter="n"
+        )
     require(array, len(groups) * size_of(array.h, g.NVHI))
     h, before = array.h, next(reversed(addresses(array)), 0)
     for group in groups:

@@ -40,8 +40,8 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
     for ib in blocks_in(array, where):
         inside = {iad: at(x, y) for iad, x, y in _pieces(h, ib)}
         # no force on a grid-point is more than a stress times this length
-        most = 4 * float(getr(h, ib, g.KBRO)) * len(inside)
-        for what, factor in (("stress", 1.0), ("force", most)):
+        length = 4 * float(getr(h, ib, g.KBRO)) * len(inside)
+        for what, factor in (("stress", 1.0), ("force", length)):
             held(array, f"a {what} in block@{ib}", (factor * s for triple in inside.values() for s in triple))
         if inside:
             stresses[ib] = inside

@@ -21,46 +21,46 @@ Point = tuple[float, float]
 STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
 
 
-def too_short(d: float, least: float, x: float, y: float, when: str = "") -> UdecError:
+def too_short(d: float, shortest: float, x: float, y: float, when: str = "") -> UdecError:
     """Error 14: roundings of length `d` have to share `least` on the edge that ends at (x, y)."""
     return UdecError(
         14,
-        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {least / 2:g} at most{when}",
+        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}",
         "the rounding length must not exceed half the shortest edge, nor the shortest part of an edge that "
         "GENERATE has put between a corner and a point",
         parameter="d",
     )
 
 
-def check_rounding(d: float, least: float, x: float, y: float) -> None:
+def check_rounding(d: float, shortest: float, x: float, y: float) -> None:
     """Error 14 if the shortest edge, which ends at (x, y), cannot hold the roundings of its two corners."""
-    if 2 * d > least * (1 + 1e-6):
-        raise too_short(d, least, x, y)
+    if 2 * d > shortest * (1 + 1e-6):
+        raise too_short(d, shortest, x, y)
 
 
 def check_all_edges(array: MainArray, d: float) -> None:
     """Error 14 if an edge of a block is too short for the rounding length `d`."""
     h = array.h
     if h.ci[g.IBPNT] != 0:
-        _, least, ip = edges(h)
-        check_rounding(d, float(least), float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP)))
+        _, shortest, ip = edges(h)
+        check_rounding(d, float(shortest), float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP)))
 
 
 def check_strained_edges(array: MainArray) -> None:
     """Error 14 if on an edge the roundings overlap by more than FTOL; by less they may, for blocks deform."""
     h = array.h
-    _, least, ip = edges(h)
-    if 2 * h.cr[g.DTOL] - least > h.cr[g.FTOL]:
+    _, shortest, ip = edges(h)
+    if 2 * h.cr[g.DTOL] - shortest > h.cr[g.FTOL]:
         raise crowded(array, int(ip))
 
 
 def crowded(array: MainArray, ip: int, cycle: int = 0) -> UdecError:
     """Error 14: the roundings of the edge that ends at corner `ip` overlap by too much, since that cycle."""
     h = array.h
-    least = span(h, ip, zcs(h, ip)[0])
+    shortest = span(h, ip, zcs(h, ip)[0])
     when = f", {STRAINED} {cycle}" if cycle else ""
     return too_short(
-        float(h.cr[g.DTOL]), float(least), float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP)), when
+        float(h.cr[g.DTOL]), float(shortest), float(getr(h, ip, g.KXP)), float(getr(h, ip, g.KYP)), when
     )
 
 

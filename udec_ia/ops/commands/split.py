@@ -9,7 +9,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.split.crossing import LEAST, X, Y, rounding_is_open
+from udec_ia.kernels.split.crossing import SHORTEST, X, Y, rounding_is_open
 from udec_ia.kernels.split.split import (
     DONE,
     NO_MEMORY,
@@ -78,9 +78,9 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
         return 0
     boxes.enter(array)
     digit = last_digit(array, boxes.size)
-    least = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
+    shortest = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
     slack = ROUNDINGS * (digit + last_digit(array, abs(x1) + abs(y1)))
-    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, least, slack], array.h.cr.dtype)
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, shortest, slack], array.h.cr.dtype)
     while not _cut(array, boxes, line):
         boxes.forget()
     if array.h.ci[g.MCTOT] > 0:
@@ -94,13 +94,13 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     boxes.enter(array)
     h = array.h
     rows = np.empty(boxes.n, np.int64)
-    status, most = NO_ROWS, CROSSINGS
+    status, room = NO_ROWS, CROSSINGS
     while status == NO_ROWS:
-        where, which = np.empty((most, 3), h.cr.dtype), np.empty((most, 2), np.int64)
+        where, which = np.empty((room, 3), h.cr.dtype), np.empty((room, 2), np.int64)
         status, found, cuts = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where, which)
-        most *= 2
+        room *= 2
     if status != DONE:
-        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[LEAST]))
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
         if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
@@ -118,15 +118,15 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     return bool(status == DONE)
 
 
-def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, least: float) -> None:
+def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest: float) -> None:
     place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
     if status == REFUSED_SHORT and rounding_is_open(array.h):
         bits = array.scheme.real_bits
-        detail = f"{place} it leaves an edge shorter than {least:g}, the finest for {bits}-bit reals here"
+        detail = f"{place} it leaves an edge shorter than {shortest:g}, the finest for {bits}-bit reals here"
         advice = "move the line, take the origin nearer to the blocks, or a --build with 64-bit reals"
         raise UdecError(27, detail, advice, group=ib)
     if status == REFUSED_SHORT:
-        detail = f"the cut {place} leaves an edge shorter than {least:g}"
+        detail = f"the cut {place} leaves an edge shorter than {shortest:g}"
         raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
     raise UdecError(
         27,

@@ -183,13 +183,13 @@ def relax(points: Floats, ring: Ints, zones: Ints | None = None) -> tuple[Floats
     Zones that are given stay as they are, else the ring must be the first points.
     """
     new = triangulate(points, len(ring)) if zones is None else zones
-    best, found = _least(points, new, ring), (points, new)
+    best, found = _poorest(points, new, ring), (points, new)
     for exponent in EXPONENTS:
         points = _moved(points, new, ring, exponent)
         new = triangulate(points, len(ring)) if zones is None else zones
-        least = _least(points, new, ring)
-        if least >= best:
-            best, found = least, (points, new)
+        poorest = _poorest(points, new, ring)
+        if poorest >= best:
+            best, found = poorest, (points, new)
     return found
 
 
@@ -198,7 +198,7 @@ def shapes(points: Floats, zones: Ints) -> Floats:
     return np.asarray(4 * 3**0.5 * areas(points, zones) / (sides(points, zones) ** 2).sum(axis=1))
 
 
-def _least(points: Floats, zones: Ints, ring: Ints) -> tuple[float, float]:
+def _poorest(points: Floats, zones: Ints, ring: Ints) -> tuple[float, float]:
     """The worst shape of any zone, and of the zones with a point inside (the outline may force the first)."""
     each = shapes(points, zones)
     inside = each[~np.isin(zones, ring).all(axis=1)]

@@ -1,6 +1,6 @@
 """Zones for GENERATE ... AUTOMATIC: the outline of a block divided into triangles of a wanted size.
 
-    m = mesh(corners, edge)      corners clockwise; m.points, m.zones, m.ring, m.least_angle, m.worst_ratio
+    m = mesh(corners, edge)      corners clockwise; m.points, m.zones, m.ring, m.smallest_angle, m.worst_ratio
 
 1. Each edge of the outline is divided evenly, into parts as near to `edge` as a whole number of them allows.
 2. Points are laid inside, as a lattice of equilateral triangles, and then moved so that the worst-shaped
@@ -26,7 +26,7 @@ from udec_ia.errors import UdecError
 from udec_ia.ops.mesh.inside import Floats, Ints, areas, fill, following, lattice, relax, sides, triangulate
 from udec_ia.ops.mesh.pairs import pair_up
 
-MOST_ZONES = 2_000_000
+MAX_ZONES = 2_000_000
 EQUILATERAL = 3**0.5 / 4  # area of an equilateral triangle of side 1
 
 
@@ -57,7 +57,7 @@ class Mesh:
         return np.asarray(EQUILATERAL * longest**2 / areas(self.points, self.zones))
 
     @property
-    def least_angle(self) -> float:
+    def smallest_angle(self) -> float:
         """The least angle of any zone, degrees."""
         return float(self.angles.min())
 
@@ -111,10 +111,10 @@ def _checked(corners: ArrayLike, edge: float) -> Floats:
         raise UdecError(28, "the corners must run clockwise and enclose an area")
     round_it = float(np.linalg.norm(following(given) - given, axis=1).sum())
     zones = area / EQUILATERAL / edge / edge + round_it / edge
-    if zones > MOST_ZONES:
-        least = max((2 * area / (EQUILATERAL * MOST_ZONES)) ** 0.5, 2 * round_it / MOST_ZONES)
-        detail = f"zones with an edge of {edge:g} would be {zones:.2g} in number, over {MOST_ZONES:.0g}"
-        raise UdecError(28, detail, f"take an edge of {least:.1g} or more", parameter="edge")
+    if zones > MAX_ZONES:
+        smallest_edge = max((2 * area / (EQUILATERAL * MAX_ZONES)) ** 0.5, 2 * round_it / MAX_ZONES)
+        detail = f"zones with an edge of {edge:g} would be {zones:.2g} in number, over {MAX_ZONES:.0g}"
+        raise UdecError(28, detail, f"take an edge of {smallest_edge:.1g} or more", parameter="edge")
     return given
 
 

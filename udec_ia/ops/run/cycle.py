@@ -159,9 +159,9 @@ def _run(
         start = working_time()
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
-            most = min(target - done, runaway.ahead(array.h))
+            cycles = min(target - done, runaway.ahead(array.h))
             given = soft(array), bound.blocks, bound.joints
-            done += run_unwatched(array.h, most, given) if watch is None else watch.run(most, given)
+            done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
             settled()
             _raise_error(array, bound.book)
             runaway.look(array)
@@ -258,11 +258,11 @@ def _raise_error(array: MainArray, laws: LawBook) -> None:
             number, f"in cycle {int(h.ci[g.MCTOT])}", "take a smaller FRACTION or a greater ROUND"
         )
     m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
-    most = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
+    limit = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
     detail = (
         f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
         f"({getr(h, group, g.KXC):g}, {getr(h, group, g.KYC):g}) overlaps by {overlap:g}, more than "
-        f"{most}, in cycle {int(h.ci[g.MCTOT])}"
+        f"{limit}, in cycle {int(h.ci[g.MCTOT])}"
     )
     advice = (
         f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "

@@ -111,12 +111,13 @@ def on_rounding(array: MainArray) -> Iterator[str]:
     h = array.h
     if h.ci[g.LROUND] or h.ci[g.MCTOT] or not h.ci[g.IBPNT]:
         return
-    mean, least, ip = (float(one) for one in edges(h))
-    if least < mean / SLIVER:
+    mean, shortest, ip = (float(one) for one in edges(h))
+    if shortest < mean / SLIVER:
         x, y = float(getr(h, int(ip), g.KXP)), float(getr(h, int(ip), g.KYP))
         yield (
-            f"the edge of {least:.3g} m that ends at ({x:g}, {y:g}), where the mean edge has {mean:.3g} m, "
-            f"makes the rounding length {h.cr[g.DTOL]:.3g} m and allows overlaps up to half of that: "
+            f"the edge of {shortest:.3g} m that ends at ({x:g}, {y:g}), "
+            f"where the mean edge has {mean:.3g} m, makes "
+            f"the rounding length {h.cr[g.DTOL]:.3g} m and allows overlaps up to half of that: "
             "cut elsewhere, or DELETE the sliver"
         )
 

@@ -139,14 +139,14 @@ class Runaway:
 
     def _error(self, array: MainArray, there: float, came: float) -> UdecError:
         h = array.h
-        _, most, at = liveliest(h, soft_in(h))
+        _, largest, at = liveliest(h, soft_in(h))
         step = float(h.cr[g.TDEL])
         share = step / damped(self.safe.step, float(h.cr[g.BETA]))
         self._account = None
         detail = (
             f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "
-            f"put in {came:.3g}: {kind_of(h, int(at))} leads with {most:.3g}. The time-step of {step:.3g} s "
-            f"was {share:.3g} of the safe bound"
+            f"put in {came:.3g}: {kind_of(h, int(at))} leads with {largest:.3g}. The time-step "
+            f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
         advice = f"go back to where you began or saved, and take FRACTION {safe_fraction(array, share):.2g}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))

@@ -25,7 +25,7 @@ from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
-from udec_ia.kernels.drive.extremes import greatest_stiffness, least_mass
+from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
 from udec_ia.layout import offsets as g
@@ -87,7 +87,10 @@ class _Rows:
         zero = np.zeros_like(j11)
         tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
         square = self.length[rows] ** 2
-        self.mass[rows, 3:] = (np.linalg.eigvalsh(tensor)[:, 0] / square)[:, None]
+        known = np.isfinite(tensor).all(axis=(1, 2))  # the others have no eigenvalues, and no safe step
+        smallest = np.full(len(rows), np.nan)
+        smallest[known] = np.linalg.eigvalsh(tensor[known])[:, 0]
+        self.mass[rows, 3:] = (smallest / square)[:, None]
         self.free[rows, 3:] = 1
         one, two, area = h.cr[g.ALAM1 + mat], h.cr[g.ALAM2 + mat], np.abs(area)
         self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
@@ -157,8 +160,9 @@ class _Rows:
             np.add.at(self.drag, at, rows)
 
     def limit(self) -> Limit:
-        """The bound, and who sets it."""
+        """The bound, and who sets it: 0 where a mass or a stiffness is not a number."""
         rate = np.where(self.free > 0, _rate(self.sum, self.drag, self.mass), 0.0)
+        rate[np.isnan(rate)] = np.inf
         at = int(rate.max(axis=1).argmax())
         fastest = float(rate[at].max())
         return Limit(2 / fastest if fastest else math.inf, int(self.address[at]))
@@ -196,7 +200,7 @@ def bound(array: MainArray) -> Limit:
 def estimate(array: MainArray) -> Limit:
     """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
     h = array.h
-    mass, at, massless = least_mass(h)
+    mass, at, massless = smallest_mass(h)
     if massless:
         m = iget(h, massless, g.KMAT)
         detail = f"block@{massless} has material {m}, whose density is not set"
@@ -208,9 +212,9 @@ def estimate(array: MainArray) -> Limit:
     joints = _stiffness(h)
     ratio = float(mass) / joints
     if h.ci[g.NSOFT]:
-        least, soft = soft_step(h, stiffness)
-        if float(least) < ratio:
-            ratio, at = float(least), soft
+        smallest, soft = soft_step(h, stiffness)
+        if float(smallest) < ratio:
+            ratio, at = float(smallest), soft
     limit = Limit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
     return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
 
@@ -283,6 +287,9 @@ def instability(array: MainArray, safe: Limit) -> str:
     critical = damped(safe.step, beta)
     if step <= critical:
         return ""
+    if safe.step == 0:
+        place = _place(array.h, safe.address)
+        return f"no time-step is safe: a mass or a stiffness of {place} is zero, infinite or no number"
     share = step / critical if critical else math.inf
     fraction = f"FRACTION {safe_fraction(array, share):.2g} is safe"
     if step <= safe.step:

@@ -4,7 +4,7 @@ SPLIT makes blocks, corners, contacts and domains by turns, wherever the lines r
 goes through one kind of group and looks at its neighbours in the map: so each kind gets a stretch of IA() of
 its own, in the order of strips across the model, and all passes read memory in nearly straight runs.
 Deformable blocks have their extensions, grid-points and zones in the order of the blocks. What is outside the
-map, such as boundary conditions, keeps its order.
+map, such as boundary conditions, keeps the order of its lists.
 Small models stay as they are: they fit the machine's caches, and their addresses are what a deck has seen.
 """
 
@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, size_of
+from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.relocate import relocate
+from udec_ia.inspect.table import addresses
 from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Group, read_table
+from udec_ia.layout.table import read_table
 from udec_ia.ops.common.lists import chain
 
 LARGE = 500  # blocks from which on it pays
@@ -37,8 +38,9 @@ def arrange(array: MainArray) -> Any:
         return None
     blocks = in_strips(h)
     order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks)
-    order |= beside_the_map(h, order)
-    return relocate(array, {kind: np.array(addresses) for kind, addresses in order.items() if len(addresses)})
+    others = (group.name for group in read_table().groups if group.name not in order)
+    order |= {kind: addresses(array, kind) for kind in others}
+    return relocate(array, {kind: np.array(groups) for kind, groups in order.items() if len(groups)})
 
 
 def in_strips(h: Memory) -> Any:
@@ -68,38 +70,3 @@ def of_deformable_blocks(h: Memory, blocks: Any) -> dict[str, Any]:
     points = [ig for ie in fdef for ig in chain(h, iget(h, ie, g.KFG), g.KG)]
     zones = [iz for ie in fdef for iz in chain(h, iget(h, ie, g.KFZ), g.KZ)]
     return {"sdef": sdef, "fdef": fdef, "gridpoint": points, "zone": zones}
-
-
-def beside_the_map(h: Memory, known: dict[str, Any]) -> dict[str, Any]:
-    """All other kinds, such as conditions, signals and histories, as they stand in their lists.
-
-    known: the kinds whose order is known, on which some of the others hang.
-    """
-    order: dict[str, Any] = {}
-    for group in read_table().groups:
-        if group.name in known:
-            continue
-        links = [getattr(g, one.name) for one in group.fields if one.role == "next"]
-        firsts = (
-            [int(h.ci[getattr(g, group.list_head)])] if group.list_head else _hanging(h, group, known | order)
-        )
-        order[group.name] = [iad for first in firsts for iad in _along(h, first, links)]
-    return order
-
-
-def _hanging(h: Memory, group: Group, order: dict[str, Any]) -> list[int]:
-    """What the groups of `order` hold of kind `group`, or of its lists: the first address of each."""
-    return [
-        iget(h, int(owner), getattr(g, one.name))
-        for kind, owners in order.items()
-        for one in read_table().group(kind).fields
-        if one.role in ("first", "extension") and one.target == group.name
-        for owner in owners
-    ]
-
-
-def _along(h: Memory, first: int, links: list[Offset]) -> list[int]:
-    """The list that begins at `first`, 0 for none; a group without a link stands alone."""
-    if first == 0:
-        return []
-    return list(chain(h, first, links[0])) if links else [first]
