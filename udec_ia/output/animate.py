@@ -1,6 +1,6 @@
 """An animated GIF of a run: one picture for each state that was collected, all in the same frame.
 
-A run may be of any length, a GIF should not: when there are more than MOST states, every second one is
+A run may be of any length, a GIF should not: when there are more than MAX_STATES, every second one is
 dropped and from then on only every second one is kept, so the pictures stay evenly spaced in cycles.
 """
 
