@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 from udec_ia import Model, UdecError
+from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
-from udec_ia.layout.offsets import MFREE, MTOP, NSPARE
+from udec_ia.layout.offsets import AT_BLOCKS, JPHASE, KXD, MCTOT, MFREE, MTOP, NSPARE
 
+CYCLES = 2000
 SCENE = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5 BULK=1E9 G=6E8
 BLOCK 0,0 0,4 6,4 6,0
@@ -102,6 +104,37 @@ def test_what_was_computed_before_the_memory_ended_goes_on_without_mtop(tmp_path
     assert len(on.table("block")) == 6
     assert not on.array.fixed
     assert Model.restore(caught.value.saved).split(5, -1, 5, 11) == 2
+
+
+def test_a_cycle_that_stops_half_way_leaves_a_sound_state(tmp_path: Path) -> None:
+    """Blocks have moved and their contacts have not: that is no violation, and with memory it goes on."""
+
+    whole = Model(out=tmp_path)
+    whole.property(1, density=2000, kn=1e8, ks=1e8)
+    whole.block(0, 0, 0, 10, 10, 10, 10, 0)
+    for k in range(1, 5):
+        whole.split(-1, 2 * k, 11, 2 * k + 0.3)
+        whole.split(2 * k, -1, 2 * k + 0.3, 11)
+    whole.round(0.05)
+    whole.cycle(0)
+    for k, row in enumerate(whole.table("block")):
+        putr(whole.array.h, int(row["address"]), KXD, float(0.3 * (-1) ** k))
+    start, used = whole.save(), int(whole.h.ci[MFREE]) - 1
+    whole.cycle(CYCLES)
+    phases = set()
+    for more in range(0, 400, 40):
+        m = Model(mtop=used + more, out=tmp_path)
+        m.restart(start)
+        with pytest.raises(UdecError, match="error 1:"):
+            m.cycle(CYCLES)
+        phases.add(int(m.h.ci[JPHASE]))
+        assert m.check() == []
+        saved = m.save(tmp_path / "half.h5")
+        assert Model.check_file(saved) == []
+    assert phases - {AT_BLOCKS}
+    on = Model.restore(saved)
+    on.cycle(CYCLES - int(on.h.ci[MCTOT]))
+    assert np.array_equal(on.table("block")["KX"], whole.table("block")["KX"])
 
 
 def test_a_restart_file_takes_the_size_that_the_run_fixes(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from udec_ia import Model
+from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.apart import entry
 from udec_ia.heap.words import ALL_SCHEMES
@@ -64,3 +64,11 @@ def test_a_fast_step_stops_before_the_search_and_goes_on(
         assert m.check() == []
         words.append((m.h.ia.tobytes(), m.h.ci.tobytes(), m.h.cr.tobytes(), m.h.cd.tobytes()))
     assert words[0] == words[1]
+
+
+def test_an_error_of_a_fast_step_is_raised_when_its_cycle_is_complete() -> None:
+    """The block has flown away (error 36) in the step that asks for the search."""
+    m = thrown("i32r64", 1e25)
+    with pytest.raises(UdecError, match="error 36"):
+        m.cycle(3)
+    assert (m.h.ci[g.JPHASE], m.h.ci[g.MCTOT]) == (g.AT_BLOCKS, 6)

@@ -21,8 +21,10 @@ from stage import Over, Stage
 from strikes import SHAPES
 
 from udec_ia import Model, UdecError
+from udec_ia.heap.accessors import putr
 from udec_ia.heap.compiling import compile_seconds
 from udec_ia.kernels.geometry.contact_geometry import faces
+from udec_ia.layout.offsets import DTOL, FIXED, KYD, TDEL
 
 BATCH = 16
 SEED = 1
@@ -63,6 +65,20 @@ BOUNDARY 0,2 2,4 XVEL=1 YVEL=-1
 CYCLE 100
 """
 
+FLUNG = """
+START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5 BULK=1E9 G=6E8
+BLOCK 0,0 0,4 6,4 6,0
+SPLIT -1 1 7 1
+SPLIT -1 2 7 2
+SPLIT 2 1 2 4
+SPLIT 4 1 4 4
+FIX 0 6 0 1
+GENERATE 0 2 1 2 MANUAL GRIDPOINTS 1,1.5 0,2 0,1 2,1 2,2 ZONES 1,2,5 2,3,5 3,4,5 4,1,5
+GENERATE 2 4 1 2 MANUAL GRIDPOINTS 3,1.5 2,2 2,1 4,1 4,2 ZONES 1,2,5 2,3,5 3,4,5 4,1,5
+CYCLE 1
+GRAVITY 1E21 4.3
+"""
 GIVEN_UP = """
 START
 PROPERTY MAT=1 DENSITY 2000 KN 3.8E8 KS 1.1E8
@@ -252,6 +268,37 @@ def test_however_fast_a_block_is_looking_where_it_went_takes_no_time(speed: floa
         with suppress(UdecError):
             model.cycle(1)
         assert time.process_time() - start < 5 + compile_seconds()
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_fixed_block_with_a_velocity_goes_nowhere(way: int) -> None:
+    """RSET gives it one, which its contacts feel as a belt's: but nothing goes through it for that."""
+    model = Model()
+    model.property(1, density=2000, kn=1e8, ks=1e8)
+    model.block(0, 0, 0, 4, 4, 4, 4, 0)
+    model.split(-1, 2, 5, 2)
+    model.split(2, 1.5, 2, 5)
+    model.round(0.1)
+    model.fix(0, 2, 2, 4)
+    model.cycle(0)
+    (fixed,) = (row for row in model.table("block") if row["KBFIX"] == FIXED)
+    (free,) = (row for row in model.table("block") if row["KX"] > 2 and row["KY"] > 2)
+    fast = 2 * model.h.cr[DTOL] / model.h.cr[TDEL]
+    putr(model.array.h, int(fixed["address"]), KYD, way * fast)
+    putr(model.array.h, int(free["address"]), KYD, 0.02 * fast)
+    model.cycle(1)
+    (now,) = (row for row in model.table("block") if row["KBFIX"] == FIXED)
+    assert (now["KX"], now["KY"]) == (fixed["KX"], fixed["KY"])
+
+
+def test_a_way_that_cannot_be_followed_is_no_way_round() -> None:
+    """A load beyond measure flings zones away in a step: error 15 at once, and no looking for ever."""
+    model = Model()
+    model.run(FLUNG)
+    start = time.process_time()
+    with pytest.raises(UdecError, match="error 15"):
+        model.cycle(20)
+    assert time.process_time() - start < 20 + compile_seconds()
 
 
 @pytest.mark.parametrize("kind", [*SHAPES, "bends"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from math import radians, tan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -191,6 +192,29 @@ def stressed() -> Model:
 def springs(m: Model) -> float:
     contacts = m.table("contact")
     return float((contacts["KCFN"] ** 2 + contacts["KCFS"] ** 2).sum() / (2 * 1e8))
+
+
+def test_what_a_law_still_holds_goes_with_its_contact() -> None:
+    """A joint law that keeps its force as the joint opens, until the contact is given up."""
+
+    def clj2(fn: float, fs: float, dun: float, dus: float, un: float, us: float, m: Any) -> Any:
+        return (m.kn * dun, 0.0) if fn == 0.0 or dun > 0 else (0.0, 0.0)
+
+    m = Model(constitutive={"clj2": clj2})
+    m.property(1, density=2000, kn=1e7, ks=1e7)
+    m.block(0, 0, 0, 3, 4, 3, 4, 0, constitutive=2)
+    m.split(-1, 1, 5, 1)
+    m.round(0.1)
+    m.fix(0, 4, 0, 1)
+    m.gravity(0, -10)
+    m.fraction(0.02)
+    m.energy("on")
+    m.cycle(122)
+    assert (m.table("contact")["KCFN"] > 0).all()
+    m.cycle(15)
+    assert (m.table("contact")["KCFN"] == 0).all()
+    balance = m.balance()
+    assert abs(balance.residual) < 1e-10 * balance.throughput
 
 
 def test_what_commands_put_in_and_take_out() -> None:

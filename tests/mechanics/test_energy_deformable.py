@@ -172,6 +172,37 @@ def test_what_gives_a_velocity_does_the_work() -> None:
         assert within(balance, DIGITS)
 
 
+def test_a_law_of_the_users_closes_as_law_1_does() -> None:
+    """The account does not know who has computed a force: the same law as a function, blocks that deform."""
+
+    def clj2(fn: float, fs: float, dun: float, dus: float, un: float, us: float, m: Any) -> Any:
+        force = fn + m.kn * dun
+        if un + dun <= 0.0 or force <= 0.0:
+            return -fn, -fs
+        limit = m.cohesion + m.friction * force
+        return force - fn, min(max(fs + m.ks * dus, -limit), limit) - fs
+
+    found = []
+    for number in (1, 2):
+        m = Model(constitutive={"clj2": clj2} if number == 2 else None)
+        m.property(1, density=2000, kn=1e8, ks=5e7, friction=0.4, bulk=2e7, g=1e7)
+        m.block(0, 0, 0, 3, 4, 3, 4, 0, constitutive=number)
+        m.split(-1, 1, 5, 1.3)
+        m.split(2, 0.5, 2, 4)
+        m.round(0.1)
+        m.fix(0, 4, 0, 1)
+        for x in (1, 3):
+            m.generate(x - 0.5, x + 0.5, 1.2, 4, "automatic", edge=0.7)
+        m.gravity(0, -10)
+        m.energy("on")
+        m.cycle(1000)
+        found.append(m.balance())
+    one, two = found
+    assert abs(one.shape) > 1e-3 * one.throughput
+    assert two.shape == pytest.approx(one.shape, rel=1e-3)
+    assert abs(two.residual) < 1e-3 * two.throughput
+
+
 def test_yielding_takes_what_plastic_shear_dissipates() -> None:
     """All grid-points driven in simple shear, beyond the strength of a material without friction.
 

@@ -40,6 +40,7 @@ from udec_ia.inspect.check_memory import check_memory
 from udec_ia.inspect.check_outer import check_outer
 from udec_ia.inspect.check_pieces import check_pieces
 from udec_ia.inspect.check_place import check_places
+from udec_ia.layout import offsets as g
 
 __all__ = ["Violation", "check", "check_links", "check_shapes"]
 
@@ -62,12 +63,16 @@ def check_shapes(array: MainArray) -> list[Violation]:
 
 
 def check(array: MainArray) -> list[Violation]:
-    """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound."""
+    """All violations of the invariants in `array`, in the order of their numbers; empty when it is sound.
+
+    A cycle that has stopped half-way, as the memory was full, has moved blocks that their contacts are yet to
+    follow: these are not compared with the outlines then.
+    """
     with np.errstate(all="ignore"):
         state = State(array)
         _check_links(state)
         shapes = _check_shapes(state)
-        if shapes is not None:
+        if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
             check_pieces(state, shapes)
             touching = touches(state, shapes)
             check_contacts(state, shapes, touching)

@@ -80,7 +80,8 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
 def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
-    idle = (touch.overlap <= 0) & (state.column("contact", "KCFN")[touch.row] == 0)
+    force = state.column("contact", "KCFN")[touch.row]
+    idle = (touch.overlap <= 0) & (force == 0)
     for k in np.flatnonzero(~o.arc[here.corner] & ~here.on_edge & ((touch.code == g.CORNER_CORNER) | idle)):
         state.report(
             7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
@@ -93,7 +94,8 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
         for k in np.flatnonzero(beyond > slack):
             concave = here.on_edge[k] and o.r[corner[k]] < 0
             waits = concave or _waits(state, int(touch.row[k]), side, step)
-            if beyond[k] > slack[k] + (o.d if waits else 0.0):
+            far = slack[k] + (o.d if waits else 0.0)
+            if beyond[k] > far and not (concave and force[k] != 0):
                 segment = "edge" if here.on_edge[k] else "arc"
                 state.report(
                     7,

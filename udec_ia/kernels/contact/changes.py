@@ -125,7 +125,7 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """True if open contact `ic` is no longer where two blocks may meet: see each of the tests."""
-    if lost_its_arc(h, ic) or left_its_edge(h, ic) or turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+    if lost_its_arc(h, ic) or turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
@@ -159,7 +159,7 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         return False
     is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
     if overlap >= -h.cr[g.BTOL]:
-        gone = overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap)
+        gone = left_its_edge(h, ic) or (overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap))
         if not gone and (is_bridge or not has_twin(h, ic)):
             return False
     h.ci[g.NBROKE] += 1
@@ -181,6 +181,19 @@ def opens(h: Memory, ic: int, account: Any) -> None:
 
 
 @inlined
+def loses(h: Memory, ic: int, overlap: float) -> float:
+    """Energy that goes with contact `ic`, open by now to `overlap`: by a law of the user's it may hold some.
+
+    That is what its springs hold, and what its normal force has done in half of this step.
+    """
+    fn, fs, m = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), iget(h, ic, g.KCM) - 1
+    if fn == 0:
+        return real(h, 0.0)
+    twice = fn * fn / h.cr[g.AKN + m] + fs * fs / h.cr[g.AKS + m] + fn * (overlap - getr(h, ic, g.KCN))
+    return twice * real(h, 0.5)
+
+
+@inlined
 def is_still(h: Memory, overlap: float) -> bool:
     """True if a contact without a force need not look at its neighbours, nor go, with that overlap."""
     return h.cr[g.ULOOK] < h.cr[g.HTOL] and overlap >= -h.cr[g.BTOL]
@@ -197,7 +210,9 @@ def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
     if idle and (lost_its_arc(h, ic) or left_its_edge(h, ic) or not is_still(h, overlap)):
         if overlap <= 0 and not own:
             opens(h, ic, account)
+        lost = loses(h, ic, overlap)
         if drop(h, ic, nx, ny, overlap):
+            h.cd[g.WFRIC] += lost
             return False
     if overlap > h.cr[g.FTOL] and squeezed(h, ic, nx, ny, overlap) and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = OVERLAP_TOO_GREAT

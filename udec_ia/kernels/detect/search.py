@@ -45,8 +45,9 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
 
     Past the arc of `iq`, if it has one: by the same number that tells arc_on_arc whether the centre is over
     the arc, so that rounding cannot leave a place between arc and edge that is neither. along: distance
-    from `iq` along the edge, which counts at a concave corner. Two edges that meet in an edge point share
-    what is within FTOL of their bisector.
+    from `iq` along the edge, which counts at a concave corner: from ETOL before it on, as a blunt arc in the
+    notch is deep in the edge at once. Two edges that meet in an edge point share what is within FTOL of their
+    bisector.
     """
     rad = getr(h, iq, g.KRAD)
     if rad > 0:
@@ -54,7 +55,7 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
         ahead, behind = over_ends(h, iq, dx, dy)
         return ahead if leaving else behind
     if rad < 0:
-        return along
+        return along + h.cr[g.ETOL]
     way = past(h, iq, ip)
     return (way if leaving else -way) + h.cr[g.FTOL]
 
@@ -264,7 +265,7 @@ def goes_before(code: int, urgent: float, best: int, highest: float) -> bool:
 
 
 @kernel
-def _search_all(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
+def _search_pairs(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact among all pairs of segments: code and the two rows; code 0 for none."""
     best, bi, bj = 0, 0, 0
     highest = real(h, 0.0)
@@ -312,7 +313,7 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 
 @kernel
 def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
-    """As _search_all, but only pairs that share a cell of a grid as wide as the mean edge is long."""
+    """As _search_pairs, but only pairs that share a cell of a grid as wide as the mean edge is long."""
     total = real(h, 0.0)
     half = h.cr[g.ATOL] * real(h, 0.5)
     for i in range(n):
@@ -351,5 +352,5 @@ def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """
     h.ci[g.NTIPS] = 0
     if n <= SMALL:
-        return _search_all(h, seg, n)
+        return _search_pairs(h, seg, n)
     return _search_cells(h, seg, n)

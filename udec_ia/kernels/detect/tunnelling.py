@@ -40,6 +40,9 @@ from udec_ia.layout import offsets as g
 
 POINTS = 3  # of an arc that are followed
 STEPS = 8  # places looked at while a point goes by CTOL in x or in y
+LOOKS = (
+    20_000  # places looked at on one way: a thousand rounding lengths in a step are more than can be followed
+)
 
 
 @kernel
@@ -60,7 +63,12 @@ def _turned(h: Memory, ib: int, rx: float, ry: float, way: int) -> tuple[float, 
 
 @kernel
 def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
-    """Where the point (x, y) of block `ib`, near its corner `ip`, was before this step."""
+    """Where the point (x, y) of block `ib`, near its corner `ip`, was before this step.
+
+    A fixed block stays where it is, whatever velocity RSET has given it.
+    """
+    if iget(h, ib, g.KBFIX) == g.FIXED:
+        return x, y
     dt = h.cr[g.TDEL]
     if iget(h, ib, HEAD) == g.MFDEF:
         return x - getr(h, ip, g.KXDP) * dt, y - getr(h, ip, g.KYDP) * dt
@@ -72,6 +80,8 @@ def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, floa
 @kernel
 def carried(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
     """Where block `ib` has carried in this step what was at (x, y), near its edge that ends at `ip`."""
+    if iget(h, ib, g.KBFIX) == g.FIXED:
+        return x, y
     dt = h.cr[g.TDEL]
     if iget(h, ib, HEAD) == g.MFDEF:
         ia = iget(h, ip, g.KR)
@@ -133,7 +143,8 @@ def _between(start: float, way: float, low: float, high: float) -> tuple[float, 
 def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float, float]:
     """How deep point `k` of the arc of corner `ip` of block `ib` lay in block `jb`.
 
-    Before this step, on its way at most, and now; no further than to the first place that is too deep. A
+    Before this step, on its way at most, and now; no further than to the first place that is too deep, and
+    infinite if the way is too long to be followed, as where a block in the way has strained beyond measure. A
     fully-deformable block `jb` is looked at as it was then; another one carries the point's first place
     along, however fast it turns. What lies far from the block is passed over, however long the way.
     """
@@ -150,7 +161,10 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
     first, last = max(enters, above), min(leaves, below)
     if first < last:
         way = np.float64(max(abs(x - fx), abs(y - fy))) * (last - first)
-        n = 1 + int(way / np.float64(h.cr[g.CTOL]) * STEPS)
+        looks = way / np.float64(h.cr[g.CTOL]) * STEPS
+        if not looks < LOOKS:
+            return before, real(h, np.inf), now
+        n = 1 + int(looks)
         for i in range(n + 1):
             part = real(h, first + (last - first) * i / n)
             place = fx + (x - fx) * part, fy + (y - fy) * part

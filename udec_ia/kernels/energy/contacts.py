@@ -54,10 +54,12 @@ def note_contact(
     (nx, ny), (xd, yd), (fn, _) = normal, velocity, forces
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     dt, zero = h.cr[g.TDEL], real(h, 0.0)
+    held, overlap, ks = getr(h, ic, g.KCFS), getr(h, ic, g.KCN), h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
     if own:
         h.cd[g.WSTIF] += (dashpots[0] * closing + dashpots[1] * sliding) * dt
+        if fn != zero and (before > zero or getr(h, ic, g.KCFN) != zero):
+            note_corners(h, ic, fn, closing, overlap - before)
         return True
-    held, overlap, ks = getr(h, ic, g.KCFS), getr(h, ic, g.KCN), h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
     if overlap <= zero:
         h.cd[g.WFRIC] += held * held / (ks + ks)
         return True

@@ -99,7 +99,7 @@ def _is_of_point(h: Memory, ic: int, ib: int, jb: int, iq: int) -> bool:
 
 
 @kernel
-def _in_a_row(h: Memory, ib: int, before: int, one: int, two: int, three: int, after: int) -> None:
+def _link_in_a_row(h: Memory, ib: int, before: int, one: int, two: int, three: int, after: int) -> None:
     """Let the five items follow one another in the list of block `ib`."""
     link(h, ib, before, one)
     link(h, ib, one, two)
@@ -119,8 +119,8 @@ def _pass_forwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
     if nextcp(h, jb, jc) != ic or nextcp(h, jb, ic) != ip:
         return False
     after, behind = nextcp(h, ib, iq), nextcp(h, jb, ip)
-    _in_a_row(h, ib, prevcp(h, ib, ic), jc, iq, ic, after)
-    _in_a_row(h, jb, prevcp(h, jb, jc), ic, ip, jc, behind)
+    _link_in_a_row(h, ib, prevcp(h, ib, ic), jc, iq, ic, after)
+    _link_in_a_row(h, jb, prevcp(h, jb, jc), ic, ip, jc, behind)
     set_corner_of(h, ib, ic, nextp(h, ib, after))
     set_corner_of(h, jb, jc, nextp(h, jb, behind))
     _change_places(h, ib, ic, jc)
@@ -135,8 +135,8 @@ def _pass_backwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
         return False
     if nextcp(h, jb, ic) != ip or nextcp(h, jb, ip) != jc:
         return False
-    _in_a_row(h, ib, prevcp(h, ib, jc), ic, jc, iq, nextcp(h, ib, ic))
-    _in_a_row(h, jb, prevcp(h, jb, ic), jc, ic, ip, nextcp(h, jb, jc))
+    _link_in_a_row(h, ib, prevcp(h, ib, jc), ic, jc, iq, nextcp(h, ib, ic))
+    _link_in_a_row(h, jb, prevcp(h, jb, ic), jc, ic, ip, nextcp(h, jb, jc))
     set_corner_of(h, ib, ic, iq)
     set_corner_of(h, jb, jc, ip)
     _change_places(h, ib, jc, ic)

@@ -73,7 +73,7 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
     with all_or_nothing(array):
         for ib in meshed:
             straighten(array.h, ib)
-        _change_all(array, changing, kind)
+        _change_types(array, changing, kind)
         if meshed:
             bring_up(array)
             check_overlaps(array, float(array.h.cr[g.DTOL]), STAYS)
@@ -81,7 +81,7 @@ def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
                 renew_forces(array)
 
 
-def _change_all(array: MainArray, changing: list[int], kind: int) -> None:
+def _change_types(array: MainArray, changing: list[int], kind: int) -> None:
     h = array.h
     rigid = [ib for ib in changing if iget(h, ib, HEAD) == g.MRIG]
     for ib in rigid:

@@ -164,7 +164,8 @@ def _run(
             done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
             settled()
             _raise_error(array, bound.book)
-            runaway.look(array)
+            if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
+                runaway.look(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)
@@ -228,6 +229,8 @@ def _raise_error(array: MainArray, laws: LawBook) -> None:
     """
     h = array.h
     number = int(h.ci[g.NERR])
+    if h.ci[g.JPHASE] == g.AT_WAYS:  # it waits for a pass that is compiled when a step needs it first
+        return
     if number == OVERFLOW and h.ci[g.JPHASE] == g.AT_BLOCKS:
         h.ci[g.NERR] = h.ci[g.NWANT] = 0
         keep_spare(array)
