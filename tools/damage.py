@@ -36,8 +36,8 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import check, check_links
-from udec_ia.inspect.check_codes import allowed
-from udec_ia.inspect.check_groups import TABLE, State
+from udec_ia.inspect.check.codes import allowed
+from udec_ia.inspect.check.groups import TABLE, State
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field
 from udec_ia.ops.run.watch import Series

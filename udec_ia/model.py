@@ -29,7 +29,7 @@ from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.inspect.arrange import arrange
 from udec_ia.inspect.check import check, check_shapes
-from udec_ia.inspect.check_common import check_common
+from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.table import table
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import puti
-from udec_ia.inspect.check_complete import _lies_in_third
-from udec_ia.inspect.check_geometry import outlines
-from udec_ia.inspect.check_groups import State
+from udec_ia.inspect.check.complete import _lies_in_third
+from udec_ia.inspect.check.geometry import outlines
+from udec_ia.inspect.check.groups import State
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 

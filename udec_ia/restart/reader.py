@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
-from udec_ia.inspect.check_common import check_common
+from udec_ia.inspect.check.common import check_common
 from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.ops.run.watch import Series

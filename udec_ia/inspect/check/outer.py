@@ -16,8 +16,8 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.errors import DISORDERED
-from udec_ia.inspect.check_groups import State
-from udec_ia.inspect.check_map import SIDES
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.map import SIDES
 from udec_ia.layout import offsets as g
 
 

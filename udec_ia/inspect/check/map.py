@@ -14,7 +14,7 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
+from udec_ia.inspect.check.groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
 from udec_ia.layout import offsets as g
 
 (KNB,) = names("corner", "host")

@@ -21,10 +21,10 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check_bounds import check_bounds, check_times
-from udec_ia.inspect.check_codes import check_codes
-from udec_ia.inspect.check_complete import check_complete
-from udec_ia.inspect.check_geometry import (
+from udec_ia.inspect.check.bounds import check_bounds, check_times
+from udec_ia.inspect.check.codes import check_codes
+from udec_ia.inspect.check.complete import check_complete
+from udec_ia.inspect.check.geometry import (
     Outlines,
     check_contacts,
     check_numbers,
@@ -32,17 +32,15 @@ from udec_ia.inspect.check_geometry import (
     outlines,
     touches,
 )
-from udec_ia.inspect.check_groups import State, Violation, check_pointers
-from udec_ia.inspect.check_history import check_histories
-from udec_ia.inspect.check_map import check_map
-from udec_ia.inspect.check_members import check_members, check_zone_areas
-from udec_ia.inspect.check_memory import check_memory
-from udec_ia.inspect.check_outer import check_outer
-from udec_ia.inspect.check_pieces import check_pieces
-from udec_ia.inspect.check_place import check_places
+from udec_ia.inspect.check.groups import State, Violation, check_pointers
+from udec_ia.inspect.check.history import check_histories
+from udec_ia.inspect.check.map import check_map
+from udec_ia.inspect.check.members import check_members, check_zone_areas
+from udec_ia.inspect.check.memory import check_memory
+from udec_ia.inspect.check.outer import check_outer
+from udec_ia.inspect.check.pieces import check_pieces
+from udec_ia.inspect.check.place import check_places
 from udec_ia.layout import offsets as g
-
-__all__ = ["Violation", "check", "check_links", "check_shapes"]
 
 
 def check_links(array: MainArray) -> list[Violation]:

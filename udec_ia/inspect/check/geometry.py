@@ -16,9 +16,9 @@ from functools import cached_property
 import numpy as np
 
 from udec_ia.heap.array import variable
-from udec_ia.inspect.check_codes import allowed
-from udec_ia.inspect.check_groups import TABLE, Numbers, State
-from udec_ia.inspect.check_map import AHEAD
+from udec_ia.inspect.check.codes import allowed
+from udec_ia.inspect.check.groups import TABLE, Numbers, State
+from udec_ia.inspect.check.map import AHEAD
 from udec_ia.kernels.geometry.shape import FLAT
 from udec_ia.layout import offsets as g
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.check_groups import LOST, TABLE, Numbers, State
+from udec_ia.inspect.check.groups import LOST, TABLE, Numbers, State
 
 
 def check_memory(state: State) -> None:

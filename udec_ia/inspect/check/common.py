@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check_groups import Violation
+from udec_ia.inspect.check.groups import Violation
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
 

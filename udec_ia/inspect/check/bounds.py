@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import KR, State
-from udec_ia.inspect.check_members import zoned
+from udec_ia.inspect.check.groups import KR, State
+from udec_ia.inspect.check.members import zoned
 from udec_ia.layout import offsets as g
 
 

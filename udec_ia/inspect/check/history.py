@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import State
+from udec_ia.inspect.check.groups import State
 from udec_ia.ops.commands.recordable import HISTORY, by_codes
 
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check_groups import TABLE, Numbers, State, corner_before, names
+from udec_ia.inspect.check.groups import TABLE, Numbers, State, corner_before, names
 
 OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block
 COUNTS = {"KFNG": "gridpoint", "KFNZ": "zone"}  # of an fdef group

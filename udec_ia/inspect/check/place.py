@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
-from udec_ia.inspect.check_groups import HOSTS, Numbers, State
-from udec_ia.inspect.check_map import neighbours
+from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check.groups import HOSTS, Numbers, State
+from udec_ia.inspect.check.map import neighbours
 from udec_ia.layout import offsets as g
 
 

@@ -21,8 +21,8 @@ from math import hypot, isqrt
 
 import numpy as np
 
-from udec_ia.inspect.check_geometry import Outlines, Touches, cross, dot
-from udec_ia.inspect.check_groups import HOSTS, Numbers, State
+from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.layout import offsets as g
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
