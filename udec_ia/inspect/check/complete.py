@@ -2,8 +2,7 @@
 
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
 pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
-needs a contact of the two blocks nearby, or of that arc with that edge: the circle of a blunt corner goes on
-beyond its arc, and such a contact with it. Nearer to each other than FTOL there are never two.
+needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
@@ -23,7 +22,6 @@ import numpy as np
 
 from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
-from udec_ia.layout import offsets as g
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
@@ -45,10 +43,6 @@ class Joined:
         pair = self._key(one, two)
         order = np.argsort(pair, kind="stable")
         self.pair, self.point, self.overlap = pair[order], touch.point[order], touch.overlap[order]
-        on_edge, turned = touch.code != g.CORNER_CORNER, touch.code == g.EDGE_CORNER
-        self.corners = len(o.corner)
-        arc, edge = np.where(turned, touch.j, touch.i), np.where(turned, touch.i, touch.j)
-        self.on_edges = (arc * self.corners + edge)[on_edge]
 
     def _key(self, one: Numbers, two: Numbers) -> Numbers:
         return np.minimum(one, two) * self.blocks + np.maximum(one, two)
@@ -65,10 +59,6 @@ class Joined:
         row, place = ragged(np.searchsorted(self.pair, key, "right") - first)
         away = np.hypot(*(point[row] - self.point[first[row] + place]).T)
         return np.bincount(row[away <= reach[row]], minlength=len(key)) > 0
-
-    def stands(self, arc: Numbers, edge: Numbers) -> Numbers:
-        """True for each arc that has a contact with that edge, by their corners."""
-        return np.isin(arc * self.corners + edge, self.on_edges)
 
     @cached_property
     def points(self) -> dict[tuple[int, int], list[tuple[float, float, float]]]:
@@ -103,10 +93,7 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     ones, twos = o.owner[arc], o.owner[other]
-    told = joined.near(ones, twos, point, near + depth)
-    if what == "edge":
-        told |= joined.stands(arc, other)
-    for k in np.flatnonzero(~told):
+    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth)):
         one, two = int(ones[k]), int(twos[k])
         (x, y), overlap = point[k].tolist(), float(depth[k])
         points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []

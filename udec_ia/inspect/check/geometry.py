@@ -19,6 +19,7 @@ from udec_ia.heap.array import variable
 from udec_ia.inspect.check.codes import allowed
 from udec_ia.inspect.check.groups import TABLE, Numbers, State
 from udec_ia.inspect.check.map import AHEAD
+from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.kernels.geometry.shape import FLAT
 from udec_ia.layout import offsets as g
 
@@ -101,6 +102,16 @@ class Outlines:
         start = self.p - np.where(round_it, self.d * self.t, 0.0)
         end = self.p + np.where(round_it, self.d * self.t[self.after], 0.0)
         return np.stack((start, top, end), axis=1)
+
+    def deepest(self, i: Numbers, inward: Numbers, on_edge: Numbers) -> Numbers:
+        """The places of arcs i that are deepest along `inward`; on an edge a blunt one has an end."""
+        blunt = on_edge & (self.r[i] > BLUNT * self.d)
+        early, late = dot(inward, self.t[i]) < 0, dot(inward, self.t[self.after[i]]) > 0
+        return np.select(
+            [(blunt & late)[:, None], (blunt & early)[:, None]],
+            [self.p[i] + self.d * self.t[self.after[i]], self.p[i] - self.d * self.t[i]],
+            self.c[i] + self.r[i][:, None] * inward,
+        )
 
     @cached_property
     def turn(self) -> Numbers:
@@ -320,20 +331,12 @@ def touches(state: State, o: Outlines) -> Touches:
     code, i, j = code[at], ends[0][at], ends[1][at]
     between = o.c[j] - o.c[i]
     distance = np.hypot(*between.T)
-    cases = [code == g.CORNER_CORNER, code == g.CORNER_EDGE]
-    overlap = np.select(
-        cases,
-        [o.r[i] + o.r[j] - distance, o.r[i] - dot(o.c[i] - o.p[j], o.e[j])],
-        o.r[j] - dot(o.c[j] - o.p[i], o.e[i]),
-    )
-    normal = np.select(
-        [case[:, None] for case in cases], [between / distance[:, None], -o.e[j]], o.e[i]
-    )  # from block KB1 to block KB2
-    point = np.where(
-        (code == g.EDGE_CORNER)[:, None],
-        o.c[j] - (o.r[j] - overlap / 2)[:, None] * normal,
-        o.c[i] + (o.r[i] - overlap / 2)[:, None] * normal,
-    )
+    two_arcs = code == g.CORNER_CORNER
+    arc, edge = np.where(code == g.EDGE_CORNER, (j, i), (i, j))
+    inward = np.where(two_arcs[:, None], between / distance[:, None], -o.e[edge])  # away from the arc's block
+    deepest = o.deepest(arc, inward, ~two_arcs)
+    overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p[edge], inward))
+    point = deepest - (overlap / 2)[:, None] * inward
     return Touches(at, code, i, j, overlap, point, 2 * np.maximum(o.slack[i], o.slack[j]))
 
 

@@ -37,14 +37,16 @@ class Place:
 def place(o: Outlines, touch: Touches, side: int) -> Place:
     """The places of all contacts on side 0 (block KB1) or 1 (KB2).
 
-    On an edge it is the other circle's centre that must stand between the roundings. Of two arcs each
+    On an edge it is what touches it, the other circle or an end of a blunt arc, that must stand between the
+    roundings. Of two arcs each
     must face the other's centre. An arc on an edge may face another way: its block has been tilted. Two edges
     that meet in a point without a radius part the ground between them at their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     on_edge = touch.code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
     two_arcs = touch.code == g.CORNER_CORNER
-    from_start = dot(o.c[other] - o.p[o.before[k]], o.t[k])
+    touching = o.deepest(other, -o.e[k], on_edge)
+    from_start = dot(touching - o.p[o.before[k]], o.t[k])
     to_other = o.c[other] - o.c[k]
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
     over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])

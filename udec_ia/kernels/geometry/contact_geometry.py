@@ -9,6 +9,9 @@ KB1 to block KB2; the overlap is positive when the rounded outlines overlap.
 The contact point lies on the normal through the circle's centre, in the middle of the overlap. Where
 a contact passes from edge to arc, both forms give the same normal and the same overlap.
 
+A circle goes on where its arc ends. If an edge is tilted so far that it faces no place of an arc, it is the
+circle that touches it, beside the arc's end. That of a blunt corner would touch far away: it is the end then.
+
 A point of an edge (KRAD = 0: a flat corner, or one that GENERATE has put there) is a circle of radius zero
 that may touch edges and arcs of others. Whatever slides past it goes from the one edge to the other where
 their bisector is: there both give the same overlap.
@@ -27,7 +30,16 @@ from udec_ia.kernels.geometry.shape import is_edge_point, zcs
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g
 
+BLUNT = (
+    8.0  # radius over D from which on it matters where an arc ends; the corner turns by 14 degrees or less
+)
 OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
+
+
+@inlined
+def is_blunt(h: Memory, ip: int) -> bool:
+    """True if the circle of corner `ip` is so large that it matters where its arc ends."""
+    return getr(h, ip, g.KRAD) > h.cr[g.DTOL] * real(h, BLUNT)
 
 
 @inlined
@@ -40,7 +52,18 @@ def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     ia = iget(h, iq, g.KR)
     z, c, s = zcs(h, iq)
     x, y = getr(h, ip, g.KXCP) - getr(h, ia, g.KXP), getr(h, ip, g.KYCP) - getr(h, ia, g.KYP)
-    return -s, c, getr(h, ip, g.KRAD) - (y * c - x * s), x * c + y * s, z
+    overlap, along = getr(h, ip, g.KRAD) - (y * c - x * s), x * c + y * s
+    if is_blunt(h, ip):
+        overlap, along = blunt_ce(h, ip, ia, c, s, overlap, along)
+    return -s, c, overlap, along, z
+
+
+@inlined
+def beside(h: Memory, iq: int, along: float, overlap: float) -> tuple[float, float]:
+    """The point `along` the edge that ends at corner `iq`, half of an overlap below it."""
+    ia, (_, c, s) = iget(h, iq, g.KR), zcs(h, iq)
+    half = overlap * real(h, 0.5)
+    return getr(h, ia, g.KXP) + along * c + half * s, getr(h, ia, g.KYP) + along * s - half * c
 
 
 @inlined
@@ -57,6 +80,27 @@ def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
     _, tx, ty = zcs(h, ip)
     _, ux, uy = zcs(h, next_corner(h, iget(h, ip, g.KNB), ip))
     return tx, ty, ux, uy
+
+
+@kernel
+def blunt_ce(
+    h: Memory, ip: int, ia: int, c: float, s: float, overlap: float, along: float
+) -> tuple[float, float]:
+    """Overlap and distance along the edge from corner `ia`, of the direction (c, s), of a blunt corner `ip`.
+
+    As given, if the edge faces the arc; else those of the arc's end.
+    """
+    tx, ty, ux, uy = tangents(h, ip)
+    d, zero = h.cr[g.DTOL], real(h, 0.0)
+    x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+    if s * ux - c * uy > zero:
+        x, y = x + d * ux, y + d * uy
+    elif s * tx - c * ty < zero:
+        x, y = x - d * tx, y - d * ty
+    else:
+        return overlap, along
+    x, y = x - getr(h, ia, g.KXP), y - getr(h, ia, g.KYP)
+    return x * s - y * c, x * c + y * s
 
 
 @kernel
@@ -139,13 +183,13 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
     elif code == g.CORNER_EDGE:
         ex, ey, overlap, along, z = ce(h, ip, iq)
         nx, ny = -ex, -ey
-        x, y = point_on(h, ip, nx, ny, overlap)
+        x, y = beside(h, iq, along, overlap) if is_blunt(h, ip) else point_on(h, ip, nx, ny, overlap)
         margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
         if overlap <= 0 and has_no_arc(h, ip):
             margin = gone
     else:
         nx, ny, overlap, along, z = ce(h, iq, ip)
-        x, y = point_on(h, iq, -nx, -ny, overlap)
+        x, y = beside(h, ip, along, overlap) if is_blunt(h, iq) else point_on(h, iq, -nx, -ny, overlap)
         margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
         if overlap <= 0 and has_no_arc(h, iq):
             margin = gone

@@ -1,0 +1,85 @@
+"""A nearly straight corner on a tilted edge: what touches is the arc or its end, not the circle beyond it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from udec_ia import Model
+from udec_ia.heap.accessors import putr
+from udec_ia.kernels.geometry.contact_geometry import BLUNT, meet
+from udec_ia.layout import offsets as g
+
+D = 0.05
+
+
+def on_a_corner(slope: float) -> tuple[Model, int, int]:
+    """A block that stands on the corner (0, 0), the edges beside it rising by `slope`, on a flat base.
+
+    Returns the model, that corner, and the one at the end of the edge under it.
+    """
+    m = Model()
+    m.block(-2, -1, -2, 1, 2, 1, 2, -1)
+    m.split(-3, 0, 3, 0)
+    for way in (-1, 1):
+        m.split(-0.001 * way, -0.001 * slope, 2.1 * way, 2.1 * slope)
+        m.delete(*sorted((1.2 * way, 1.5 * way)), 0.0, 0.7 * slope)
+    m.round(D)
+    corners = m.table("corner")
+    upper = np.isin(corners["KNB"], corners["KNB"][corners["KYP"] > 0.9])
+    apex = corners["address"][upper & (abs(corners["KXP"]) < 1e-9)]
+    below = corners["address"][~upper & (corners["KXP"] > 1) & (abs(corners["KYP"]) < 1e-9)]
+    return m, int(apex[0]), int(below[0])
+
+
+def tilt(m: Model, apex: int, angle: float) -> None:
+    """Turn the block of the corner about it, anticlockwise."""
+    corners, c, s = m.table("corner"), np.cos(angle), np.sin(angle)
+    block = corners["KNB"][corners["address"] == apex][0]
+    for row in corners[corners["KNB"] == block]:
+        for kx, ky, x, y in (
+            (g.KXP, g.KYP, row["KXP"], row["KYP"]),
+            (g.KXCP, g.KYCP, row["KXCP"], row["KYCP"]),
+        ):
+            putr(m.array.h, int(row["address"]), kx, c * x - s * y)
+            putr(m.array.h, int(row["address"]), ky, s * x + c * y)
+
+
+def arc(slope: float, angle: float) -> np.ndarray:
+    """Many points of the arc at the corner (0, 0), from end to end."""
+    half = np.arctan(slope)
+    radius = D / np.tan(half)
+    centre = np.array([0.0, radius / np.cos(half)])
+    turn = np.linspace(-half, half, 20001) - np.pi / 2
+    points = centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, s], [-s, c]])
+
+
+@pytest.mark.parametrize("angle", [-0.2, -0.05, -0.031, -0.01, 0.0, 0.02, 0.029, 0.04, 0.2])
+def test_a_blunt_corner_touches_by_a_place_of_its_arc(angle: float) -> None:
+    slope = 0.03
+    m, apex, below = on_a_corner(slope)
+    assert m.table("corner")["KRAD"].max() > BLUNT * D
+    tilt(m, apex, angle)
+    h = m.array.h
+    deepest = min(arc(slope, angle), key=lambda point: point[1])
+    for code, pair in ((g.EDGE_CORNER, (below, apex)), (g.CORNER_EDGE, (apex, below))):
+        nx, ny, overlap, x, y, _ = meet(h, code, *pair)
+        up = 1 if code == g.EDGE_CORNER else -1
+        assert (nx, ny) == pytest.approx((0.0, up), abs=1e-12)
+        assert overlap == pytest.approx(-deepest[1], abs=1e-9)
+        assert (x, y) == pytest.approx((deepest[0], deepest[1] + overlap / 2), abs=2e-4 * D)
+
+
+@pytest.mark.parametrize("angle", [-0.2, -0.05, 0.0, 0.04, 0.2])
+def test_a_sharp_corner_touches_by_its_circle(angle: float) -> None:
+    slope = 0.5
+    m, apex, below = on_a_corner(slope)
+    tilt(m, apex, angle)
+    _, _, overlap, x, y, _ = meet(m.array.h, g.EDGE_CORNER, below, apex)
+    half = np.arctan(slope)
+    radius, far = D / np.tan(half), D / np.sin(half)
+    centre = far * np.array([-np.sin(angle), np.cos(angle)])
+    assert overlap == pytest.approx(radius - centre[1], abs=1e-12)
+    assert (x, y) == pytest.approx((centre[0], -overlap / 2), abs=1e-12)
