@@ -1,4 +1,4 @@
-"""The command `udec`: run a deck, check a restart file, or say what is in one.
+"""The command `udec`: run a deck, check a restart file, say what is in one, or look into it word by word.
 
 Exit status: 0 if all went well, 1 after an error, 2 if the command line itself is wrong, 130 after Ctrl-C and
 143 after SIGTERM. Both may come at any time, also while what the program needs is being loaded: only what
@@ -23,9 +23,10 @@ from udec_ia.files import takes_files
 from udec_ia.layout.table import StaleLayout
 from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
+from udec_ia.workshop import add_commands
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", "check", "info")
+VERBS = ("run", "check", "info", "what", "who", "walk", "junk")
 
 
 def arguments() -> argparse.ArgumentParser:
@@ -63,6 +64,7 @@ def arguments() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="say what is in a restart file")
     info.add_argument("file", type=Path)
     info.set_defaults(action=_info)
+    add_commands(commands)
     return parser
 
 

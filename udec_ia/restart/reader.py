@@ -57,6 +57,16 @@ def load(path: str | Path) -> Restored:
         return Restored(array, read_deck(file), read_laws(file), recall(file, array))
 
 
+def look_into(path: str | Path) -> MainArray:
+    """The array in the restart file `path`, in whatever state its heap is: to look at, not to go on with.
+
+    Raises UdecError 29 if the file is not what `save` wrote.
+    """
+    path = Path(path)
+    with refusing(path), opened(path) as file:
+        return _read_state(file)
+
+
 @contextmanager
 def opened(path: Path) -> Iterator[Contents]:
     """The contents of a sealed, complete restart file of a format that this program reads."""

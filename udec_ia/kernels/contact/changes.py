@@ -83,30 +83,24 @@ def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
     return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
 
 
-@inlined
-def lost_its_arc(h: Memory, ic: int) -> bool:
-    """True if a corner on an edge has no arc any more: its block has been strained."""
-    code = iget(h, ic, g.KCCOD)
-    if code == g.CORNER_EDGE:
-        return has_no_arc(h, iget(h, ic, g.KCP1))
-    return code == g.EDGE_CORNER and has_no_arc(h, iget(h, ic, g.KCP2))
+@kernel
+def has_no_place(h: Memory, ic: int) -> bool:
+    """True if the corner of a contact on an edge has no arc any more, or has slid out of a notch.
 
-
-@inlined
-def in_the_wall(h: Memory, ip: int, iq: int) -> bool:
-    """True if corner `ip` is beyond an end of the edge of `iq` by more than D, in a notch."""
-    d, ia = h.cr[g.DTOL], iget(h, iq, g.KR)
-    _, _, _, along, z = ce(h, ip, iq)
-    return (along > z + d and getr(h, iq, g.KRAD) < 0) or (along < -d and getr(h, ia, g.KRAD) < 0)
-
-
-@inlined
-def left_its_edge(h: Memory, ic: int) -> bool:
-    """True if a corner has slid out of a notch: it has a contact with the other edge there."""
-    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
-    if code == g.CORNER_EDGE:
-        return in_the_wall(h, ip, iq)
-    return code == g.EDGE_CORNER and in_the_wall(h, iq, ip)
+    Out of a notch, by more than D, it has a contact with the other edge there.
+    """
+    code, arc, edge = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if code == g.CORNER_CORNER:
+        return False
+    if code == g.EDGE_CORNER:
+        arc, edge = edge, arc
+    if has_no_arc(h, arc):
+        return getr(h, ic, g.KCFN) == 0
+    notched, before = getr(h, edge, g.KRAD) < 0, getr(h, iget(h, edge, g.KR), g.KRAD) < 0
+    if not (notched or before):
+        return False
+    _, _, _, along, z = ce(h, arc, edge)
+    return (notched and along > z + h.cr[g.DTOL]) or (before and along < -h.cr[g.DTOL])
 
 
 @inlined
@@ -125,7 +119,7 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """True if open contact `ic` is no longer where two blocks may meet: see each of the tests."""
-    if lost_its_arc(h, ic) or turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
@@ -159,7 +153,7 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         return False
     is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
     if overlap >= -h.cr[g.BTOL]:
-        gone = left_its_edge(h, ic) or (overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap))
+        gone = has_no_place(h, ic) or (overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap))
         if not gone and (is_bridge or not has_twin(h, ic)):
             return False
     h.ci[g.NBROKE] += 1
@@ -207,7 +201,7 @@ def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
         idle = is_open(h, ic, overlap)
     else:
         idle = overlap <= 0 or getr(h, ic, g.KCFN) == 0
-    if idle and (lost_its_arc(h, ic) or left_its_edge(h, ic) or not is_still(h, overlap)):
+    if idle and (not is_still(h, overlap) or has_no_place(h, ic)):
         if overlap <= 0 and not own:
             opens(h, ic, account)
         lost = loses(h, ic, overlap)

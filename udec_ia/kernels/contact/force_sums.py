@@ -9,7 +9,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.boundary_point import putfce
 from udec_ia.kernels.body.fdef import stand_still, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
-from udec_ia.kernels.geometry.contact_geometry import coord
+from udec_ia.kernels.geometry.contact_geometry import coord_seldom
 from udec_ia.layout import offsets as g
 
 
@@ -43,7 +43,7 @@ def sum_all_forces(h: Memory, soft: Any) -> None:
     ic = h.ci[g.ICPNT]
     while ic != 0:
         if getr(h, ic, g.KCFN) != zero:
-            nx, ny, _, _ = coord(h, ic)
+            nx, ny, _, _ = coord_seldom(h, ic)
             fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
             fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
             x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)

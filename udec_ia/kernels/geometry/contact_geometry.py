@@ -30,21 +30,13 @@ from udec_ia.kernels.geometry.shape import is_edge_point, zcs
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g
 
-BLUNT = (
-    8.0  # radius over D from which on it matters where an arc ends; the corner turns by 14 degrees or less
-)
+BLUNT = 8.0  # radius over D above which it matters where an arc ends: of a corner that turns by 14 degrees
 OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
 
 
 @inlined
-def is_blunt(h: Memory, ip: int) -> bool:
-    """True if the circle of corner `ip` is so large that it matters where its arc ends."""
-    return getr(h, ip, g.KRAD) > h.cr[g.DTOL] * real(h, BLUNT)
-
-
-@inlined
-def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
-    """Corner `ip` against the edge that ends at corner `iq` (CE).
+def circle_ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
+    """Circle of corner `ip` against the edge that ends at corner `iq`.
 
     Returns the edge's outward normal (x, y), the overlap, the distance of the circle's centre along the
     edge from its start, and the length of the edge.
@@ -52,18 +44,27 @@ def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     ia = iget(h, iq, g.KR)
     z, c, s = zcs(h, iq)
     x, y = getr(h, ip, g.KXCP) - getr(h, ia, g.KXP), getr(h, ip, g.KYCP) - getr(h, ia, g.KYP)
-    overlap, along = getr(h, ip, g.KRAD) - (y * c - x * s), x * c + y * s
+    return -s, c, getr(h, ip, g.KRAD) - (y * c - x * s), x * c + y * s, z
+
+
+@kernel
+def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
+    """Corner `ip` against the edge that ends at corner `iq` (CE): as circle_ce, but for a blunt corner's end.
+
+    Where the edge faces no place of a blunt corner's arc, it is an end of the arc that touches it.
+    """
+    ex, ey, overlap, along, z = circle_ce(h, ip, iq)
     if is_blunt(h, ip):
-        overlap, along = blunt_ce(h, ip, ia, c, s, overlap, along)
-    return -s, c, overlap, along, z
-
-
-@inlined
-def beside(h: Memory, iq: int, along: float, overlap: float) -> tuple[float, float]:
-    """The point `along` the edge that ends at corner `iq`, half of an overlap below it."""
-    ia, (_, c, s) = iget(h, iq, g.KR), zcs(h, iq)
-    half = overlap * real(h, 0.5)
-    return getr(h, ia, g.KXP) + along * c + half * s, getr(h, ia, g.KYP) + along * s - half * c
+        tx, ty, ux, uy = tangents(h, ip)
+        d, zero = h.cr[g.DTOL], real(h, 0.0)
+        x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+        leaves, arrives = ex * ux + ey * uy < zero, ex * tx + ey * ty > zero
+        if leaves or arrives:
+            x, y = (x + d * ux, y + d * uy) if leaves else (x - d * tx, y - d * ty)
+            ia = iget(h, iq, g.KR)
+            x, y = x - getr(h, ia, g.KXP), y - getr(h, ia, g.KYP)
+            overlap, along = -(x * ex + y * ey), x * ey - y * ex
+    return ex, ey, overlap, along, z
 
 
 @inlined
@@ -80,27 +81,6 @@ def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
     _, tx, ty = zcs(h, ip)
     _, ux, uy = zcs(h, next_corner(h, iget(h, ip, g.KNB), ip))
     return tx, ty, ux, uy
-
-
-@kernel
-def blunt_ce(
-    h: Memory, ip: int, ia: int, c: float, s: float, overlap: float, along: float
-) -> tuple[float, float]:
-    """Overlap and distance along the edge from corner `ia`, of the direction (c, s), of a blunt corner `ip`.
-
-    As given, if the edge faces the arc; else those of the arc's end.
-    """
-    tx, ty, ux, uy = tangents(h, ip)
-    d, zero = h.cr[g.DTOL], real(h, 0.0)
-    x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-    if s * ux - c * uy > zero:
-        x, y = x + d * ux, y + d * uy
-    elif s * tx - c * ty < zero:
-        x, y = x - d * tx, y - d * ty
-    else:
-        return overlap, along
-    x, y = x - getr(h, ia, g.KXP), y - getr(h, ia, g.KYP)
-    return x * s - y * c, x * c + y * s
 
 
 @kernel
@@ -152,6 +132,12 @@ def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
 
 
 @inlined
+def is_blunt(h: Memory, ip: int) -> bool:
+    """True if the circle of corner `ip` is so large that it matters where its arc ends."""
+    return getr(h, ip, g.KRAD) > h.cr[g.DTOL] * real(h, BLUNT)
+
+
+@kernel
 def has_no_arc(h: Memory, ip: int) -> bool:
     """True if corner `ip` is straight or concave, and no point of an edge."""
     return getr(h, ip, g.KRAD) <= 0 and not is_edge_point(h, ip)
@@ -165,6 +151,26 @@ def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[
 
 
 @inlined
+def meet_circles(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
+    """As `meet`, if the two corners are what their circles are."""
+    if code == g.CORNER_CORNER:
+        nx, ny, overlap = cc(h, ip, iq)
+        x, y = point_on(h, ip, nx, ny, overlap)
+        dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
+        margin = h.cr[g.GTOL] - max(max(over_ends(h, ip, dx, dy)), max(over_ends(h, iq, -dx, -dy)))
+    elif code == g.CORNER_EDGE:
+        ex, ey, overlap, along, z = circle_ce(h, ip, iq)
+        nx, ny = -ex, -ey
+        x, y = point_on(h, ip, nx, ny, overlap)
+        margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+    else:
+        nx, ny, overlap, along, z = circle_ce(h, iq, ip)
+        x, y = point_on(h, iq, -nx, -ny, overlap)
+        margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
+    return nx, ny, overlap, x, y, margin
+
+
+@kernel
 def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
     """Normal (x, y), overlap and contact point of segment `ip` of KB1 and segment `iq` of KB2.
 
@@ -173,40 +179,55 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
     such arc.
     """
     gone = real(h, -1.0)
+    nx, ny, overlap, x, y, margin = meet_circles(h, code, ip, iq)
     if code == g.CORNER_CORNER:
-        nx, ny, overlap = cc(h, ip, iq)
-        x, y = point_on(h, ip, nx, ny, overlap)
-        dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
-        margin = h.cr[g.GTOL] - max(max(over_ends(h, ip, dx, dy)), max(over_ends(h, iq, -dx, -dy)))
-        if has_no_arc(h, ip) or has_no_arc(h, iq):
-            margin = gone
-    elif code == g.CORNER_EDGE:
-        ex, ey, overlap, along, z = ce(h, ip, iq)
-        nx, ny = -ex, -ey
-        x, y = beside(h, iq, along, overlap) if is_blunt(h, ip) else point_on(h, ip, nx, ny, overlap)
+        return nx, ny, overlap, x, y, gone if has_no_arc(h, ip) or has_no_arc(h, iq) else margin
+    arc, edge = (ip, iq) if code == g.CORNER_EDGE else (iq, ip)
+    if is_blunt(h, arc):
+        ex, ey, overlap, along, z = ce(h, arc, edge)
+        ia, half = iget(h, edge, g.KR), overlap * real(h, 0.5)
+        x, y = getr(h, ia, g.KXP) + along * ey - half * ex, getr(h, ia, g.KYP) - along * ex - half * ey
         margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
-        if overlap <= 0 and has_no_arc(h, ip):
-            margin = gone
-    else:
-        nx, ny, overlap, along, z = ce(h, iq, ip)
-        x, y = beside(h, ip, along, overlap) if is_blunt(h, iq) else point_on(h, iq, -nx, -ny, overlap)
-        margin = min(along, z - along) - (h.cr[g.DTOL] - h.cr[g.GTOL])
-        if overlap <= 0 and has_no_arc(h, iq):
-            margin = gone
+    if overlap <= 0 and has_no_arc(h, arc):
+        margin = gone
     return nx, ny, overlap, x, y, margin
+
+
+@inlined
+def meet_quickly(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
+    """As `meet`, without a call where two corners are what their circles are."""
+    one, two, largest = getr(h, ip, g.KRAD), getr(h, iq, g.KRAD), h.cr[g.DTOL] * real(h, BLUNT)
+    if min(one, two) > 0 and max(one, two) <= largest:
+        return meet_circles(h, code, ip, iq)
+    return meet(h, code, ip, iq)
+
+
+@inlined
+def put_place(h: Memory, ic: int, x: float, y: float) -> None:
+    """Place of contact `ic` := (x, y)."""
+    putr(h, ic, g.KXC, x)
+    putr(h, ic, g.KYC, y)
 
 
 @inlined
 def coord(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """Update the coordinates of contact `ic` (COORD); returns normal (x, y), overlap and margin."""
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    nx, ny, overlap, x, y, margin = meet_quickly(h, code, ip, iq)
+    put_place(h, ic, x, y)
+    return nx, ny, overlap, margin
+
+
+@kernel
+def coord_seldom(h: Memory, ic: int) -> tuple[float, float, float, float]:
+    """As `coord`, where it is not done in every cycle."""
     nx, ny, overlap, x, y, margin = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
-    putr(h, ic, g.KXC, x)
-    putr(h, ic, g.KYC, y)
+    put_place(h, ic, x, y)
     return nx, ny, overlap, margin
 
 
 @kernel
 def begin(h: Memory, ic: int) -> None:
     """Coordinates of contact `ic`, and its overlap as the one that force increments count from."""
-    _, _, overlap, _ = coord(h, ic)
+    _, _, overlap, _ = coord_seldom(h, ic)
     putr(h, ic, g.KCN, overlap)

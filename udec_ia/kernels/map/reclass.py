@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import ce, coord, has_no_arc, over_ends, past
+from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, over_ends, past
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.lists import (
     corner_of,
@@ -206,22 +206,16 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
 
 
 @kernel
-def _to_an_edge(h: Memory, ic: int, ib: int, ip: int, iq: int) -> bool:
-    """Corner `ip` of block `ib` has no arc any more: its contact with corner `iq` goes to the nearer edge."""
-    code = g.EDGE_CORNER if iget(h, ic, g.KB1) == ib else g.CORNER_EDGE
-    if not (past(h, ip, iq) > 0 and mvfor(h, ic, ib, code)):
-        puti(h, ic, g.KCCOD, code)
-    return True
-
-
-@kernel
 def _off_the_corner(h: Memory, ic: int) -> bool:
     """A corner/corner contact whose line of centres has left one of the two arcs, or that has lost one."""
     ip, iq = iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
-    if has_no_arc(h, ip):
-        return _to_an_edge(h, ic, iget(h, ic, g.KB1), ip, iq)
-    if has_no_arc(h, iq):
-        return _to_an_edge(h, ic, iget(h, ic, g.KB2), iq, ip)
+    first = has_no_arc(h, ip)
+    if first or has_no_arc(h, iq):  # the contact goes to the nearer of the edges at the corner without
+        ib, code = (iget(h, ic, g.KB1), g.EDGE_CORNER) if first else (iget(h, ic, g.KB2), g.CORNER_EDGE)
+        ahead = past(h, ip, iq) > 0 if first else past(h, iq, ip) > 0
+        if not (ahead and mvfor(h, ic, ib, code)):
+            puti(h, ic, g.KCCOD, code)
+        return True
     dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
     ahead1, behind1 = over_ends(h, ip, dx, dy)
     ahead2, behind2 = over_ends(h, iq, -dx, -dy)
@@ -257,9 +251,9 @@ def reclass(h: Memory, ic: int) -> bool:
 @inlined
 def settle(h: Memory, ic: int) -> tuple[float, float, float]:
     """Code, place and coordinates of contact `ic` as its geometry asks; normal (x, y) and overlap."""
-    nx, ny, overlap, margin = coord(h, ic)
+    nx, ny, overlap, margin = coord_seldom(h, ic)
     for _ in range(RECLASSIFICATIONS):
         if (margin >= 0 and h.ci[g.LSHORT] == 0) or not reclass(h, ic):
             break
-        nx, ny, overlap, margin = coord(h, ic)
+        nx, ny, overlap, margin = coord_seldom(h, ic)
     return nx, ny, overlap
