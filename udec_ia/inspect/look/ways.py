@@ -37,7 +37,7 @@ def who(atlas: Atlas, address: int) -> Listing:
                     word = atlas.word(atlas.span(iad), field, element)
                     rows.append((word.first, called(atlas, atlas.span(iad)), word.name))
     return Listing(
-        [f"{called(atlas, span)} is pointed to by {len(rows)}"], ("address", "group", "field"), rows
+        [f"{called(atlas, span)} is pointed to by {len(rows)} words"], ("address", "group", "field"), rows
     )
 
 

@@ -1,0 +1,37 @@
+"""docs/workshop.md: its deck runs, and its commands print what stands below them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from udec_ia import Model
+from udec_ia.cli import main
+
+PAGE = Path(__file__).parents[2] / "docs" / "workshop.md"
+TEXT = PAGE.read_text()
+DECK = "".join(
+    f"{line[4:]}\n" for line in re.findall(r"^    START\n(?:    .*\n)+", TEXT, re.M)[0].splitlines()
+)
+SHOWN = re.findall(r"^    \$ udec (.*)\n((?:    .*\n)*)", TEXT, re.M)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder in which the deck was run."""
+    monkeypatch.chdir(tmp_path)
+    Model(out=tmp_path).run(DECK.replace("STOP\n", ""))
+    return tmp_path
+
+
+def test_there_is_something_shown() -> None:
+    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk"}
+
+
+def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for command, shown in SHOWN:
+        assert main(command.split()) == 0
+        printed = capsys.readouterr().out
+        assert printed == "".join(f"{line[4:]}\n" for line in shown.splitlines()), command
