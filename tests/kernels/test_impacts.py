@@ -217,6 +217,8 @@ def test_what_the_search_has_found(deck: str) -> None:
         ("needles", 1000, 406),  # a contact that crossed another one of two tips that have crossed
         ("needles", 6000, 806),  # deepest between two sub-steps of the judge
         ("needles", 1000, 671),  # two contacts on an arc, deeper than its circle is wide
+        ("bends", 15100, 919),  # a corner that has come to have an arc, between two updates
+        ("bends", 13100, 290),  # a blunt arc in a notch, deep in both edges
         ("acute", 12100, 979),  # the corner of a deformable block that turns from convex to concave in a step
     ],
 )

@@ -70,7 +70,7 @@ def test_no_place_between_edge_and_arc_is_lost(build: str, far: float) -> None:
             for ip, x, y in there:
                 putr(h, ip, g.KXP, x + slide * cos(angle))
                 putr(h, ip, g.KYP, y + slide * sin(angle))
-            crad(h, upper)
+            crad(h, upper, False)
             assert can_touch(model, upper, lower), (angle, k)
 
 
@@ -237,6 +237,6 @@ def test_circles_follow_their_corners(build: str) -> None:
     model.cycle(2000 + KEEP - 1)
     there = circles(model)
     for ib in groups(model.h, "block"):
-        crad(model.h, ib)
+        crad(model.h, ib, False)
     away = max(np.abs(np.subtract(there[ip], at)).max() for ip, at in circles(model).items())
     assert away <= KEEP * np.spacing(np.float32(30))

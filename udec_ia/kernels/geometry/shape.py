@@ -18,7 +18,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.links.lists import next_corner
+from udec_ia.kernels.links.lists import idomp, next_corner
 from udec_ia.layout import offsets as g
 
 TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
@@ -131,9 +131,10 @@ def circle(
 
 
 @kernel
-def crad(h: Memory, ib: int) -> int:
+def crad(h: Memory, ib: int, strained: bool) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
 
+    strained: in this step. A corner that has come to have an arc then asks for an update of its domain.
     Notes in LSHORT an edge between two roundings whose straight part is shorter than FTOL. Returns the corner
     where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
     """
@@ -155,6 +156,9 @@ def crad(h: Memory, ib: int) -> int:
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
         if bent(h, c1, s1, c2, s2) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
+            if strained and rad > 0 and getr(h, ip, g.KRAD) <= 0:
+                putr(h, idomp(h, ib, ip), g.KUMAX, h.cr[g.ETOL] + h.cr[g.ETOL])
+                h.cr[g.UPEND] = h.cr[g.HTOL]
         putr(h, ip, g.KRAD, rad)
         putr(h, ip, g.KXCP, x)
         putr(h, ip, g.KYCP, y)
@@ -191,7 +195,7 @@ def keep_circles(h: Memory, ib: int) -> None:
 @kernel
 def round_anew(h: Memory, ib: int) -> None:
     """CRAD for block `ib`, strained in this step. Error 14 if an edge can no longer hold its roundings."""
-    ip = crad(h, ib)
+    ip = crad(h, ib, True)
     if ip != 0 and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = TOO_SHORT
         h.ci[g.IERAD] = ip

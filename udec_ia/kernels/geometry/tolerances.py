@@ -82,7 +82,7 @@ def set_rounding(h: Memory, d: float) -> None:
     h.ci[g.LSHORT] = 0
     ib = h.ci[g.IBPNT]
     while ib != 0:
-        crad(h, ib)
+        crad(h, ib, False)
         ib = iget(h, ib, g.KB)
 
 

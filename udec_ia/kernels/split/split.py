@@ -175,8 +175,8 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, passes: Any) 
         shortest = min(_shortest(h, ib), _shortest(h, jb))
         if shortest < h.cr[g.DTOL] * real(h, 4.0):
             set_rounding(h, shortest * real(h, 0.125))
-    crad(h, ib)
-    crad(h, jb)
+    crad(h, ib, False)
+    crad(h, jb, False)
     end = iget(h, iget(h, jb, g.KP), g.KR)  # the crack runs from this corner to KP
     _settle_crack(h, iget(h, end, g.KL))
     _settle_crack(h, iget(h, end, g.KLB))

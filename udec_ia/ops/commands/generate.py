@@ -148,7 +148,7 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
         _make_zones(h, ib, addresses, zones, paired)
         share_mass(h, ib)
         _set_in_motion(h, ib)
-        crad(h, ib)
+        crad(h, ib, False)
         flag_around(h, ib)
         update_flagged(array)
         if h.ci[g.MCTOT] > 0:

@@ -64,7 +64,7 @@ def straighten(h: Memory, ib: int) -> None:
         return
     for ip in points:
         _take_point_out(h, ib, ip)
-    crad(h, ib)
+    crad(h, ib, False)
     renew_reach(h, ib)
     flag_around(h, ib)
 
