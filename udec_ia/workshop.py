@@ -28,7 +28,7 @@ def add_commands(commands: Any) -> None:
     what.add_argument("address", **ADDRESS)
     who = _command(commands, "who", "list all words that point to the group of a word")
     who.add_argument("address", **ADDRESS)
-    walk = _command(commands, "walk", "follow a list: block | contact KIND, block ADDRESS, KR ADDRESS, ...")
+    walk = _command(commands, "walk", "follow a list: block, contact, ..., block ADDRESS, KR ADDRESS, ...")
     walk.add_argument("along", metavar="LIST", help="kind of group, or the field that links the list")
     walk.add_argument("start", nargs="?", **ADDRESS)
     _command(commands, "junk", "say how full the memory is: kinds of groups, junk by sizes, lost words")

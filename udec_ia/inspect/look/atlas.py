@@ -17,8 +17,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, iget
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.census import census
-from udec_ia.inspect.walk import SOFT
+from udec_ia.inspect.census import CHOICES, census
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 
@@ -26,7 +25,6 @@ TABLE = read_table()
 KINDS = tuple(group.name for group in TABLE.groups)
 JUNK, NOTHING, UNUSED = "junk", "not linked", "unused"
 NAMES = (*KINDS, JUNK, NOTHING, UNUSED)
-OWNERS = ("KNB", "KB1", "KUB")  # fields that name the block to which a group belongs
 
 
 class Span(NamedTuple):
@@ -168,7 +166,7 @@ class Atlas:
 
     def holds(self, kind: str, address: int) -> bool:
         """True if a group of that kind is there; "item", "soft" and "any" stand for several kinds."""
-        kinds = {"item": ("corner", "contact"), "soft": tuple(SOFT.values()), "any": KINDS}.get(kind, (kind,))
+        kinds = KINDS if kind == "any" else CHOICES.get(kind, (kind,))
         for one in kinds:
             k = int(np.searchsorted(self.groups[one], address))
             if k < len(self.groups[one]) and self.groups[one][k] == address:
@@ -191,11 +189,11 @@ class Atlas:
                     waiting.append((to, block))
         return found
 
-    def owner(self, span: Span) -> int:
-        """The block that a group belongs to, of two the first; 0 for what belongs to none."""
+    def owners(self, span: Span) -> list[int]:
+        """The blocks that a group belongs to: two for a contact, none for a domain; a block is its own."""
         if span.kind == "block":
-            return span.first
-        for field in TABLE.group(span.kind).fields if span.kind in KINDS else ():
-            if field.name in OWNERS:
-                return int(self.read(span, field.name))
-        return self._owner.get(span.first, 0)
+            return [span.first]
+        fields = TABLE.group(span.kind).fields if span.kind in KINDS else ()
+        hosts = [int(self.read(span, field.name)) for field in fields if field.role == "host"]
+        held = self._owner.get(span.first)
+        return hosts or ([held] if held else [])

@@ -14,13 +14,11 @@ CODES = {(code.field, code.value): f"{code.name}: {code.text}" for code in TABLE
 
 
 def called(atlas: Atlas, span: Span) -> str:
-    """A span by name, with the block that it belongs to: corner@412 of block@88; junk with its place."""
+    """A span by name, with the blocks that it belongs to: corner@412 of block@88; junk with its place."""
     if span.kind == JUNK:
         return f"{span.name}, {junk_place(atlas, span.first)}"
-    if span.kind == "contact":
-        return f"{span.name} of block@{atlas.read(span, 'KB1')} and block@{atlas.read(span, 'KB2')}"
-    block = atlas.owner(span)
-    return f"{span.name} of block@{block}" if block not in (0, span.first) else span.name
+    blocks = " and ".join(f"block@{block}" for block in atlas.owners(span))
+    return f"{span.name} of {blocks}" if blocks and span.kind != "block" else span.name
 
 
 def junk_place(atlas: Atlas, address: int) -> str:

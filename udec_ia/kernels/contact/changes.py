@@ -118,7 +118,7 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """True if open contact `ic` is no longer where two blocks may meet: see each of the tests."""
+    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
     if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
