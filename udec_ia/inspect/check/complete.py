@@ -2,8 +2,7 @@
 
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
 pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
-needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one. On a blunt arc
-that is anywhere: an edge need only turn by a degree or two to touch the other end of it.
+needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
@@ -23,7 +22,6 @@ import numpy as np
 
 from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
-from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
@@ -95,8 +93,7 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     ones, twos = o.owner[arc], o.owner[other]
-    blunt = np.where(o.r[arc] > BLUNT * o.d, o.d, 0.0)
-    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth + blunt)):
+    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth)):
         one, two = int(ones[k]), int(twos[k])
         (x, y), overlap = point[k].tolist(), float(depth[k])
         points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []

@@ -18,6 +18,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import idomp, next_corner
 from udec_ia.layout import offsets as g
 
@@ -134,9 +135,9 @@ def circle(
 def crad(h: Memory, ib: int, strained: bool) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
 
-    strained: in this step. A corner that has come to have an arc then asks for an update of its domain.
-    Notes in LSHORT an edge between two roundings whose straight part is shorter than FTOL. Returns the corner
-    where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
+    strained: in this step. A corner that was convex, straight or concave and is so no more then asks for an
+    update of its domain. Notes in LSHORT an edge between two roundings whose straight part is shorter than
+    FTOL. Returns the corner where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
     """
     d = h.cr[g.DTOL]
     tight = int64(0)
@@ -156,9 +157,8 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
         if bent(h, c1, s1, c2, s2) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
-            if strained and rad > 0 and getr(h, ip, g.KRAD) <= 0:
-                putr(h, idomp(h, ib, ip), g.KUMAX, h.cr[g.ETOL] + h.cr[g.ETOL])
-                h.cr[g.UPEND] = h.cr[g.HTOL]
+        if strained and np.sign(rad) != np.sign(getr(h, ip, g.KRAD)):
+            flag(h, idomp(h, ib, ip))
         putr(h, ip, g.KRAD, rad)
         putr(h, ip, g.KXCP, x)
         putr(h, ip, g.KYCP, y)

@@ -13,6 +13,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.geometry.contact_geometry import begin
 from udec_ia.kernels.geometry.shape import geo
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
     dellst,
     insert_after,
@@ -36,21 +37,6 @@ def nextd(h: Memory, iad: int, ib: int) -> tuple[int, int]:
     if is_contact(h, item):
         return item, other(h, ib, item)
     return item, int64(ib)
-
-
-@kernel
-def flag(h: Memory, idm: int) -> None:
-    """Ask for an update of domain `idm`."""
-    putr(h, idm, g.KUMAX, h.cr[g.ETOL] + h.cr[g.ETOL])
-
-
-@kernel
-def flag_all(h: Memory) -> None:
-    """Ask for an update of every domain."""
-    idm = h.ci[g.IDPNT]
-    while idm != 0:
-        flag(h, idm)
-        idm = iget(h, idm, g.KD)
 
 
 @kernel

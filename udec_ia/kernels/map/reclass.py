@@ -21,6 +21,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, over_ends, past
 from udec_ia.kernels.geometry.shape import zcs
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
     corner_of,
     domain_before,
@@ -213,6 +214,8 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     if first or has_no_arc(h, iq):  # the contact goes to the nearer of the edges at the corner without
         ib, code = (iget(h, ic, g.KB1), g.EDGE_CORNER) if first else (iget(h, ic, g.KB2), g.CORNER_EDGE)
         ahead = past(h, ip, iq) > 0 if first else past(h, iq, ip) > 0
+        flag(h, iget(h, ic, g.KD1))  # if the corner has come to be concave, the other edge is touched as well
+        flag(h, iget(h, ic, g.KD2))
         if not (ahead and mvfor(h, ic, ib, code)):
             puti(h, ic, g.KCCOD, code)
         return True

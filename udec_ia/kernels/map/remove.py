@@ -11,6 +11,7 @@ from __future__ import annotations
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import lose
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
     dellst,
     insert_after,
@@ -20,7 +21,7 @@ from udec_ia.kernels.links.lists import (
     other,
     take_out,
 )
-from udec_ia.kernels.map.bridge import delc, flag, losec, to_virtual
+from udec_ia.kernels.map.bridge import delc, losec, to_virtual
 from udec_ia.layout import offsets as g
 
 

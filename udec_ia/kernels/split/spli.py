@@ -18,6 +18,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
 from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find
 from udec_ia.kernels.geometry.shape import density_of, geo, makeb
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
     idomp,
     is_contact,
@@ -29,7 +30,7 @@ from udec_ia.kernels.links.lists import (
     set_corner_of,
     to_front,
 )
-from udec_ia.kernels.map.bridge import flag, makec, maked
+from udec_ia.kernels.map.bridge import makec, maked
 from udec_ia.kernels.map.segments import on_arc
 from udec_ia.layout import offsets as g
 

@@ -25,8 +25,8 @@ from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map, restart
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
+from udec_ia.kernels.links.flag import flag_all
 from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
-from udec_ia.kernels.map.bridge import flag_all
 from udec_ia.kernels.split.crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.shared_bounds import off_grid, share_bounds
 from udec_ia.kernels.split.spli import corner_on_edge, spli

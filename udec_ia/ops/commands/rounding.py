@@ -11,7 +11,7 @@ from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
-from udec_ia.kernels.map.bridge import flag_all
+from udec_ia.kernels.links.flag import flag_all
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.common.memory import all_or_nothing, find_room, keep_spare

@@ -15,8 +15,8 @@ from udec_ia.heap.memory import lose
 from udec_ia.kernels.contact.changes import restart
 from udec_ia.kernels.detect.gaps import give_up
 from udec_ia.kernels.geometry.shape import crad, is_edge_point
+from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
-from udec_ia.kernels.map.bridge import flag
 from udec_ia.kernels.map.segments import on_arc
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.lists import items
