@@ -23,10 +23,11 @@ from udec_ia.files import takes_files
 from udec_ia.layout.table import StaleLayout
 from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
+from udec_ia.workshop import VERBS as LOOKS
 from udec_ia.workshop import add_commands
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", "check", "info", "what", "who", "walk", "junk")
+VERBS = ("run", "check", "info", *LOOKS)
 
 
 def arguments() -> argparse.ArgumentParser:

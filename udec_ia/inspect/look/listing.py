@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import json
+from math import isfinite
 from typing import Any, NamedTuple
 
 
 class Listing(NamedTuple):
-    """said: sentences. columns: names of the columns; rows: what stands in them, text or numbers."""
+    """said: sentences. columns: names of the columns; rows: what stands in them, text or numbers.
+
+    status: exit status of a command that prints this.
+    """
 
     said: list[str]
     columns: tuple[str, ...] = ()
     rows: list[tuple[Any, ...]] = []  # noqa: RUF012  never changed
+    status: int = 0
 
     def as_json(self) -> str:
-        """One object: `said`, and `rows` as objects by the names of the columns."""
+        """One object: `said`, and `rows` as objects by the names of the columns; NaN and infinity as text."""
         rows = [dict(zip(self.columns, map(_plain, row), strict=True)) for row in self.rows]
-        return json.dumps({"said": self.said, "rows": rows}, indent=1, allow_nan=True)
+        return json.dumps({"said": self.said, "rows": rows}, indent=1, allow_nan=False)
 
     def as_text(self) -> str:
         """The sentences, and the columns beside each other: numbers to the right, the rest to the left."""
@@ -35,7 +40,8 @@ class Listing(NamedTuple):
 
 
 def _plain(value: Any) -> Any:
-    return value.item() if hasattr(value, "item") else value
+    value = value.item() if hasattr(value, "item") else value
+    return str(value) if isinstance(value, float) and not isfinite(value) else value
 
 
 def _cell(value: Any) -> str:

@@ -1,0 +1,20 @@
+"""The heap workshop on the command line: to look into a restart file, sound or not, word by word.
+
+Each file here holds the commands of one kind. A command is one function of `udec_ia.inspect`, which works the
+same on a model that runs; --python prints how to call it, --json prints what programs can read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.workshop import look
+
+PARTS = (look,)
+VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
+
+
+def add_commands(commands: Any) -> None:
+    """Add the workshop's commands to those of `udec`."""
+    for part in PARTS:
+        part.add_commands(commands)

@@ -1,0 +1,48 @@
+"""What all commands of the workshop have in common: --json, --python, and how they end."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from udec_ia.inspect.look.listing import Listing
+
+MISUSE = 2
+Look = Callable[[argparse.Namespace], "Listing"]
+Script = Callable[[argparse.Namespace], str]
+
+
+def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> argparse.ArgumentParser:
+    """A command that prints what `look` finds, or with --python the lines of `script`.
+
+    What `look` raises as IndexError or ValueError is a wrong argument. The parser that is returned has no
+    arguments yet but --json and --python.
+    """
+    parser: argparse.ArgumentParser = commands.add_parser(verb, help=text, description=text)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--python", action="store_true", help="print the same in Python, and do nothing")
+    parser.set_defaults(action=partial(_obey, verb, look, script))
+    return parser
+
+
+def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
+    """The argument FILE."""
+    parser.add_argument(name, type=Path, metavar=name.upper(), help="a restart file, sound or damaged")
+
+
+def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:
+    if args.python:
+        print(script(args))
+        return 0
+    try:
+        found = look(args)
+    except (IndexError, ValueError) as error:
+        print(f"udec {verb}: {error}", file=sys.stderr)
+        return MISUSE
+    sys.stdout.write(found.as_json() + "\n" if args.json else found.as_text())
+    return found.status
