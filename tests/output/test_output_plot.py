@@ -394,3 +394,36 @@ def test_animation_is_written_with_its_last_state(tmp_path: Path) -> None:
     with Image.open(path) as picture:
         assert picture.format == "GIF"
         assert getattr(picture, "n_frames", 1) == 4
+
+
+@pytest.mark.parametrize(
+    "window",
+    [
+        (4.953, 5.739, -1e308, -1.0),
+        (-1e308, 1e308, 0.0, 1.0),
+        (0.0, 1e5, 0.0, 1.0),
+        (1e12, 1e12 + 1, 0.0, 1.0),
+        (1e200, 2e200, 1e200, 2e200),
+        (0.0, 1e-320, 0.0, 1e-320),
+        (-1e-30, 1e-30, 0.0, 1e-30),
+        (1.0, 0.0, 0.0, 1.0),
+        (np.nan, 1.0, 0.0, 1.0),
+    ],
+)
+def test_windows_that_cannot_be_drawn(window: tuple[float, float, float, float], tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    with pytest.raises(UdecError, match=r"window|WINDOW") as caught:
+        m.plot(0, window=window)
+    assert caught.value.number == 28
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "window",
+    [(0.0, 90.0, 0.0, 1.0), (0.0, 1.0, -90.0, 0.0), (-1e-6, 1e-6, 0.0, 1e-6), (9e29, 1e30, 0.0, 1e29)],
+)
+def test_windows_at_the_limits_are_drawn(window: tuple[float, float, float, float], tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    assert {path.suffix for path in m.plot(0, window=window)} == {".png", ".svg"}

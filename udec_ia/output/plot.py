@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
 KEY_WIDTH = 1.55  # inches for the key on the right
+SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # what a picture's own reals can tell apart, with room to spare
 AT_ONCE = 10  # states up to which each one is drawn at once
 RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
 GROWTH = 1.25  # of a frame that has more
@@ -86,13 +87,19 @@ class What:
 BARE = What()
 
 
-def _check_window(window: tuple[float, float, float, float] | None) -> None:
-    """Error 28 unless there is something in the window."""
-    if window is not None:
-        x1, x2, y1, y2 = window
-        if not (0 < x2 - x1 < np.inf and 0 < y2 - y1 < np.inf):
-            advice = "WINDOW takes x1 x2 y1 y2 with x1 below x2 and y1 below y2, in m"
-            raise UdecError(28, "there is nothing in the window", advice, parameter="window")
+def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
+    """Error 28 unless there is something in the window, and it can be drawn. reach: of blocks from 0."""
+    if window is None:
+        return
+    x1, x2, y1, y2 = window
+    wide, high, far = x2 - x1, y2 - y1, max(reach, *map(abs, window))
+    if not (0 < wide < np.inf and 0 < high < np.inf):
+        advice = "WINDOW takes x1 x2 y1 y2 with x1 below x2 and y1 below y2, in m"
+        raise UdecError(28, "there is nothing in the window", advice, parameter="window")
+    if min(wide, high) < max(max(wide, high) / SLENDER, far / REMOTE, 1 / FARTHEST) or far > FARTHEST:
+        detail = f"a window of {wide:g} m by {high:g} m, with blocks {far:g} m away from 0, cannot be drawn"
+        advice = f"its sides may be as 1 to {SLENDER:g}, and {REMOTE:g} of them reach from 0 to all blocks"
+        raise UdecError(28, detail, advice, parameter="window")
 
 
 class Plots:
@@ -117,12 +124,12 @@ class Plots:
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
-        _check_window(what.window)
+        state = snapshot(h, what.contacts, what.domains, inside=True)  # PLOT 1 may ask for displacements
+        _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
             self.count += 1
-        state = snapshot(h, what.contacts, what.domains, inside=True)  # PLOT 1 may ask for displacements
         self.frame.add(state, what, float(h.cr[g.PSCALE]))
         return self._write(self.frame) if self.frame.due else []
 
