@@ -83,3 +83,49 @@ def test_a_sharp_corner_touches_by_its_circle(angle: float) -> None:
     centre = far * np.array([-np.sin(angle), np.cos(angle)])
     assert overlap == pytest.approx(radius - centre[1], abs=1e-12)
     assert (x, y) == pytest.approx((centre[0], -overlap / 2), abs=1e-12)
+
+
+def test_a_blunt_corner_finds_its_contact_beside_a_rounded_one() -> None:
+    """Its circle's centre is 300 m away, and its end touches an edge between a notch and an arc."""
+    m, d = Model(), 0.2
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0)
+    upper = [(0, 2.01), (4, 2.01), (4, 1.01), (1.5, 1.03), (0, 1.01)]
+    lower = [(0, 1), (1, 1.001), (4, 1), (4, 0), (0, 0)]
+    m.block(*np.ravel([(-2, 0), (-2, 2.01), *upper, (-1, 1.01), (-1, 1), *lower]))
+    m.split(0, -1, 0, 3)
+    m.delete(-3, -0.1, -1, 9)
+    m.round(d)
+    m.cycle(0)
+    blocks = m.table("block")
+    above = int(blocks["address"][blocks["KY"] > 1][0])
+    m.rset(-0.1 * d / float(m.h.cr[g.TDEL]), above, g.KYD[1])
+    for _ in range(6):
+        m.cycle(1)
+        assert m.check() == []
+    contacts = m.table("contact")
+    assert (abs(contacts["KXC"] - 0.8) < 0.01).any()
+
+
+def test_an_arc_passes_a_point_of_an_edge_without_a_jolt() -> None:
+    """A corner slides below a mesh point that has a contact beyond its arc: nothing overlaps at any time."""
+    m, d, gap = Model(), 0.2, 0.02
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0, bulk=1e8, g=6e7)
+    y, px = 1 - 1.5 * np.tan(0.4), 1.5 + 1.1 * d
+    left = [-1, y - 1, -1, 2 + gap, 0, 2 + gap, 3, 2 + gap, 3, 1 + gap, 0, 1 + gap, -0.5, 1 + gap, -0.5, y]
+    m.block(*left, *(0, y, 1.5, 1, 3, 1.003, 3, y - 1, 0, y - 1))
+    m.split(0, -9, 0, 3)
+    m.delete(-2, -0.05, -9, 3)
+    m.round(d)
+    points = [(0, 1 + gap), (0, 2 + gap), (3, 2 + gap), (3, 1 + gap), (px, 1 + gap), (1.5, 1.5 + gap)]
+    m.generate(
+        1, 2, 1.1, 2, "manual", gridpoints=points, zones=[(1, 6 - j, 6 - (j + 1) % 5) for j in range(5)]
+    )
+    m.cycle(0)
+    blocks = m.table("block")
+    below = int(blocks["address"][blocks["HEAD"] == g.MRIG][0])
+    m.rset(0.01 * d / float(m.h.cr[g.TDEL]), below, g.KXD[1])
+    for _ in range(40):
+        m.cycle(1)
+        assert m.table("contact")["KCFN"].max() == 0
+        assert m.check() == []
+    assert (m.table("contact")["KXC"] > px + 0.05).any()

@@ -2,7 +2,9 @@
 
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
 pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
-needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one.
+needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one. A blunt arc that
+touches by one end may come to touch by the other, too; until its domain is updated, that is for an overlap of
+up to ETOL, the contact that there is stands for both.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
@@ -22,6 +24,7 @@ import numpy as np
 
 from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
+from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
@@ -93,7 +96,8 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     ones, twos = o.owner[arc], o.owner[other]
-    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth)):
+    late = (o.r[arc] > BLUNT * o.d) & (depth <= state.tolerance("ETOL"))
+    for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth + np.where(late, o.d, 0.0))):
         one, two = int(ones[k]), int(twos[k])
         (x, y), overlap = point[k].tolist(), float(depth[k])
         points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []
@@ -215,12 +219,13 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Arcs of corners i whose point deepest under the edge of corner j is on the edge or in the block.
 
-    The deepest point of an arc that does not face the edge is one of its ends. A point of an edge that does
-    not face it has deeper ones beside it, where its own edge goes on.
+    The deepest point of an arc that does not face the edge is one of its ends; the centre of a blunt one may
+    then be far away along the edge. A point of an edge that does not face it has deeper ones beside it, where
+    its own edge goes on.
     """
-    along = dot(o.c[i] - o.p[o.before[j]], o.t[j])
-    keep = (along >= o.start[j]) & (along <= o.end[j])
-    i, j = i[keep], j[keep]
+    along, blunt = dot(o.c[i] - o.p[o.before[j]], o.t[j]), o.r[i] > BLUNT * o.d
+    keep = blunt | ((along >= o.start[j]) & (along <= o.end[j]))
+    i, j, blunt = i[keep], j[keep], blunt[keep]
     inward = -o.e[j]
     early, late = dot(inward, o.t[i]), dot(inward, o.t[o.after[i]])
     reach = np.where(o.pointed[i], 0.0, o.d)[:, None]
@@ -229,10 +234,11 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
         [o.p[i] - reach * o.t[i], o.p[i] + reach * o.t[o.after[i]]],
         o.c[i] + o.r[i][:, None] * inward,
     )
-    depth = dot(deepest - o.p[j], inward)
+    depth, along = dot(deepest - o.p[j], inward), dot(deepest - o.p[o.before[j]], o.t[j])
     slack = o.rounding(i, j)
     awry = np.where(o.pointed[i], AWRY_POINT, AWRY)
-    keep = (depth >= -o.apart(i, j)) & (depth <= o.d) & (-early <= awry) & (late <= awry)
+    keep = ~blunt | ((along >= o.start[j]) & (along <= o.end[j]))
+    keep &= (depth >= -o.apart(i, j)) & (depth <= o.d) & (-early <= awry) & (late <= awry)
     keep &= dot(inward, o.out[i]) > 0
     i, j, deepest, depth, slack = i[keep], j[keep], deepest[keep], depth[keep], slack[keep]
     keep = (depth <= slack) | _inside(o, deepest, o.owner[j])

@@ -18,7 +18,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.crossed_tips import AROUND, would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between
-from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, meet, over_ends, past
+from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, is_blunt, meet, over_ends, past
 from udec_ia.kernels.geometry.sorting import stable_order
 from udec_ia.kernels.links.lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.segments import (
@@ -45,11 +45,13 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
 
     Past the arc of `iq`, if it has one: by the same number that tells arc_on_arc whether the centre is over
     the arc, so that rounding cannot leave a place between arc and edge that is neither. along: distance
-    from `iq` along the edge, which counts at a concave corner: from ETOL before it on, as a blunt arc in the
-    notch is deep in the edge at once. Two edges that meet in an edge point share what is within FTOL of their
-    bisector.
+    from `iq` along the edge to what touches it, which counts for a blunt corner, as that may be the end of
+    its arc. It counts at a concave corner, too: from ETOL before it on, as a blunt arc in the notch is deep
+    in the edge at once. Two edges that meet in an edge point share what is within FTOL of their bisector.
     """
     rad = getr(h, iq, g.KRAD)
+    if rad > 0 and is_blunt(h, ip):
+        return along - h.cr[g.DTOL]
     if rad > 0:
         dx, dy = getr(h, ip, g.KXCP) - getr(h, iq, g.KXCP), getr(h, ip, g.KYCP) - getr(h, iq, g.KYCP)
         ahead, behind = over_ends(h, iq, dx, dy)

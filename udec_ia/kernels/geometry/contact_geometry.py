@@ -55,16 +55,26 @@ def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     """
     ex, ey, overlap, along, z = circle_ce(h, ip, iq)
     if is_blunt(h, ip):
-        tx, ty, ux, uy = tangents(h, ip)
-        d, zero = h.cr[g.DTOL], real(h, 0.0)
-        x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        leaves, arrives = ex * ux + ey * uy < zero, ex * tx + ey * ty > zero
-        if leaves or arrives:
-            x, y = (x + d * ux, y + d * uy) if leaves else (x - d * tx, y - d * ty)
+        by_end, x, y = touching_end(h, ip, ex, ey)
+        if by_end:
             ia = iget(h, iq, g.KR)
             x, y = x - getr(h, ia, g.KXP), y - getr(h, ia, g.KYP)
             overlap, along = -(x * ex + y * ey), x * ey - y * ex
     return ex, ey, overlap, along, z
+
+
+@kernel
+def touching_end(h: Memory, ip: int, ex: float, ey: float) -> tuple[bool, float, float]:
+    """Which end (x, y) of the arc of corner `ip` touches an edge of the outward normal (ex, ey).
+
+    Also returned, before it: whether it is an end at all, and not a place between.
+    """
+    tx, ty, ux, uy = tangents(h, ip)
+    d, zero = h.cr[g.DTOL], real(h, 0.0)
+    x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
+    if ex * ux + ey * uy < zero:
+        return True, x + d * ux, y + d * uy
+    return ex * tx + ey * ty > zero, x - d * tx, y - d * ty
 
 
 @inlined
@@ -87,11 +97,17 @@ def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
 def past(h: Memory, iq: int, ip: int) -> float:
     """How far the circle of corner `ip` has passed corner `iq` of another block, clockwise.
 
-    Measured along the mean direction of the two edges at `iq`, so zero on their bisector.
+    Measured along the mean direction of the two edges at `iq`, so zero on their bisector. Of a blunt corner
+    it is the end of its arc if that touches.
     """
     tx, ty, ux, uy = tangents(h, iq)
-    x, y = getr(h, ip, g.KXCP) - getr(h, iq, g.KXP), getr(h, ip, g.KYCP) - getr(h, iq, g.KYP)
-    return (x * (tx + ux) + y * (ty + uy)) * real(h, 0.5)
+    mx, my = (tx + ux) * real(h, 0.5), (ty + uy) * real(h, 0.5)
+    x, y = getr(h, ip, g.KXCP), getr(h, ip, g.KYCP)
+    if is_blunt(h, ip):
+        by_end, ax, ay = touching_end(h, ip, -my, mx)
+        if by_end:
+            x, y = ax, ay
+    return (x - getr(h, iq, g.KXP)) * mx + (y - getr(h, iq, g.KYP)) * my
 
 
 @inlined

@@ -12,7 +12,8 @@ of its own - unless the flat between the two is shorter than FTOL. Two contacts 
 contact is handed from corner to corner, and the report's ball rolls on a single contact.
 
 Points of edges have no contact with each other; two that meet have each a contact with an edge beside the
-other. Each of these stands in the way of the other, so they pass together.
+other. Each of these stands in the way of the other, so they pass together. An arc that meets a point is no
+such case: the point comes to the arc first.
 """
 
 from __future__ import annotations
@@ -169,19 +170,20 @@ def _put_domains(h: Memory, ib: int, ic: int, before: int, after: int) -> None:
 def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z: float) -> bool:
     """Corner `ip` has come near an end of the edge of block `ib` that ends at `iq`."""
     code, border = iget(h, ic, g.KCCOD), h.cr[g.DTOL] - h.cr[g.GTOL]
+    is_point = getr(h, ip, g.KRAD) <= 0
     ia = iget(h, iq, g.KR)
     rad = getr(h, ia, g.KRAD)
     if rad > 0 and along < border:
         return mvbak(h, ic, ib, g.CORNER_CORNER)
     if rad == 0 and past(h, ia, ip) < -h.cr[g.GTOL]:
-        return _pass_backwards(h, ic, ib, ia, ip) or mvbak(h, ic, ib, code)
+        return (is_point and _pass_backwards(h, ic, ib, ia, ip)) or mvbak(h, ic, ib, code)
     rad = getr(h, iq, g.KRAD)
     if rad > 0 and z - along < border:
         puti(h, ic, g.KCCOD, g.CORNER_CORNER)
         return True
     if rad != 0 or past(h, iq, ip) <= h.cr[g.GTOL]:
         return False
-    return _pass_forwards(h, ic, ib, iq, ip) or mvfor(h, ic, ib, code)
+    return (is_point and _pass_forwards(h, ic, ib, iq, ip)) or mvfor(h, ic, ib, code)
 
 
 @kernel
