@@ -14,6 +14,7 @@ from __future__ import annotations
 import io
 import operator
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -44,6 +45,7 @@ from udec_ia.ops.commands.delete import delete
 from udec_ia.ops.commands.energy import Balance, balance, switch
 from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
 from udec_ia.ops.commands.generate_automatic import generate_automatically
+from udec_ia.ops.commands.history import definitions
 from udec_ia.ops.commands.insitu import insitu
 from udec_ia.ops.commands.rounding import round_corners
 from udec_ia.ops.commands.split import Boxes, split
@@ -205,6 +207,18 @@ class Model(Session):
             self.tell(f"{told}: look at it, and go on from one before that")
         if array.scheme != self.scheme:
             self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
+
+    @beside
+    def take_up(self, array: MainArray, lines: Sequence[str]) -> None:
+        """Go on from a former state of this run, to which `lines` have led: what came later is forgotten."""
+        self.array = array
+        series = self._recorder.series[: len(definitions(array))]
+        for one in series:
+            one.until(int(array.h.ci[MCTOT]))
+        self.go_on(lines, series)
+        self._boxes.forget()
+        self._touched, self._unproved = False, True
+        self._runaway = Runaway(self.warn)
 
     @classmethod
     def restore(
@@ -562,6 +576,7 @@ class Model(Session):
         moved = arrange(self.array)
         if moved is not None:
             self.renumber(moved)
+        watch = self.around(watch)
         report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])
         try:
@@ -642,6 +657,19 @@ class Model(Session):
         """
         out = io.StringIO() if stream is None else stream
         run_deck(self, text_or_path, out)
+        return out.getvalue() if isinstance(out, io.StringIO) else None
+
+    def debug(
+        self, deck: str, script: Sequence[str] | None = None, stream: TextIO | None = None
+    ) -> str | None:
+        """Run the text of a deck under the debugger, which is talked to at the terminal, or obeys `script`.
+
+        What is printed goes to `stream`; with a script and no stream it is returned.
+        """
+        from udec_ia.debug import debug
+
+        out = stream or (sys.stdout if script is None else io.StringIO())
+        debug(self, deck, out, script)
         return out.getvalue() if isinstance(out, io.StringIO) else None
 
     # ---- looking

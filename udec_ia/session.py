@@ -58,6 +58,7 @@ class Session:
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._said: set[str] = set()  # remarks, which are not repeated
+        self.around: Callable[[Watch | None], Watch | None] = lambda watch: watch  # for a debugger
         self._clock, self._compiled = perf_counter(), compile_seconds()
 
     @property

@@ -22,7 +22,8 @@ BELOW = {  # layers that a layer imports
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
-    "workshop": {"errors", "heap", "inspect", "layout", "restart"},
+    "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
+    "workshop": {"debug", "errors", "heap", "inspect", "layout", "model", "restart"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

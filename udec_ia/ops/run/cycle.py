@@ -163,7 +163,7 @@ def _run(
             given = soft(array), bound.blocks, bound.joints
             done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
             settled()
-            _raise_error(array, bound.book)
+            raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
                 runaway.look(array)
         if report is not None and (every is None or done % every == 0 or done == n):
@@ -222,7 +222,7 @@ def _without_contact(array: MainArray, ip: int) -> UdecError:
     return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=ip)
 
 
-def _raise_error(array: MainArray, laws: LawBook) -> None:
+def raise_error(array: MainArray, laws: LawBook) -> None:
     """Find memory if that is what a kernel stopped for; else raise the error it left behind.
 
     An error of a cycle that needs memory, too, is raised when the cycle is complete, or if it cannot be.

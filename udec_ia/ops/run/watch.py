@@ -29,8 +29,12 @@ def run_unwatched(h: Memory, n: int, laws: Any) -> int:
 
     laws: see kernels.drive.watch.run_watched.
     """
-    nothing = NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
-    return int(run_watched(h, n, laws, NEVER, *nothing, passes(h, laws[0], (), NEVER))[0])
+    return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), passes(h, laws[0], (), NEVER))[0])
+
+
+def nothing_recorded() -> tuple[Any, Any, Any]:
+    """What run_watched is given where nothing is recorded: places, rows and count."""
+    return NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
 
 
 class Series:
@@ -89,6 +93,11 @@ class Series:
         """The last cycle that was recorded; -1 before the first one."""
         last = next((part for part in reversed(self._parts) if len(part)), None)
         return -1 if last is None else int(last[-1, 0])
+
+    def until(self, cycle: int) -> None:
+        """Forget what was recorded after that cycle."""
+        self._parts = [self.numbers[self.numbers[:, 0] <= cycle]]
+        self.count = len(self._parts[0])
 
     def add(self, rows: Any) -> None:
         """Take in rows of cycle, time and value that were recorded later than all others."""

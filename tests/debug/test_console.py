@@ -1,0 +1,172 @@
+"""The debugger as it is talked to: what each command says and does, and that nothing breaks it."""
+
+from __future__ import annotations
+
+import io
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from debug_decks import PILE
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from udec_ia import Model, UdecError
+from udec_ia.cli import main
+from udec_ia.debug import Console, debug
+
+
+def talk(out: Path, *lines: str, deck: str = PILE) -> str:
+    """What the debugger says to these commands."""
+    said = io.StringIO()
+    debug(Model(out=out), deck, said, lines)
+    return said.getvalue()
+
+
+def test_it_stops_before_the_first_command(tmp_path: Path) -> None:
+    assert talk(tmp_path, "where") == "at the beginning\nat the beginning\n"
+
+
+def test_stepping_and_going(tmp_path: Path) -> None:
+    said = talk(
+        tmp_path, "goto 70", "step", "step 3", "rs", "rs 4", "goto line 13", "goto now", "c", "goto 5"
+    )
+    places = re.findall(r"^after (?:cycle (\d+) of )?line (\d+)", said, re.M)
+    cycles = [("70", "14"), ("71", "14"), ("74", "14"), ("73", "14"), ("69", "14")]
+    assert places == [*cycles, ("60", "12"), ("74", "14"), ("", "17"), ("5", "12")]
+    assert "the deck has ended" in said
+
+
+def test_names_may_be_cut_short(tmp_path: Path) -> None:
+    whole = talk(tmp_path, "goto 30", "reverse-step 2", "print TIME", "where")
+    assert talk(tmp_path, "go 30", "reverse-s 2", "p TIME", "w") == whole
+
+
+def test_stops_at_what_was_asked_for(tmp_path: Path) -> None:
+    """Forwards while it runs, forwards again in the past, and backwards: the same places."""
+    said = talk(tmp_path, "break broken", *["c"] * 9)
+    forward = re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", said)
+    assert len(forward) > 1
+    again = talk(tmp_path, "break broken", *["c"] * 9, "goto 61", *["c"] * len(forward))
+    assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", again)[len(forward) :] == forward
+    back = talk(tmp_path, "goto 61", "goto line 17", "break broken", *["rc"] * (len(forward) + 2))
+    assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", back) == forward[::-1]
+    assert re.search(r"broken: contact@.*\nafter line 13: DELETE", back)
+    assert "nothing of that has happened before" in back
+
+
+def test_watching_a_word(tmp_path: Path) -> None:
+    said = talk(
+        tmp_path, "goto 1", "watch block@721.KYD < -0.2", "c", "delete 1", "info", "print block@721.KYD"
+    )
+    value = float(re.search(r"block@721.KYD = (\S+)", said)[1])  # type: ignore[index]
+    assert value < -0.2
+    before = talk(tmp_path, "goto 1", "watch block@721.KYD < -0.2", "c", "rs", "print block@721.KYD")
+    assert float(re.search(r"block@721.KYD = (\S+)", before)[1]) >= -0.2  # type: ignore[index]
+
+
+def test_within_a_cycle(tmp_path: Path) -> None:
+    said = talk(tmp_path, "goto 50", *["rs pass", "rs group", "rs write"], *["s write", "s group", "s pass"])
+    assert said.count("within the next cycle") >= 4
+    assert "ford of contact@" in said
+    assert "after cycle 50 of line 12" in said.splitlines()[-1]
+
+
+def test_an_error_is_stopped_at(tmp_path: Path) -> None:
+    deck = PILE.replace("KN=8E6", "KN=1E4").replace("STOP\n", "")
+    said = io.StringIO()
+    with pytest.raises(UdecError) as caught:
+        debug(Model(out=tmp_path), deck, said, ["c", "rs 2", "print MCTOT", "check", "c", "c"])
+    assert caught.value.number == 15
+    assert "error 15" in said.getvalue()
+    assert re.search(r"MCTOT = \d+", said.getvalue())
+
+
+def test_wrong_commands_are_told(tmp_path: Path) -> None:
+    said = talk(
+        tmp_path,
+        *["nonsense", "goto x", "goto 9999999 7", "break", "watch", "print", "print nothing@1.KX", "what"],
+        *[
+            "what x",
+            "what 1 2 3",
+            "walk",
+            "who",
+            "wrote",
+            "why",
+            "born",
+            "born x",
+            "delete 4",
+            "step -1",
+            "resume 3",
+        ],
+        *["step pass", "reverse-step group", "reverse-continue x", "goto line", "EOF"],
+    )
+    assert "Traceback" not in said
+    assert "no command nonsense" in said
+
+
+COMMANDS = "step rs rc goto print watch break delete what who walk junk wrote why born info list c where"
+ARGUMENTS = ["", "1", "3", "40", "block@1.KX", "TIME", "412", "pass", "group", "made", "x@y.z", "-", "line 4"]
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(COMMANDS.split()), st.sampled_from(ARGUMENTS)), max_size=12),
+)
+@settings(max_examples=25, deadline=None)
+def test_any_talk_ends(tmp_path_factory: pytest.TempPathFactory, lines: list[tuple[str, str]]) -> None:
+    said = talk(tmp_path_factory.mktemp("talk"), *[" ".join(line) for line in lines])
+    assert "Traceback" not in said
+
+
+def test_completion(tmp_path: Path) -> None:
+    found: dict[str, list[str]] = {}
+
+    def ask(told: list[str]) -> None:
+        found["names"] = console.completenames("re")
+        found["groups"] = console.completedefault("block@", "print block@", 6, 12)
+        found["fields"] = console.completedefault("kx", "print block@1.kx", 14, 16)
+
+    console = Console(Model(out=tmp_path), io.StringIO())
+    console.debugger.stopped = ask  # type: ignore[assignment]
+    from udec_ia.deck.reader import statements
+
+    console.debugger.run(list(statements(PILE.splitlines(), "pile")))
+    assert found["names"] == ["resume", "reverse-continue", "reverse-step"]
+    assert "block@1" in found["groups"]
+    assert "KXD" in found["fields"]
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    deck, script = tmp_path / "pile.dat", tmp_path / "script"
+    deck.write_text(PILE)
+    script.write_text("goto 20\nprint MCTOT\n")
+    assert main(["debug", str(deck), "--out", str(tmp_path), "--commands", str(script)]) == 0
+    assert "MCTOT = 20" in capsys.readouterr().out
+    assert main(["debug", str(tmp_path / "none.dat")]) == 1
+
+
+def test_ctrl_c_stops_the_run_and_not_the_debugger(tmp_path: Path) -> None:
+    """In a process of its own: a long run, interrupted, looked at and left."""
+    deck = tmp_path / "long.dat"
+    deck.write_text(PILE.replace("CYCLE 60", "CYCLE 60\nCYCLE 100000000"))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "udec_ia", "debug", str(deck), "--out", str(tmp_path)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write("continue\n")
+    process.stdin.flush()
+    for line in process.stdout:
+        if "CYCLE 100000000" in line:
+            break
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate("print MCTOT\nreverse-step 10\nquit\n", timeout=120)
+    assert "interrupted" in out
+    assert re.search(r"MCTOT = \d+", out)
+    assert process.returncode == 0

@@ -1,0 +1,168 @@
+"""Going back: every event of a run, and the last change of any word, against a run that kept all states."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from debug_decks import PILE
+
+from udec_ia import Model
+from udec_ia.debug.answers import last_hit
+from udec_ia.debug.places import place
+from udec_ia.debug.probes import Changed, Contacts
+from udec_ia.debug.session import Debugger, Resume
+from udec_ia.debug.timeline import Gone
+from udec_ia.deck.reader import statements
+from udec_ia.heap.accessors import iget
+from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas
+from udec_ia.layout import offsets as g
+
+KEPT_CYCLES = 460
+
+
+def every_state(build: str, out: Path) -> list[tuple[int, Any, Any]]:
+    """Cycles, IA() and time after each command and each cycle of the deck, without the debugger."""
+    m, found = Model(build, out=out), []
+    for line in PILE.splitlines()[:-1]:
+        word, *numbers = line.split()
+        for _ in range(int(numbers[0]) if word == "CYCLE" else 1):
+            m.run("CYCLE 1\n" if word == "CYCLE" else line + "\n")
+            h = m.array.h
+            found.append((int(h.ci[g.MCTOT]), h.ia[: int(h.ci[g.MFREE]) - 1].copy(), float(h.cd[g.TIME])))
+    return found
+
+
+def debugged(build: str, out: Path, **options: Any) -> Debugger:
+    """The deck, run to its end under a debugger that nobody talks to."""
+    debugger = Debugger(Model(build, out=out), io.StringIO(), lambda told: None, **options)
+    debugger.run(list(statements(PILE.splitlines(), "pile")))
+    return debugger
+
+
+@pytest.fixture(scope="module", params=["i32r64", "i16r32"])
+def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The states of every cycle, and the debugger."""
+    out = tmp_path_factory.mktemp("debug")
+    return every_state(request.param, out), debugged(request.param, out)
+
+
+def test_every_event_can_be_gone_back_to(both: Any) -> None:
+    """Bit for bit, but for what prepares a run, which a CYCLE of one cycle does as well."""
+    states, debugger = both
+    timeline = debugger.timeline
+    known = iter(states)
+    for event in range(1, timeline.now):
+        stretch, cycle = timeline.place(event)
+        array = timeline.at(event)
+        assert array.h.ci[g.MCTOT] == cycle
+        if stretch.runs and event == stretch.first + 1:
+            continue
+        cycles, words, time = next(known)
+        assert (cycles, time) == (cycle, float(array.h.cd[g.TIME]))
+        assert np.array_equal(array.h.ia[: int(array.h.ci[g.MFREE]) - 1], words)
+    assert next(known, None) is None
+
+
+def test_few_copies_do(both: Any) -> None:
+    timeline = both[1].timeline
+    commands = len(timeline.stretches)
+    assert len(timeline.copies) < commands + 20
+    assert timeline.now == commands + 3 + KEPT_CYCLES - 3
+
+
+def test_the_last_change_of_any_word(both: Any) -> None:
+    """Of words drawn at random, from events drawn at random."""
+    _, debugger = both
+    timeline, rng = debugger.timeline, np.random.default_rng(5)
+    arrays = [timeline.at(event).h for event in range(timeline.now + 1)]
+    for _ in range(60):
+        event = int(rng.integers(5, timeline.now + 1))
+        atlas = Atlas(timeline.at(event).h)
+        kind = str(rng.choice([kind for kind in KINDS if len(atlas.groups[kind])]))
+        field = TABLE.group(kind).fields[int(rng.integers(len(TABLE.group(kind).fields)))]
+        word = place(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
+        values = [word.value(h) for h in arrays[: event + 1]]
+        changes = [k for k in range(1, event + 1) if values[k] != values[k - 1]]
+        assert last_hit(timeline, event, Changed(word))[0] == max(changes, default=0), word
+        assert last_hit(timeline, event, Changed(word), before=True)[0] == max(
+            (k for k in changes if k < event), default=0
+        )
+
+
+def real_contacts(array: Any) -> set[int]:
+    """Addresses of the contacts that are not virtual, by the head of their list and its links."""
+    h, found, ic = array.h, set(), int(array.h.ci[g.ICPNT])
+    while ic:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            found.add(ic)
+        ic = iget(h, ic, g.KC)
+    return found
+
+
+def test_contacts_made_and_broken(both: Any) -> None:
+    """Every one of them, from the end to the beginning."""
+    _, debugger = both
+    timeline = debugger.timeline
+    real = [real_contacts(timeline.at(event)) for event in range(timeline.now + 1)]
+    broken = [k for k in range(1, timeline.now + 1) if real[k - 1] - real[k]]
+    event, found = timeline.now, []
+    while told := (hit := last_hit(timeline, event, Contacts("broken"), before=True))[1]:
+        assert told.startswith("broken: contact@")
+        event = hit[0]
+        found.append(event)
+    assert found == broken[::-1]
+    assert len(found) > 2
+
+
+def test_copies_keep_to_the_budget(tmp_path: Path) -> None:
+    """What can be reached is as it was, and what cannot is said."""
+    whole = debugged("i32r64", tmp_path)
+    size = max(copy.size for copy in whole.timeline.copies.values())
+    poor = debugged("i32r64", tmp_path, budget=4 * size).timeline
+    assert sum(copy.size for copy in poor.copies.values()) <= 4 * size
+    reached, gone = 0, set()
+    for event in range(poor.now + 1):
+        try:
+            h = poor.at(event).h
+        except Gone as error:
+            gone.add(str(error)[-13:-3])
+            continue
+        reached += 1
+        used = int(h.ci[g.MFREE]) - 1
+        assert np.array_equal(h.ia[:used], whole.timeline.at(event).h.ia[:used])
+    assert len(gone) > 0
+    assert 0 < reached < poor.now
+
+
+@pytest.mark.parametrize(("at", "begun", "whole"), [(20, 0, 60), (100, 60, 360), (445, 420, 40)])
+def test_a_run_goes_on_from_the_past(at: int, begun: int, whole: int, tmp_path: Path) -> None:
+    """To the same end, with the same histories and the same log."""
+    plain = debugged("i32r64", tmp_path).model
+    told: list[int] = []
+
+    def stopped(reasons: list[str]) -> None:
+        told.append(debugger.timeline.now)
+        if debugger.ended and len(told) == 1:
+            raise Resume(debugger.timeline.event_of(at))
+
+    debugger = Debugger(Model("i32r64", out=tmp_path), io.StringIO(), stopped)
+    debugger.run(list(statements(PILE.splitlines(), "pile")))
+    again = debugger.model
+    assert len(told) == 3
+    used = int(plain.array.h.ci[g.MFREE]) - 1
+    assert np.array_equal(plain.array.h.ia[:used], again.array.h.ia[:used])
+    assert np.array_equal(plain.histories()[0].numbers, again.histories()[0].numbers)
+    parts = f"CYCLE {at - begun}\nCYCLE {begun + whole - at}\n"
+    assert again.deck().replace(parts, f"CYCLE {whole}\n") == plain.deck()
+
+
+def test_all_schemes(tmp_path: Path) -> None:
+    for build in ALL_SCHEMES:
+        timeline = debugged(build, tmp_path).timeline
+        middle = timeline.event_of(77)
+        assert timeline.at(middle).h.ci[g.MCTOT] == 77

@@ -1,0 +1,390 @@
+"""The debugger's commands, typed at a prompt or taken from a file.
+
+Each command prints lines and moves the place that one looks at; `step`, `continue` and `goto` let the run go
+on when they lead beyond what has been run. Names of words are those of places.py.
+"""
+
+from __future__ import annotations
+
+import cmd
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from threading import current_thread, main_thread
+from typing import Any, TextIO
+
+from udec_ia.debug import answers
+from udec_ia.debug.places import place
+from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, shown
+from udec_ia.debug.session import Debugger, Leave, Resume
+from udec_ia.debug.timeline import Gone
+from udec_ia.deck.reader import statements
+from udec_ia.inspect import look
+from udec_ia.inspect.check import check
+from udec_ia.inspect.look.atlas import TABLE
+from udec_ia.layout import offsets as g
+from udec_ia.signals import hold, passing
+
+INSIDE = ("pass", "group", "write")
+LISTED = 5  # lines of the deck before and after
+ALIASES = {
+    "c": "continue",
+    "s": "step",
+    "rs": "reverse_step",
+    "rc": "reverse_continue",
+    "p": "print",
+    "q": "quit",
+    "b": "break",
+    "l": "list",
+    "w": "where",
+}
+
+
+class Console(cmd.Cmd):
+    """Asks for commands while a run stands. script: lines that are taken first. ends: quit after them.
+
+    deck: the lines of the deck, for `list`.
+    """
+
+    doc_header = "commands (help COMMAND tells more; every name may be cut short):"
+
+    def __init__(
+        self,
+        model: Any,
+        out: TextIO,
+        deck: Sequence[str] = (),
+        script: Sequence[str] = (),
+        ends: bool = False,
+    ) -> None:
+        super().__init__(stdout=out)
+        self.debugger = Debugger(model, out, self.ask)
+        self.deck, self.ends = deck, ends
+        self.cmdqueue = [*script]
+        self.asking = False
+
+    # ---- the prompt
+
+    def ask(self, told: Sequence[str]) -> None:
+        """The run has stopped: obey what is typed until it is to go on."""
+        for line in told:
+            self.say(line)
+        self.say(self.debugger.place())
+        with passing():
+            self._ask()
+
+    def _ask(self) -> None:
+        while True:
+            if not self.cmdqueue and self.ends:
+                raise Leave
+            self.prompt, self.asking = f"({self._cycle()}) ", True
+            try:
+                self.cmdloop()
+                return
+            except KeyboardInterrupt:
+                self.say("")
+            finally:
+                self.asking = False
+
+    def interrupt(self, number: int, frame: Any) -> None:
+        """Ctrl-C: ends what is being typed or told, and stops a run; the second one ends a command."""
+        if self.asking or self.debugger.interrupted:
+            raise KeyboardInterrupt
+        self.debugger.interrupted = True
+
+    def _cycle(self) -> str:
+        return f"{int(self.debugger.array.h.ci[g.MCTOT])}{'' if not self.debugger.in_past else ' past'}"
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+        self.stdout.write(text + "\n")
+
+    def tell(self, lines: Iterator[str]) -> None:
+        """Print lines."""
+        for line in lines:
+            self.say(line)
+
+    def precmd(self, line: str) -> str:
+        """Echo what a script says; complete a command that is cut short; - in its name is _."""
+        head, _, rest = line.strip().partition(" ")
+        head = ALIASES.get(head, head.replace("-", "_"))
+        known = [name[3:] for name in self.get_names() if name.startswith("do_")]
+        begun = [name for name in known if name.startswith(head)] if head and head not in known else []
+        return f"{begun[0] if len(begun) == 1 else head} {rest}".strip()
+
+    def onecmd(self, line: str) -> bool:
+        """Obey one line; what is wrong with it is told."""
+        try:
+            return bool(super().onecmd(line))
+        except (ValueError, IndexError, Gone) as error:
+            self.say(str(error))
+            return False
+
+    def postcmd(self, stop: bool, line: str) -> bool:
+        """The prompt says where one is."""
+        self.prompt = f"({self._cycle()}) "
+        if not stop and not self.cmdqueue and self.ends:
+            raise Leave
+        return stop
+
+    def emptyline(self) -> bool:
+        """An empty line does nothing."""
+        return False
+
+    def default(self, line: str) -> None:
+        """A command that is not known."""
+        if line == "EOF":
+            raise Leave
+        self.say(f"no command {line.split()[0]}: try help")
+
+    # ---- running
+
+    def do_continue(self, _: str) -> bool:
+        """continue: run on, to the next break or watch, or to the end."""
+        return self._forward(None)
+
+    def do_step(self, text: str) -> bool:
+        """step [N]: N events on: cycles, or commands of the deck.
+
+        step pass | group | write: on within the next cycle, which has been run before.
+        """
+        if text in INSIDE:
+            if self.debugger.event == self.debugger.timeline.now and self.debugger.trace is None:
+                raise ValueError("the next cycle has not been run: step, and reverse-step into it")
+            self.debugger.within(text, 1)
+            self._here()
+            return False
+        return self._forward(_count(text))
+
+    def do_goto(self, text: str) -> bool:
+        """goto CYCLE | goto line N | goto now: after so many cycles, before a line, or where the run is."""
+        debugger, timeline = self.debugger, self.debugger.timeline
+        if text == "now":
+            debugger.show(timeline.now)
+        elif text.startswith("line"):
+            number = _count(text[4:])
+            past = [one for one in timeline.stretches if one.line >= number]
+            if not past:
+                debugger.show(timeline.now)
+                debugger.goal_line = number
+                return not self._is_over()
+            debugger.show(past[0].first)
+        else:
+            cycle = _count(text)
+            try:
+                debugger.show(timeline.event_of(cycle))
+            except Gone:
+                if cycle <= int(debugger.model.array.h.ci[g.MCTOT]):
+                    raise
+                debugger.show(timeline.now)
+                debugger.goal_cycle = cycle
+                return not self._is_over()
+        self._here()
+        return False
+
+    def do_reverse_step(self, text: str) -> None:
+        """reverse-step [N]: N events back. reverse-step pass | group | write: back within a cycle."""
+        if text in INSIDE:
+            self.debugger.within(text, -1)
+        elif self.debugger.trace is not None:
+            self.debugger.show(self.debugger.event)
+        else:
+            self.debugger.back(_count(text))
+        self._here()
+
+    def do_reverse_continue(self, text: str) -> None:
+        """reverse-continue [NAME]: back to the last break or watch, or to the last change of a word."""
+        debugger = self.debugger
+        probes: list[Probe] = [Changed(place(debugger.atlas, text))] if text else [*debugger.probes.values()]
+        told = debugger.back_to(probes)
+        self.say(told or "nothing of that has happened before")
+        self._here()
+
+    def do_resume(self, _: str) -> bool:
+        """resume: let the run go on from here; what came later is forgotten."""
+        if self.debugger.trace is not None:
+            raise ValueError("a run goes on between two cycles: step or reverse-step first")
+        raise Resume(self.debugger.event)
+
+    def do_quit(self, _: str) -> bool:
+        """quit: leave the run where it is."""
+        raise Leave
+
+    def _forward(self, events: int | None) -> bool:
+        runs, told = self.debugger.forward(events)
+        if runs and self._is_over():
+            return False
+        if not runs:
+            for line in told:
+                self.say(line)
+            self._here()
+        return runs
+
+    def _is_over(self) -> bool:
+        if self.debugger.ended:
+            self.debugger.goal = self.debugger.goal_cycle = self.debugger.goal_line = None
+            self.say("the deck has ended: go back, or quit")
+        return self.debugger.ended
+
+    def _here(self) -> None:
+        self.say(self.debugger.place())
+        trace = self.debugger.trace
+        one = trace.here() if trace else None
+        if one is not None:
+            self.say(
+                f"next: {answers.work_of(self.debugger.timeline, self.debugger.event + 1, one)}, {one.place}"
+            )
+
+    # ---- stopping
+
+    def do_break(self, text: str) -> None:
+        """break made | broken | recoded: stop when a contact is."""
+        if text in ("made", "broken", "recoded"):
+            self._add(Contacts(text))
+        else:
+            raise ValueError("break what? made, broken or recoded")
+
+    def do_watch(self, text: str) -> None:
+        """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or when that comes true."""
+        words = text.removesuffix("if changed").replace(" if ", " ").split()
+        if len(words) not in (1, 3) or (len(words) == 3 and words[1] not in COMPARED):
+            raise ValueError("as in: watch block@88.KXD, or: watch block@88.KXD > 0.1")
+        word = place(self.debugger.atlas, words[0])
+        self._add(Changed(word, words[1], float(words[2])) if words[1:] else Changed(word))
+
+    def do_delete(self, text: str) -> None:
+        """delete [N]: no longer stop for break or watch N, or for any."""
+        if text and _count(text) not in self.debugger.probes:
+            raise ValueError(f"there is no {text}")
+        for n in [_count(text)] if text else [*self.debugger.probes]:
+            del self.debugger.probes[n]
+
+    def do_info(self, _: str) -> None:
+        """info: breaks and watches, and how far one can go back."""
+        for n, probe in self.debugger.probes.items():
+            self.say(f"{n}: {probe.text}")
+        timeline = self.debugger.timeline
+        size = sum(one.size for one in timeline.copies.values())
+        self.say(
+            f"{timeline.now} events from {timeline.earliest} on, {len(timeline.copies)} copies of "
+            f"{size / 2**20:.1f} MB"
+        )
+
+    def _add(self, probe: Probe) -> None:
+        self.say(f"{self.debugger.add(probe)}: {probe.text}")
+
+    # ---- looking
+
+    def do_where(self, _: str) -> None:
+        """where: the place that one looks at."""
+        self._here()
+
+    def do_list(self, _: str) -> None:
+        """list: the deck around the present line."""
+        stretch, _cycles = self.debugger.timeline.place(self.debugger.event)
+        at = stretch.line if stretch else 0
+        for number in range(max(at - LISTED, 1), min(at + LISTED, len(self.deck)) + 1):
+            self.say(f"{'->' if number == at else '  '} {number:4} {self.deck[number - 1].rstrip()}")
+
+    def do_print(self, text: str) -> None:
+        """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), FRAC, 412."""
+        for name in text.split():
+            word = place(self.debugger.atlas, name)
+            self.say(f"{word.name} = {shown(word.value(self.debugger.array.h))} {word.unit}".rstrip())
+
+    def do_what(self, text: str) -> None:
+        """what ADDRESS: what a word is, and its group."""
+        self._look("what", text)
+
+    def do_who(self, text: str) -> None:
+        """who ADDRESS: all words that point there."""
+        self._look("who", text)
+
+    def do_walk(self, text: str) -> None:
+        """walk LIST [ADDRESS]: along a list."""
+        self._look("walk", text)
+
+    def do_junk(self, _: str) -> None:
+        """junk: how full the memory is."""
+        self._look("junk", "")
+
+    def do_check(self, _: str) -> None:
+        """check: all violations of the invariants."""
+        found = check(self.debugger.array)
+        self.tell(map(str, found) if found else iter(["sound"]))
+
+    def do_wrote(self, text: str) -> None:
+        """wrote NAME: who has given a word the value that it has: cycle, pass, routine, line."""
+        self._of_the_past(answers.wrote, text)
+
+    def do_why(self, text: str) -> None:
+        """why NAME: what the value of a word was made from."""
+        self._of_the_past(answers.why, text)
+
+    def do_born(self, text: str) -> None:
+        """born ADDRESS: how the group there came to be, and what stood there before."""
+        self.tell(
+            answers.born(self.debugger.timeline, self.debugger.event, _count(text.partition("@")[2] or text))
+        )
+
+    def _of_the_past(self, answer: Any, text: str) -> None:
+        word = place(self.debugger.atlas, text)
+        self.tell(answer(self.debugger.timeline, self.debugger.event, word))
+
+    def _look(self, name: str, text: str) -> None:
+        given = [int(word) if word.isdigit() else word for word in text.split()]
+        try:
+            listing = getattr(look, name)(self.debugger.atlas, *given)
+        except TypeError:
+            raise ValueError(f"see help {name}") from None
+        self.stdout.write(listing.as_text())
+
+    # ---- completion
+
+    def completenames(self, text: str, *_: Any) -> list[str]:
+        """Commands that begin so."""
+        names = [name[3:].replace("_", "-") for name in self.get_names() if name.startswith("do_")]
+        return [name for name in names if name.startswith(text)]
+
+    def completedefault(self, text: str, line: str, begin: int, end: int) -> list[str]:
+        """Groups by name, and their fields after a dot."""
+        atlas = self.debugger.atlas
+        if "." in (word := line[:end].split()[-1]):
+            kind = word.partition("@")[0]
+            fields = [one.name for group in TABLE.groups if group.name == kind for one in group.fields]
+            return [name for name in fields if name.startswith(text.upper())]
+        return [
+            f"{kind}@{iad}"
+            for kind in atlas.groups
+            for iad in atlas.groups[kind].tolist()
+            if f"{kind}@{iad}".startswith(text)
+        ]
+
+
+def _count(text: str) -> int:
+    """A number that was typed; 1 if nothing was."""
+    if not text.strip():
+        return 1
+    if not text.strip().isdigit():
+        raise ValueError(f"{text.strip()} is no number")
+    return int(text)
+
+
+def debug(
+    model: Any, deck: str, out: TextIO, script: Sequence[str] | None = None, name: str = "deck"
+) -> None:
+    """Run the text of a deck on `model` under the debugger, which stops before the first command.
+
+    script: commands of the debugger, after which it ends; None asks for them. Raises the UdecError that ends
+    the deck, after stopping there.
+    """
+    lines = deck.splitlines()
+    console = Console(model, out, lines, script or (), ends=script is not None)
+    console.debugger.goal = 0
+    here = current_thread() is main_thread()
+    former = signal.signal(signal.SIGINT, console.interrupt) if here else None
+    try:
+        with suppress(Leave), hold():
+            console.debugger.run(list(statements(lines, name)))
+    finally:
+        if here:
+            signal.signal(signal.SIGINT, former)

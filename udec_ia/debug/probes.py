@@ -1,0 +1,169 @@
+"""What a run is stopped for: contacts made, broken or re-coded, a condition that comes true, a changed word.
+
+A probe looks at the states one after the other, after every cycle and command. It says what has happened
+since the state that it saw last, or nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from udec_ia.debug.places import Place
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.table import addresses, table
+from udec_ia.inspect.walk import Unsound
+from udec_ia.layout import offsets as g
+
+GROUPS_MADE = [g.MFREE, g.JUNK, g.NBLK, g.NDOM, g.NMADE, g.NBROKE]  # one changes when a group comes or goes
+COMPARED: dict[str, Callable[[Any, Any], bool]] = {
+    ">": lambda value, limit: bool(value > limit),
+    "<": lambda value, limit: bool(value < limit),
+    ">=": lambda value, limit: bool(value >= limit),
+    "<=": lambda value, limit: bool(value <= limit),
+    "==": lambda value, limit: bool(value == limit),
+}
+
+
+class Probe(Protocol):
+    """text: what it is, as it was asked for."""
+
+    text: str
+
+    def begin(self, array: MainArray) -> None:
+        """This is the state that is seen first."""
+
+    def hit(self, array: MainArray) -> str:
+        """What has happened since the state before; "" if nothing has. This state is the one before then."""
+
+
+class Changed:
+    """A number that changes; with a comparison, one for which that comes true."""
+
+    def __init__(self, place: Place, sign: str = "", limit: float = 0.0) -> None:
+        self.place, self.sign, self.limit = place, sign, limit
+        self.text = f"watch {place.name}" + (f" {sign} {limit:g}" if sign else "")
+        self._seen: Any = None
+
+    def begin(self, array: MainArray) -> None:
+        """See Probe."""
+        self._seen = self.place.value(array.h)
+
+    def hit(self, array: MainArray) -> str:
+        """See Probe."""
+        before, now = self._seen, self.place.value(array.h)
+        self._seen = now
+        if before == now or (before != before and now != now):
+            return ""
+        if self.sign and (self._true(before) or not self._true(now)):
+            return ""
+        unit = f" {self.place.unit}" if self.place.unit else ""
+        return f"{self.place.name}: {shown(before)} -> {shown(now)}{unit}"
+
+    def _true(self, value: Any) -> bool:
+        return value is not None and COMPARED[self.sign](value, self.limit)
+
+
+def shown(value: Any) -> str:
+    """A number as it is told; all digits of a real."""
+    return "no word" if value is None else repr(value)
+
+
+class Contacts:
+    """Contacts that are made, broken or re-coded. what: which of these.
+
+    Those of blocks that come and go by commands count as well; a contact that becomes virtual is broken.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.text = f"break {what}"
+        self._codes: dict[int, int] = {}
+        self._counts: list[int] = []
+
+    def begin(self, array: MainArray) -> None:
+        """See Probe."""
+        self._codes = _codes(array)
+        self._counts = array.h.ci[GROUPS_MADE].tolist()
+
+    def hit(self, array: MainArray) -> str:
+        """See Probe."""
+        counts = array.h.ci[GROUPS_MADE].tolist()
+        if self.what != "recoded" and counts == self._counts:
+            return ""
+        before, now = self._codes, _codes(array)
+        self._codes, self._counts = now, counts
+        if self.what == "made":
+            found = [f"contact@{ic}" for ic in now if ic not in before]
+        elif self.what == "broken":
+            found = [f"contact@{ic}" for ic in before if ic not in now]
+        else:
+            found = [
+                f"contact@{ic} from code {before[ic]} to {code}"
+                for ic, code in now.items()
+                if before.get(ic, code) != code
+            ]
+        return f"{self.what}: {', '.join(found)}" if found else ""
+
+
+def _codes(array: MainArray) -> dict[int, int]:
+    """Code of each contact that is not virtual, by its address."""
+    try:
+        rows = table(array, "contact")
+        rows = rows[rows["KCCOD"] != g.VIRTUAL]
+    except Unsound:
+        return {}
+    return dict(zip(rows["address"].tolist(), rows["KCCOD"].tolist(), strict=True))
+
+
+class Where:
+    """A condition that comes true for a group: `contact where KCN > 0.1`. find: those for which it is."""
+
+    def __init__(self, text: str, find: Callable[[MainArray], list[int]]) -> None:
+        self.text = f"break {text}"
+        self.kind = text.split()[0]
+        self._find = find
+        self._seen: set[int] = set()
+
+    def begin(self, array: MainArray) -> None:
+        """See Probe."""
+        self._seen = {*self._find(array)}
+
+    def hit(self, array: MainArray) -> str:
+        """See Probe."""
+        now = {*self._find(array)}
+        new, self._seen = now - self._seen, now
+        return f"{self.text}: {', '.join(f'{self.kind}@{iad}' for iad in sorted(new))}" if new else ""
+
+
+class Born:
+    """The group at an address comes to be, or goes. Looked for when groups have been made or given back."""
+
+    def __init__(self, kind: str, address: int) -> None:
+        self.kind, self.address = kind, address
+        self.text = f"born {kind}@{address}"
+        self._counts: list[int] = []
+        self._there = False
+
+    def begin(self, array: MainArray) -> None:
+        """See Probe."""
+        self._counts = array.h.ci[GROUPS_MADE].tolist()
+        self._there = self._is_there(array)
+
+    def hit(self, array: MainArray) -> str:
+        """See Probe."""
+        counts = array.h.ci[GROUPS_MADE].tolist()
+        if counts == self._counts:
+            return ""
+        before, self._there, self._counts = self._there, self._is_there(array), counts
+        if before == self._there:
+            return ""
+        return f"{self.kind}@{self.address} {'comes to be' if self._there else 'goes'}"
+
+    def _is_there(self, array: MainArray) -> bool:
+        try:
+            return bool(np.any(addresses(array, self.kind) == self.address))
+        except Unsound:
+            return False

@@ -1,0 +1,352 @@
+"""A deck run under the debugger: where it stops, and where one looks.
+
+What runs is the model itself, by the same machine code as without a debugger; its cycles come in pieces that
+end where something is asked for. `now` is where it stands. One may look at any event before (`event`), in a
+copy; what runs is not touched by that. In front of a cycle one may stand between two writes of it (`trace`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import Any, Protocol
+
+from udec_ia.debug.answers import last_hit, where
+from udec_ia.debug.probes import Probe
+from udec_ia.debug.timeline import BUDGET, Timeline
+from udec_ia.debug.tracing import Trace
+from udec_ia.deck.monitor import Monitor
+from udec_ia.deck.parser import parse
+from udec_ia.deck.reader import Line, Statement, tokens
+from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.look.atlas import Atlas
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.watch import Watch
+from udec_ia.signals import poll
+
+PIECE_SECONDS = 0.02
+FIRST_PIECE = 16  # cycles
+Stopped = Callable[[Sequence[str]], None]
+
+
+class Leave(BaseException):
+    """The debugger is left in the midst of a run, which is not gone on with."""
+
+
+class Resume(BaseException):
+    """The run is to go on from an event that was. event: that."""
+
+    def __init__(self, event: int) -> None:
+        self.event = event
+
+
+class Traced(Protocol):
+    """What the debugger has to know of a model."""
+
+    array: MainArray
+    laws: Any
+    around: Callable[[Watch | None], Watch | None]
+
+
+class Debugger:
+    """Runs decks on `model`, watched. out: takes what the deck prints.
+
+    stopped: called with the reasons when a run stops; it returns when that is to go on. budget: bytes for
+    copies.
+    """
+
+    def __init__(self, model: Any, out: Any, stopped: Stopped, budget: int = BUDGET) -> None:
+        self.model = model
+        self.monitor = Monitor(model, out)
+        self.stopped = stopped
+        self.timeline = Timeline(model.array, model.laws, budget)
+        self.probes: dict[int, Probe] = {}
+        self.goal: int | None = None  # event to stop at, the next one where it can
+        self.goal_cycle: int | None = None
+        self.goal_line: int | None = None
+        self.interrupted = False
+        self.event = 0
+        self.trace: Trace | None = None
+        self._atlas: tuple[Any, Atlas] | None = None
+        self._array: tuple[int, MainArray] | None = None
+        self._numbered = 0
+        self._piece = FIRST_PIECE
+        self.ended = False
+
+    # ---- running
+
+    def run(self, statements: Sequence[Statement]) -> None:
+        """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
+        self.model.around = self._around
+        self._commands = [statement for statement in statements if statement.tokens]
+        self._before = list(self.model.deck_log)
+        number, following = 0, None
+        try:
+            while True:
+                try:
+                    self._obey_all(number, following)
+                    return
+                except Resume as back:
+                    number, following = self._resume(back.event)
+        finally:
+            del self.model.around
+
+    def _obey_all(self, number: int, following: Statement | None) -> None:
+        """The commands from `number` on, the first of them as `following` has it if that is not None."""
+        self.ended = False
+        for k, statement in enumerate(self._commands[number:], number):
+            self._obey(following or statement, k)
+            following = None
+            if self.monitor.ended:
+                break
+        self.ended = True
+        self.stop(["the deck has ended"])
+
+    def _resume(self, event: int) -> tuple[int, Statement | None]:
+        """Make `event` the present; the number of the command that comes next, and it if it is less now."""
+        array = self.timeline.at(event)
+        self.timeline.forget(event)
+        lines, last = list(self._before), None
+        for last in self.timeline.stretches:
+            lines += [line.shown for line in self._commands[last.number].lines]
+        following, number = None, last.number + 1 if last else 0
+        if last is not None and last.runs and (left := _cycles(self._commands[last.number]) - last.done) > 0:
+            lines[-1] = f"CYCLE {last.done}"
+            number, following = last.number, _cycle(self._commands[last.number], left)
+        self.model.take_up(array, lines)
+        self.monitor.ended = False
+        self.goal, self.goal_cycle, self.goal_line = event, None, None
+        self.show(event)
+        return number, following
+
+    def _obey(self, statement: Statement, number: int) -> None:
+        line, timeline = statement.tokens[0].line, self.timeline
+        if self.goal_line is not None and line.number >= self.goal_line:
+            self.stop([f"line {line.number} comes next"])
+        elif self.goal is not None and timeline.now >= self.goal:
+            self.stop([])
+        timeline.begin(line.shown.strip(), line.number, int(self.model.array.h.ci[g.MCTOT]), number)
+        try:
+            self.monitor.obey(statement)
+        except UdecError as error:
+            timeline.end(self.model.array)
+            self.stop([str(error)])
+            raise
+        timeline.end(self.model.array)
+        self._look()
+
+    def _around(self, watch: Watch | None) -> Watch:
+        """What watches the run that begins."""
+        return _Pieces(self, watch or Watch(self.model.array, []))
+
+    def piece(self, n: int) -> int:
+        """Cycles until the next look, of `n` to come."""
+        if self.probes:
+            return 1
+        if self.goal is not None:
+            n = min(n, max(self.goal - self.timeline.now, 1))
+        if self.goal_cycle is not None:
+            n = min(n, max(self.goal_cycle - int(self.model.array.h.ci[g.MCTOT]), 1))
+        return min(n, self._piece)
+
+    def ran(self, cycles: int, seconds: float) -> None:
+        """So many cycles have been run in one piece."""
+        if seconds < PIECE_SECONDS:
+            self._piece = 2 * max(self._piece, cycles)
+        elif self._piece > 1:
+            self._piece //= 2
+        self.timeline.ran(self.model.array, cycles)
+        poll()
+        self._look()
+
+    def _look(self) -> None:
+        """Stop if a probe says so, if this is where to, or if somebody has asked for it."""
+        told = [f"{n}: {what}" for n, probe in self.probes.items() if (what := probe.hit(self.model.array))]
+        if self.interrupted:
+            told.append("interrupted")
+        there = self.goal is not None and self.timeline.now >= self.goal
+        cycles = int(self.model.array.h.ci[g.MCTOT])
+        if told or there or (self.goal_cycle is not None and cycles >= self.goal_cycle):
+            self.stop(told)
+
+    def stop(self, told: Sequence[str]) -> None:
+        """Stop here and now."""
+        self.goal = self.goal_cycle = self.goal_line = None
+        self.interrupted = False
+        self.show(self.timeline.now)
+        self.stopped(told)
+
+    # ---- where one looks
+
+    @property
+    def array(self) -> MainArray:
+        """The state that one looks at; not to be changed."""
+        if self.trace is not None:
+            return self.trace.state
+        if self.event == self.timeline.now:
+            array: MainArray = self.model.array
+            return array
+        if self._array is None or self._array[0] != self.event:
+            self._array = self.event, self.timeline.at(self.event)
+        return self._array[1]
+
+    @property
+    def atlas(self) -> Atlas:
+        """What the words of that state are."""
+        mark = self.event, self.trace.done if self.trace else -1, self.timeline.now
+        if self._atlas is None or self._atlas[0] != mark:
+            self._atlas = mark, Atlas(self.array.h)
+        return self._atlas[1]
+
+    @property
+    def in_past(self) -> bool:
+        """True if what one looks at is not what will go on."""
+        return self.trace is not None or self.event < self.timeline.now
+
+    def show(self, event: int) -> None:
+        """Look at the state after `event`, which was. Raises Gone."""
+        if event != self.timeline.now:
+            self._array = event, self.timeline.at(event)
+        self.event, self.trace = event, None
+
+    def place(self) -> str:
+        """Where one looks, in words."""
+        text = where(self.timeline, self.event)
+        if self.trace is not None:
+            text += f", within the next cycle after {self.trace.done} of {len(self.trace.writes)} writes"
+        return text
+
+    # ---- moving about
+
+    def forward(self, events: int | None) -> tuple[bool, list[str]]:
+        """Look at what comes `events` later, or at the next stop of a probe.
+
+        True if that has not been run yet: it is, when `stopped` returns. Else what has happened.
+        """
+        now = self.timeline.now
+        if events is not None:
+            self.goal = self.event + events
+            if self.goal <= now:
+                self.show(self.goal)
+                self.goal = None
+                return False, []
+            return True, []
+        if self.event == now:
+            return True, []
+        found = self._first_hit()
+        self.show(found[0] if found else now)
+        return (False, found[1]) if found else (not self.ended, [])
+
+    def _first_hit(self) -> tuple[int, list[str]] | None:
+        """The first event after the one that is looked at where a probe stops, and what has happened."""
+        timeline, start = self.timeline, self.event
+        for a, b in [*timeline.backwards(timeline.now)][::-1]:
+            if b <= start:
+                continue
+            first = timeline.at(max(a, start))
+            for probe in self.probes.values():
+                probe.begin(first)
+            for event, array in timeline.through(a, b):
+                if event > start:
+                    told = [what for probe in self.probes.values() if (what := probe.hit(array))]
+                    if told:
+                        self._probes_at_now()
+                        return event, told
+        self._probes_at_now()
+        return None
+
+    def _probes_at_now(self) -> None:
+        for probe in self.probes.values():
+            probe.begin(self.model.array)
+
+    def back(self, events: int) -> None:
+        """Look at what was `events` before. Raises Gone."""
+        self.show(max(self.event - events, self.timeline.earliest))
+
+    def back_to(self, probes: Sequence[Probe]) -> str:
+        """Look at the last event before this one at which a probe stops: what happened, "" if nothing."""
+        hits = [last_hit(self.timeline, self.event, probe, before=True) for probe in probes]
+        self._probes_at_now()
+        event, told = max(hits, default=(0, ""))
+        if told:
+            self.show(event)
+        return told
+
+    def within(self, by: str, step: int) -> bool:
+        """Go to the next pass, group or write of the cycle that follows, or back; False at its border."""
+        if self.trace is None:
+            event = self.event if step > 0 else self.event - 1
+            stretch = (
+                self.timeline.stretch(event + 1) if event + 1 <= self.timeline.now and event >= 0 else None
+            )
+            if stretch is None or not stretch.runs or event <= stretch.first:
+                return False
+            trace = Trace(self.timeline.at(event), self.timeline.laws)
+            self.show(event)
+            self.trace = trace
+            trace.go(0 if step > 0 else len(trace.writes))
+        at = self.trace.next_stop(by, step)
+        self.trace.go(at)
+        if at in (0, len(self.trace.writes)):
+            self.show(self.event + (at > 0))
+            return False
+        return True
+
+    # ---- probes
+
+    def add(self, probe: Probe) -> int:
+        """Stop for `probe` from now on; its number."""
+        self._numbered += 1
+        probe.begin(self.model.array)
+        self.probes[self._numbered] = probe
+        return self._numbered
+
+
+class _Pieces(Watch):
+    """Runs a CYCLE or SOLVE in the pieces that the debugger asks for. inner: what watches the run else."""
+
+    def __init__(self, debugger: Debugger, inner: Watch) -> None:
+        self.debugger, self.inner = debugger, inner
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    def begin(self) -> None:
+        """The run is prepared."""
+        self.inner.begin()
+        self.debugger.timeline.prepared(self.debugger.model.array)
+
+    def run(self, n: int, laws: Any) -> int:
+        """As Watch.run."""
+        done = 0
+        while done < n and not self.inner.reached:
+            piece, start = self.debugger.piece(n - done), perf_counter()
+            completed = self.inner.run(piece, laws)
+            done += completed
+            if completed:
+                self.debugger.ran(completed, perf_counter() - start)
+            if completed < piece or self.debugger.model.array.h.ci[g.NERR] != 0:
+                break
+        return done
+
+    def look(self) -> None:
+        """As Watch.look."""
+        self.inner.look()
+
+    def hand_on(self) -> int:
+        """As Watch.hand_on."""
+        return self.inner.hand_on()
+
+
+def _cycles(statement: Statement) -> int:
+    """How many cycles a CYCLE asks for; 0 if it is another command."""
+    call = parse(statement)
+    return int(call.positional[0]) if call.command.name == "cycle" else 0
+
+
+def _cycle(statement: Statement, n: int) -> Statement:
+    """A CYCLE in the place of `statement`."""
+    first = statement.tokens[0].line
+    line = Line(first.file, first.number, f"CYCLE {n}")
+    return Statement([line], tokens(line))
