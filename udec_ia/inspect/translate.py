@@ -216,7 +216,9 @@ class _Translation:
         names = {field.name for field in fields}
         for name in before:
             if name not in names:
-                self._refuse(held[name] != 0, kind, name, held[name], "and that field is not known here")
+                self._refuse(
+                    held[name] != 0, kind, name, held[name], f"and that field is {self._gone(name)} here"
+                )
         rows = len(self.at[kind]) if kind else 1
         found = []
         for field in fields:
@@ -227,6 +229,11 @@ class _Translation:
                 self._begin(values, kind, field)
             found.append((field, values))
         return found
+
+    def _gone(self, name: str) -> str:
+        """What is known of a field that the new table has not."""
+        old = next((one for one in self.table.retired if one.name == name), None)
+        return f"retired since layout {old.until} ({old.text})" if old else "not known"
 
     def _type(self, kind: str, field: Field) -> Any:
         """Type of the numbers of a field by the new table."""

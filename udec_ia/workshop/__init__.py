@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.workshop import look
+from udec_ia.workshop import check, look
 
-PARTS = (look,)
+PARTS = (check, look)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 
 
