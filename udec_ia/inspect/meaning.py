@@ -61,13 +61,15 @@ def may_be_0(field: Field) -> bool:
 def news(theirs: Table, ours: Table) -> list[str]:
     """What of a state had to be told in another way, in phrases: fields that are new, that have gone, ..."""
     mine, other = _all_fields(ours), _all_fields(theirs)
-    kinds = [group.name for group in theirs.groups]
+    kinds, known_kinds = ([group.name for group in table.groups] for table in (theirs, ours))
+    gone = [name for name, at in other.items() if name not in mine and at[0] in ("", *known_kinds)]
     known, named = _all_codes(ours), _all_codes(theirs)
     told = {
         "field {} new and 0": [n for n, at in mine.items() if n not in other and at[0] in ("", *kinds)],
-        "field {} not known here, and 0": [name for name in other if name not in mine],
+        "field {} not known here, and 0": gone,
         "field {} elsewhere in the group": [n for n, at in mine.items() if other.get(n, at) != at],
-        "kind of group {} new": [group.name for group in ours.groups if group.name not in kinds],
+        "kind of group {} new": [kind for kind in known_kinds if kind not in kinds],
+        "kind of group {} not known here, and empty": [kind for kind in kinds if kind not in known_kinds],
         "code {} under another number": [
             name for name, value in named.items() if known.get(name, value) != value
         ],

@@ -214,8 +214,8 @@ class _Translation:
     ) -> list[tuple[Field, Any]]:
         """The values of `fields`, from what the fields `before` held, by name: one row each."""
         names = {field.name for field in fields}
-        for name in before:
-            if name not in names:
+        for name, old in before.items():
+            if name not in names and not (kind and self._is_head_of_one(kind, old)):
                 self._refuse(
                     held[name] != 0, kind, name, held[name], f"and that field is {self._gone(name)} here"
                 )
@@ -229,6 +229,10 @@ class _Translation:
                 self._begin(values, kind, field)
             found.append((field, values))
         return found
+
+    def _is_head_of_one(self, kind: str, field: Field) -> bool:
+        """True for a head code that says no more than the kind of the group does."""
+        return field.role == "head" and len(self.meaning.names(field, kind, old=True)) == 1
 
     def _gone(self, name: str) -> str:
         """What is known of a field that the new table has not."""

@@ -74,7 +74,7 @@ class Contents:
         return self._read(place, node, np.dtype(kind), node.shape)
 
     def words(self, place: str, kind: Any, many: int) -> Any:
-        """A row of `many` words of the type `kind`, in pieces that have a checksum each."""
+        """A row of `many` words of `kind`, in the machine's own order of bytes, from pieces with a checksum."""
         node = self._dataset(place, (many,))
         _check_type(node.get_type(), kind, place)
         plist = node.get_create_plist()
@@ -84,7 +84,7 @@ class Contents:
         if pieces != (piece,) or filters != [h5z.FILTER_FLETCHER32]:
             raise _damaged(place, "is not stored as SAVE stores it")
         self._spend(place, many * np.dtype(kind).itemsize)
-        words = np.empty(many, kind)
+        words = np.empty(many, np.dtype(kind).newbyteorder("="))
         raw = np.empty(piece * words.itemsize + CHECKSUM, np.uint8)
         for first in range(0, many, piece):
             _, found = node.read_direct_chunk((first,), out=raw)

@@ -208,8 +208,9 @@ def read_state(file: Contents, front: Words) -> Seen:
     mfree, mtop = front.integer("MFREE"), front.integer("MTOP")
     if not (1 <= mfree <= mtop + 1 and mtop <= scheme.top_address and mtop % scheme.ratio == 0):
         raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} cannot be in {scheme.name}")
-    words = file.words("heap/IA", scheme.int_type.newbyteorder("<"), mfree - 1)
-    _check_sum(file, "heap/IA", words)
+    kind = scheme.int_type.newbyteorder("<")
+    words = file.words("heap/IA", kind, mfree - 1)
+    _check_sum(file, "heap/IA", words.astype(kind, copy=False))
     state = front._replace(ia=words)
     if theirs is not ours:
         try:

@@ -68,6 +68,8 @@ def _recall(file: Contents, number: int, definition: Definition) -> Series:
     known = not group or (kind == definition.what.group and ADDRESS.fullmatch(address))
     if not (known and PLACE.fullmatch(place)):
         raise RefusedError(f"is damaged: /{where} does not say of what it is the history")
-    series.group, series.place = group, place
+    series.place = place
+    if not definition.address:  # else it is known where the group is now
+        series.group = group
     series.lost = bool(file.attribute_numbers(where, "lost", "i1"))
     return series
