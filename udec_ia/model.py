@@ -186,7 +186,7 @@ class Model(Session):
         The words are those of the file's scheme; how many there may be is for `mtop` to say, whatever it was
         when they were saved. Pictures that are there stay: those to come take the next numbers. Error 29 if
         the file cannot be used, 1 if it holds more; the model is then as it was.
-        force: take an unsound state, too, to look at it and to mend it with RSET; what follows links proves
+        force: take an unsound state, too, to look at it and to mend it through `h`; what follows links proves
         them first, as after RSET.
         """
         from udec_ia.restart import load
@@ -203,7 +203,7 @@ class Model(Session):
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched, self._unproved = bool(unsound), True
+        self._touched, self._unproved = force, True
         self._runaway = Runaway(self.warn)
         self.started = True
         ci, name = array.h.ci, array.scheme.name

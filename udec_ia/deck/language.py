@@ -350,8 +350,8 @@ COMMANDS = (
     Command(
         "Restart",
         "Go on from the restart file, restart.h5 if it is not named; relative names begin in the folder for "
-        "files (--out). FORCE takes an unsound state, too, to be looked at and mended with RSET: what "
-        "follows links, as CYCLE does, is refused until they are sound.",
+        "files (--out). FORCE takes an unsound state, too, to be looked at and mended: what follows "
+        "links, as CYCLE does, is refused until they are sound.",
         "RESTART slope.h5",
         words=(BY_FORCE,),
         text="path",

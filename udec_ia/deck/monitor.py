@@ -21,12 +21,11 @@ from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
-from udec_ia.errors import UdecError
+from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
 
-DAMAGED = 20  # after this error the state can be saved by force only, to be looked at
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 COUNTED = {  # what a command that returns a number has done
     "split": "block cut off",

@@ -74,7 +74,7 @@ class Contents:
         return self._read(place, node, np.dtype(kind), node.shape)
 
     def words(self, place: str, kind: Any, many: int) -> Any:
-        """A row of `many` words of `kind`, in the machine's own order of bytes, from pieces with a checksum."""
+        """A row of `many` words of `kind`, in the machine's order of bytes, from pieces with a checksum."""
         node = self._dataset(place, (many,))
         _check_type(node.get_type(), kind, place)
         plist = node.get_create_plist()

@@ -22,7 +22,7 @@ from udec_ia.restart.reader import (
     read_mark,
     read_state,
 )
-from udec_ia.restart.refusal import RefusedError, refusing
+from udec_ia.restart.refusal import OTHER_TABLE, RefusedError, refusing
 
 PROGRAMS = ("udec_ia", "python", "numpy", "numba", "h5py", "hdf5")
 LINE = 1000  # characters
@@ -55,7 +55,7 @@ def _understood(file: Contents, front: Words) -> tuple[str, Mapping[str, Any]]:
     try:
         seen = read_state(file, front)
     except RefusedError as error:
-        return f"not that of this program: {error.what}", {}
+        return f"not that of this program: {error.what.removeprefix(OTHER_TABLE)}", {}
     values = {one.name: variable(seen.array.h, one)[0] for one in read_table().common if one.count == 1}
     return f"another one: {', '.join(seen.news)}" if seen.news else "that of this program", values
 

@@ -30,7 +30,7 @@ from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
 from udec_ia.restart.layout import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.recorded import recall
-from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
+from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
 FORCE = "udec check FILE lists all that is wrong; RESTART FILE FORCE takes it, to be looked at and mended"
@@ -163,7 +163,7 @@ def read_their_table(file: Contents) -> Table:
 def _other_table(file: Contents, faults: list[str]) -> RefusedError:
     version = file.attribute("provenance", "udec_ia").decode("utf-8", "backslashreplace")
     return RefusedError(
-        f"was written with another field table: {shorten(faults)}",
+        OTHER_TABLE + shorten(faults),
         f"read it with the version that wrote it, udec_ia {printable(version)}",
     )
 
