@@ -14,14 +14,15 @@ import h5py
 import numpy as np
 
 from udec_ia.inspect.census import CHOICES
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, Field, Group, Table, lay_out
+from udec_ia.inspect.meaning import in_words
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, Field, Group, HeadCode, Table, lay_out
 from udec_ia.printable import printable
 
 TEXT_COLUMNS = ("name", "type", "refers_to", "role", "unit", "page", "text")
 NUMBER_COLUMNS = ("count", "offset", "word")
 SHOWN, MAX_FAULT = 3, 200  # faults that a sentence lists, and characters of each
 MARK, MARKED = "unsound", 10  # attribute of a file that was saved by force, and violations that it lists
-MAX_KINDS, MAX_WORDS = 1000, 4096  # of groups, and of one group, in a table that came with a file
+MAX_KINDS, MAX_WORDS, MAX_HEAD = 1000, 4096, 2**15  # of groups, in one, and of head codes, by another's table
 SEVERAL = (*CHOICES, "any")  # what a pointer may point to beside one kind of group
 
 
@@ -65,28 +66,31 @@ def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
 
 def table_faults(table: Table) -> list[str]:
     """What keeps a table that came with a file from being used: names that mean two things, mad sizes."""
-    names = [group.name for group in table.groups]
+    names, fields = [group.name for group in table.groups], list(table.common)
     found = [f"two kinds of group are called {name}" for name in _double(names)]
-    heads = [head.name for head in table.heads], [head.value for head in table.heads]
-    found += [f"two head codes are {one}" for part in heads for one in _double(part)]
-    found += [f"{one.name} is of no kind of group" for one in table.heads if one.group not in names]
+    for heads in ([one.name for one in table.heads], [one.value for one in table.heads]):
+        found += [f"two head codes are {one}" for one in _double(heads)]
+    found += [f"{one.name} is no head code of a group" for one in table.heads if not _is_head(one, names)]
     if len(names) > MAX_KINDS:
-        found.append(f"there are {len(names)} kinds of group")
+        found.append("it has too many kinds of group")
     for group in table.groups:
+        fields += group.fields
         found += [f"group {group.name} has two {name}" for name in _double([f.name for f in group.fields])]
-        size = lay_out(group, max(RATIOS)).size
-        if size > MAX_WORDS:
-            found.append(f"group {group.name} has {size} words")
-        coded = [one for one in table.heads if one.group == group.name]
-        first = group.fields[0] if group.fields else None
-        if coded and (first is None or (first.role, first.type, first.target) != ("head", "int", None)):
+        if lay_out(group, max(RATIOS)).size > MAX_WORDS:
+            found.append(f"group {group.name} is too large")
+        first = (group.fields[0].role, in_words(group.fields[0])) if group.fields else ()
+        if any(one.group == group.name for one in table.heads) and first != ("head", "int"):
             found.append(f"group {group.name} does not begin with its head code")
-    for field in (*table.common, *(field for group in table.groups for field in group.fields)):
+    for field in fields:
         if field.count > MAX_WORDS:
-            found.append(f"there are {field.count} of {field.name}")
+            found.append(f"there are too many of {field.name}")
         if field.target is not None and (field.real or field.target not in (*names, *SEVERAL)):
             found.append(f"{field.name} points to {field.target}, which is no kind of group")
     return found
+
+
+def _is_head(head: HeadCode, kinds: list[str]) -> bool:
+    return head.group in kinds and head.value < MAX_HEAD
 
 
 def _double(names: list[Any]) -> list[Any]:
