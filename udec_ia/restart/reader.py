@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
@@ -81,13 +83,15 @@ def load(path: str | Path, force: bool = False) -> Restored:
     `force`, its heap is unsound or it is marked as that.
     """
     path = Path(path)
-    with refusing(path), opened(path) as file:
-        seen = read_state(file, read_front(file))
-        faults = _faults(seen.array)
+    with refusing(path):
+        with opened(path) as file:
+            seen = read_state(file, read_front(file))
+            series = recall(file, seen.array) if _histories_known(seen.array) else []
+            deck, laws = read_deck(file), read_laws(file)
+        faults = _faults(seen.array)  # takes memory, and that of the file is given back by now
         if not force:
-            _refuse_unsound(read_mark(file), faults)
-        series = recall(file, seen.array) if not faults or _histories_known(seen.array) else []
-        return Restored(seen.array, read_deck(file), read_laws(file), series, seen.said, faults)
+            _refuse_unsound(seen.mark, faults)
+        return Restored(seen.array, deck, laws, series, seen.said, faults)
 
 
 def see(path: str | Path) -> Seen:
@@ -208,28 +212,37 @@ def read_state(file: Contents, front: Words) -> Seen:
     mfree, mtop = front.integer("MFREE"), front.integer("MTOP")
     if not (1 <= mfree <= mtop + 1 and mtop <= scheme.top_address and mtop % scheme.ratio == 0):
         raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} cannot be in {scheme.name}")
-    kind = scheme.int_type.newbyteorder("<")
-    words = file.words("heap/IA", kind, mfree - 1)
-    _check_sum(file, "heap/IA", words.astype(kind, copy=False))
-    state = front._replace(ia=words)
-    if theirs is not ours:
+    file.has_words("heap/IA", mfree - 1, scheme.int_type.itemsize)
+    if theirs is ours:
+        array = _array(front)
+        _read_words(file, scheme, array.h.ia[: mfree - 1])
+    else:
+        words = np.empty(mfree - 1, scheme.int_type)
+        _read_words(file, scheme, words)
         try:
-            state = translate(state, ours, scheme)
+            state = translate(front._replace(ia=words), ours, scheme)
         except TranslationError as error:
             raise _other_table(file, error.faults) from error
-    array = _array(state)
+        array = _array(state)
+        array.h.ia[: len(state.ia)] = state.ia
     array.fixed = bool(file.attribute_numbers("heap/IA", "mtop_fixed", "i1"))
     return Seen(array, [] if theirs is ours else news(theirs, ours), read_mark(file))
 
 
+def _read_words(file: Contents, scheme: Scheme, into: Any) -> None:
+    """Fill `into` with the words of IA()."""
+    kind = scheme.int_type.newbyteorder("<")
+    file.words("heap/IA", kind, into)
+    _check_sum(file, "heap/IA", into.astype(kind, copy=False))
+
+
 def _array(state: Words) -> MainArray:
-    """An array that holds `state`."""
+    """An array of the size of `state` with its common block; IA() is yet to be filled."""
     mtop = state.integer("MTOP")
     try:
         array = MainArray(state.scheme, max(mtop, 1))
     except (MemoryError, ValueError) as error:  # NumPy raises the latter beyond 2**63 bytes
         raise RefusedError(f"asks for {mtop} words, more memory than there is") from error
-    array.h.ia[: len(state.ia)] = state.ia
     for field in state.table.common:
         variable(array.h, field)[:] = state.common[field.name]
     return array
