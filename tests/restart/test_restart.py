@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from handmade import two_blocks
+from interrupts import kill_saves
 from mechanics import box, model, on_base
 
 from udec_ia import Model
@@ -189,6 +190,11 @@ def test_a_kill_while_saving_leaves_the_old_file(tmp_path: Path) -> None:
     assert load(path)[1] == DECK
     leftover = [p for p in tmp_path.iterdir() if p != path]
     assert [p.suffix for p in leftover] == [".tmp"]
+
+
+def test_kills_at_any_moment_of_a_save_leave_the_old_file_or_the_new_one() -> None:
+    """A part of what tools/interrupts.py tries."""
+    assert kill_saves(40, seed=3, seconds=60) == []
 
 
 @pytest.mark.parametrize("name", SCHEMES)
