@@ -194,7 +194,7 @@ def test_a_kill_while_saving_leaves_the_old_file(tmp_path: Path) -> None:
 
 def test_kills_at_any_moment_of_a_save_leave_the_old_file_or_the_new_one() -> None:
     """A part of what tools/interrupts.py tries."""
-    assert kill_saves(40, seed=3, seconds=60) == []
+    assert kill_saves(15, seed=3, seconds=60) == []
 
 
 @pytest.mark.parametrize("name", SCHEMES)
