@@ -1,6 +1,6 @@
 """Interrupts anywhere: whatever ends a command, the model is as after it or exactly as before it, and sound.
 
-    python tools/interrupts.py --lines 2000 --signals 500 --seed 1
+    python tools/interrupts.py --lines 2000 --signals 500 --kills 200 --seed 1
 
 First KeyboardInterrupt (Ctrl-C that does not wait) or MemoryError is raised at random lines of Python inside
 every command of a model with blocks of all types, conditions, histories and pictures, typed, in Python, and
@@ -9,7 +9,11 @@ before and after bit for bit; a CYCLE may also have ended between two cycles. Li
 out: what holds interrupts back is not interrupted itself.
 
 Then SIGINT or SIGTERM is sent to processes that run random decks, at random moments. The restart file that
-they name has to be sound, and the exit status true. Failures are printed; with one the exit status is 1.
+they name has to be sound, and the exit status true.
+
+At last processes that SAVE two states by turns under one name are killed at random moments (SIGKILL, which
+nothing can hold back): the name must stand for one of the two, whole. Failures are printed; with one the exit
+status is 1.
 """
 
 from __future__ import annotations
@@ -36,7 +40,9 @@ import numpy as np
 from udec_ia import Model, UdecError, cli, signals
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
+from udec_ia.heap.array import MainArray
 from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
+from udec_ia.restart import load, save
 
 PACKAGE = str(Path(sys.modules["udec_ia"].__file__ or "").parent)
 NOT_COUNTED = str(Path(PACKAGE) / "signals.py")
@@ -416,18 +422,78 @@ def interrupt_processes(n: int, seed: int, seconds: float) -> list[str]:
     return failures
 
 
+# ---- kills while files are written
+
+
+def two_states(folder: Path) -> list[MainArray]:
+    """A state, and the same after some cycles: their numbers of cycles tell them apart."""
+    model = Lines(folder, cycled=False).model
+    states = [model.array.copy()]
+    model.cycle(20)
+    return [*states, model.array.copy()]
+
+
+def save_for_ever(states: list[MainArray], path: Path, before: int) -> None:
+    """SAVE by turns, beginning with the state that is not there; ended from outside."""
+    try:
+        while True:
+            before = 1 - before
+            save(states[before], path)
+    finally:
+        os._exit(99)
+
+
+def kill_saves(n: int, seed: int, seconds: float) -> list[str]:
+    """Kill `n` processes that SAVE; returns the failures."""
+    rng, failures, ends = np.random.default_rng(seed), [], time.monotonic() + seconds
+    ended: Counter[str] = Counter()
+    with tempfile.TemporaryDirectory() as name:
+        states, path = two_states(Path(name)), Path(name, "saved", "run.h5")
+        cycles = [int(state.h.ci[MCTOT]) for state in states]
+        save(states[0], path)
+        start = time.perf_counter()
+        save(states[0], path)
+        longest = 3 * (time.perf_counter() - start)
+        before = 0
+        for done in range(n):
+            if time.monotonic() > ends:
+                print(f"{done} kills, then the time was over")
+                break
+            process = os.fork()
+            if process == 0:
+                save_for_ever(states, path, before)
+            time.sleep(float(rng.uniform(0, longest)))
+            os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+            try:
+                found = cycles.index(int(load(path).array.h.ci[MCTOT]))
+                ended["the old file" if found == before else "the new file"] += 1
+                before = found
+            except (UdecError, ValueError) as error:
+                failures.append(f"kill {done}: {error}")
+                print(failures[-1], flush=True)
+            for rest in {*path.parent.iterdir()} - {path}:
+                ended["part of a file under another name"] += 1
+                rest.unlink()
+    print(dict(ended))
+    return failures
+
+
 def main() -> int:
     """Run the command line; returns the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--lines", type=int, default=2000)
     parser.add_argument("--signals", type=int, default=500)
+    parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=3600.0, help="time for each part")
     args = parser.parse_args()
     warnings.simplefilter("ignore")
     failures = interrupt_lines(args.lines, args.seed, args.seconds)
     failures += interrupt_processes(args.signals, args.seed, args.seconds)
-    print(f"{args.lines} lines, {args.signals} signals, seed {args.seed}: {len(failures)} failures")
+    failures += kill_saves(args.kills, args.seed, args.seconds)
+    tried = f"{args.lines} lines, {args.signals} signals, {args.kills} kills"
+    print(f"{tried}, seed {args.seed}: {len(failures)} failures")
     return 1 if failures else 0
 
 

@@ -27,7 +27,7 @@ from udec_ia.workshop import VERBS as LOOKS
 from udec_ia.workshop import add_commands
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", "check", "info", *LOOKS)
+VERBS = ("run", "info", *LOOKS)
 
 
 def arguments() -> argparse.ArgumentParser:
@@ -59,9 +59,6 @@ def arguments() -> argparse.ArgumentParser:
     )
     run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
     run.set_defaults(action=_run)
-    check = commands.add_parser("check", help="prove that a restart file holds a sound block system")
-    check.add_argument("file", type=Path)
-    check.set_defaults(action=_check)
     info = commands.add_parser("info", help="say what is in a restart file")
     info.add_argument("file", type=Path)
     info.set_defaults(action=_info)
@@ -97,16 +94,6 @@ def _run(args: argparse.Namespace) -> int:
         monitor.run(sys.stdin, "stdin")
         monitor.stop()
     return 0
-
-
-def _check(args: argparse.Namespace) -> int:
-    from udec_ia.model import Model
-
-    violations = Model.check_file(args.file)
-    for violation in violations:
-        print(violation)
-    print(f"{printable(str(args.file))}: {f'{len(violations)} violations' if violations else 'sound'}")
-    return ERROR if violations else 0
 
 
 def _info(args: argparse.Namespace) -> int:

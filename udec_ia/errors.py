@@ -165,6 +165,9 @@ ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 DISORDERED = (14, 15, 32, 36)  # errors that leave blocks deeper in each other or thinner than contacts allow
 
 
+DAMAGED = 20  # after this error the state can be saved by force only, to be looked at
+
+
 def spoilt(number: int, cycle: int) -> str:
     """What is to be said of a state that error `number` has ended a run of, in `cycle` (NSPOIL, MCSPOI)."""
     return f"error {number} in cycle {cycle}, {MESSAGES[number]}, has ended a run of this state"
@@ -207,6 +210,7 @@ class UdecError(Exception):
         if self.source is not None and self.column is not None:
             lines += [f"    {self.source}", "    " + " " * (self.column - 1) + "^"]
         lines += [printable(self.advice, MESSAGE)] if self.advice else []
-        saved = f"what was computed so far is saved in {self.saved}"
+        state = "the damaged state" if self.number == DAMAGED else "what was computed so far"
+        saved = f"{state} is saved in {self.saved}"
         lines += [printable(saved, MESSAGE)] if self.saved else []
         return "\n".join(lines)

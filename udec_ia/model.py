@@ -22,14 +22,14 @@ from typing import Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
 from udec_ia.deck.monitor import run_deck
 from udec_ia.deck.reference import explain, summary
-from udec_ia.errors import UdecError, spoilt
+from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.inspect.arrange import arrange
-from udec_ia.inspect.check import check, check_shapes
+from udec_ia.inspect.check import check, check_shapes, unjudged
 from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.table import table
 from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
@@ -158,43 +158,54 @@ class Model(Session):
         self.started = True
 
     @beside
-    def save(self, path: str | Path | None = None) -> Path:
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
         """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
 
         Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
         It may replace a restart file; error 31 if anything else stands there, or if it cannot be written.
+        force: also a state that is unsound, whatever has made it so; the file is marked with what `check`
+        says, and RESTART takes it only by force.
         """
         from udec_ia.restart import save
 
-        if self._touched:
+        if self._touched and not force:
             self._prove(whole=True)
+        broken = [str(one) for one in check(self.array)] if force else []
+        if broken:
+            self.tell(f"the state is unsound, and the file is marked: {broken[0]}")
         target = self.out / RESTART_FILE if path is None else Path(path)
         folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
-        written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series)
+        written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series, broken)
         self.note([written])
         if makes:
             self.inform(f"the folder {printable(str(folder))} was not there and has been made")
         return written
 
     @beside
-    def restart(self, path: str | Path | None = None) -> None:
+    def restart(self, path: str | Path | None = None, *, force: bool = False) -> None:
         """RESTART: go on from the restart file `path`, by default restart.h5 in the folder `out`.
 
         The words are those of the file's scheme; how many there may be is for `mtop` to say, whatever it was
         when they were saved. Pictures that are there stay: those to come take the next numbers. Error 29 if
         the file cannot be used, 1 if it holds more; the model is then as it was.
+        force: take an unsound state, too, to look at it and to mend it through `h`; what follows links proves
+        them first, as after RSET.
         """
         from udec_ia.restart import load
 
         source = self.out / RESTART_FILE if path is None else path
-        array, deck_log, laws, series = load(source)
+        array, deck_log, laws, series, said, unsound = load(source, force)
         refit(array, self.mtop)
         self.array = array
         self.go_on(deck_log, series)
+        for sentence in said:
+            self.tell(sentence)
+        if unsound:
+            self.tell(f"taken by force: CYCLE and all that follows links is refused while {unsound[0]}")
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
-        self._touched, self._unproved = False, True
+        self._touched, self._unproved = force, True
         self._runaway = Runaway(self.warn)
         self.started = True
         ci, name = array.h.ci, array.scheme.name
@@ -202,7 +213,7 @@ class Model(Session):
             f"{printable(str(source))}: {ci[NBLK]} blocks, {ci[NCON]} contacts, {ci[MCTOT]} cycles, "
             f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
         )
-        if ci[NSPOIL]:
+        if ci[NSPOIL] in MESSAGES:
             told = spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))
             self.tell(f"{told}: look at it, and go on from one before that")
         if array.scheme != self.scheme:
@@ -226,16 +237,18 @@ class Model(Session):
         path: str | Path,
         constitutive: Given | Iterable[Given] | None = None,
         *,
+        force: bool = False,
         mtop: int | None = None,
         out: str | Path = ".",
         name: str = NAME,
     ) -> Self:
         """A new model from a restart file, in the word scheme of the file, with laws of the user's.
 
-        mtop, out, name: as for a new model. Runs that go on side by side in one folder need different names.
+        force: as for `restart`. mtop, out, name: as for a new model. Runs that go on side by side in one
+        folder need different names.
         """
         model = cls(mtop=mtop, out=out, constitutive=constitutive, name=name)
-        model.restart(path)
+        model.restart(path, force=force)
         model.scheme = model.array.scheme
         return model
 
@@ -680,14 +693,19 @@ class Model(Session):
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""
+        for sentence in unjudged(self.array):
+            self.inform(sentence)
         return list(check(self.array))
 
     @staticmethod
     def check_file(path: str | Path) -> list[Any]:
-        """All violations in the restart file `path`. Error 29 if RESTART would refuse it."""
-        from udec_ia.restart import load
+        """All violations in the restart file `path`, also if RESTART refuses it for them.
 
-        return list(check(load(path).array))
+        Error 29 if it is not what SAVE wrote.
+        """
+        from udec_ia.restart import look_into
+
+        return list(check(look_into(path)))
 
     @looking
     def print(self, *what: str) -> str:

@@ -72,7 +72,7 @@ def test_a_word_that_is_neither_command_nor_deck(in_folder: Path, capsys: pytest
         main(["chekc", "restart.h5"])
     assert caught.value.code == 2
     said = capsys.readouterr().err
-    assert "there is no file chekc, and the commands are udec run, udec check, udec info" in said
+    assert "there is no file chekc, and the commands are udec run, udec info, udec check" in said
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are text elsewhere")

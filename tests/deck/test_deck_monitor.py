@@ -102,11 +102,13 @@ def test_a_run_that_can_write_no_file_ends_with_its_summary(tmp_path: Path) -> N
     assert out.getvalue().count("1 blocks, 0 contacts, largest normal force 0 N/m; no file written") == 1
 
 
-def test_a_damaged_main_array_is_not_saved() -> None:
+def test_a_damaged_main_array_is_saved_by_force() -> None:
     model = Recorder()
     model.fails("cycle", 20)
-    assert refused("START\nCYCLE 1\n", model)[1].saved is None
-    assert model.names == ["start", "cycle", "stop"]
+    error = refused("START\nCYCLE 1\n", model)[1]
+    assert "the damaged state is saved in results/rescue.h5" in str(error)
+    assert model.names == ["start", "cycle", "save", "stop"]
+    assert model.calls[2][2] == {"force": True}
 
 
 def test_an_interrupted_run_is_saved() -> None:

@@ -27,11 +27,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_there_is_something_shown() -> None:
-    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk"}
+    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk", "check"}
 
 
 def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for command, shown in SHOWN:
-        assert main(command.split()) == 0
+        assert main(command.split()) == ("violation" in shown.partition("\n")[0])
         printed = capsys.readouterr().out
         assert printed == "".join(f"{line[4:]}\n" for line in shown.splitlines()), command

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from handmade import two_blocks
+from interrupts import kill_saves
 from mechanics import box, model, on_base
 
 from udec_ia import Model
@@ -191,6 +192,11 @@ def test_a_kill_while_saving_leaves_the_old_file(tmp_path: Path) -> None:
     assert [p.suffix for p in leftover] == [".tmp"]
 
 
+def test_kills_at_any_moment_of_a_save_leave_the_old_file_or_the_new_one() -> None:
+    """A part of what tools/interrupts.py tries."""
+    assert kill_saves(15, seed=3, seconds=60) == []
+
+
 @pytest.mark.parametrize("name", SCHEMES)
 def test_the_file_explains_itself(name: str, tmp_path: Path) -> None:
     """The program printed in the document reads the blocks with h5py and NumPy alone."""
@@ -219,7 +225,7 @@ def test_layout_and_commons_are_in_the_file(tmp_path: Path) -> None:
 
 def test_front_can_be_read_by_a_person(tmp_path: Path) -> None:
     front = save(two_blocks(), tmp_path / "two.h5").read_bytes()[:512].decode("ascii")
-    assert front.startswith("udec_ia restart file\nformat 1.1\nbytes ")
+    assert front.startswith("udec_ia restart file\nformat 1.2\nbytes ")
     assert front.endswith("\n")
 
 

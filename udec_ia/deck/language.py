@@ -67,7 +67,7 @@ class Command:
     numbers: names of the numbers that must be given. optional: of those that may be left off.
     words: its keywords. first: the argument that its first word must set, and the error if it does not.
     list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
-    it stands, to the end of the line. opens: may come before START.
+    it stands, to the end of the line or to the word that stands last in it. opens: may come before START.
     ours: what of the command is not in Appendix I-1.
     """
 
@@ -98,6 +98,7 @@ class Command:
     def form(self) -> str:
         """The command as the report prints it, brackets around what may be left off."""
         parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
+        parts += [f"[{self.text}]"] if self.text else []
         for argument in dict.fromkeys(word.argument for word in self.words):
             forms = [word.form for word in self.words if word.argument == argument]
             if argument == SEVERAL:
@@ -106,7 +107,6 @@ class Command:
                 choice = " | ".join(forms) if len(forms) < MANY else argument
                 parts.append(choice if argument == self.first else f"[{choice}]")
         parts += [f"{self.list} ..."] if self.list else []
-        parts += [f"[{self.text}]"] if self.text else []
         return " ".join(part for part in parts if part)
 
 
@@ -117,6 +117,7 @@ PROPERTIES = [
     if one.keyword
 ]
 CONSTITUTIVE = Word("Constitutive", "m")
+BY_FORCE = Word("FORCE")
 RANGE = "x1 x2 y1 y2"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -349,11 +350,13 @@ COMMANDS = (
     Command(
         "Restart",
         "Go on from the restart file, restart.h5 if it is not named; relative names begin in the folder for "
-        "files (--out).",
+        "files (--out). FORCE takes an unsound state, too, to be looked at and mended: what follows "
+        "links, as CYCLE does, is refused until they are sound.",
         "RESTART slope.h5",
+        words=(BY_FORCE,),
         text="path",
         opens=True,
-        ours="the name of the file",
+        ours="the name of the file; FORCE",
     ),
     Command(
         "RSet",
@@ -372,10 +375,12 @@ COMMANDS = (
     Command(
         "SAve",
         "Save the state on the restart file, restart.h5 if it is not named; relative names begin in the "
-        "folder for files (--out). It may replace a restart file, and nothing else.",
+        "folder for files (--out). It may replace a restart file, and nothing else. FORCE saves an unsound "
+        "state, too, and marks the file; a file that is called FORCE has its name in quotes.",
         "SAVE slope.h5",
+        words=(BY_FORCE,),
         text="path",
-        ours="the name of the file",
+        ours="the name of the file; FORCE",
     ),
     Command("SCale", "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
     Command(

@@ -21,12 +21,11 @@ from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
-from udec_ia.errors import UdecError
+from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
 
-DAMAGED = 20  # after this error the main array is not worth saving: RESTART would refuse it
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 COUNTED = {  # what a command that returns a number has done
     "split": "block cut off",
@@ -164,27 +163,38 @@ class Monitor:
         self.out.flush()
 
     def rescue(self, *, sound: bool = True) -> str | None:
-        """Save the state if it is sound, and end the run. Returns the name of the restart file.
+        """Save the state, and end the run. Returns the name of the restart file.
 
-        The file is read again and proved before it is named. A failure here must not hide what has gone wrong
-        before. However often Ctrl-C is pressed, the file is written; then only the pictures are left out.
+        An unsound state is saved by force. The file is read again and proved before it is named. A failure
+        here must not hide what has gone wrong before. However often Ctrl-C is pressed, the file is written;
+        then only the pictures are left out.
         """
         if not self.model.started:
             return None
         saved = None
         with suppress(Exception, KeyboardInterrupt), hold():
-            if sound:
-                try:
-                    with hold(firm=True):
-                        path = self.model.save((self.model.out / RESCUE).absolute())
-                    saved = self._proved(path)
-                except Exception as failure:
-                    self._write(f"the state could not be saved: {failure}")
+            try:
+                with hold(firm=True):
+                    path = self._save(sound)
+                saved = self._proved(path)
+            except Exception as failure:
+                self._write(f"the state could not be saved: {failure}")
             self.stop()  # which tells what it cannot write
         return saved
 
+    def _save(self, sound: bool) -> Path:
+        """Save the state for the rescue, by force if it is not sound."""
+        path = (self.model.out / RESCUE).absolute()
+        if sound:
+            try:
+                return self.model.save(path)
+            except UdecError as error:
+                if error.number != DAMAGED:
+                    raise
+        return self.model.save(path, force=True)
+
     def _proved(self, path: Path) -> str:
-        """The name of the restart file `path`, which RESTART takes; says what else is wrong in it."""
+        """The name of the restart file `path`; says what is wrong with the state in it."""
         try:
             violations = self.model.check_file(path)
         except KeyboardInterrupt:

@@ -37,7 +37,7 @@ class Obeying(Protocol):
     def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
         """Why a command has found nothing."""
 
-    def save(self, path: str | Path | None = None) -> Path:
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
         """SAVE."""
 
     def check_file(self, path: str | Path) -> list[Any]:

@@ -19,7 +19,8 @@ from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
-QUOTED = re.compile(rf"""((['"]).*?\2)\s*({REMARK.pattern}.*)?$""")
+QUOTED = re.compile(rf"""((['"]).*?\2)\s*([A-Za-z]*)\s*({REMARK.pattern}.*)?$""")
+LAST = re.compile(r"(?:(.*\S)\s+)?(\S+)\s*")  # a text, and the word that stands last in it
 APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
@@ -141,18 +142,32 @@ class _Parser:
         """Take the rest of the line as it stands: names of files may hold separators."""
         line, end = self.tokens[0].line, self.tokens[0].end - 1
         rest = line.text[end:].lstrip(" \t=")
-        whole = QUOTED.match(rest)
-        if rest[:1] in ("'", '"') and whole is None:
+        text, last = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
+        if text is None:
             detail = f"{rest[0]} stands before the name, and not behind it as the last of the line"
             place = Token(rest[0], line, len(line.text) - len(rest) + 1)
             raise at(UdecError(10, detail, "put a name in quotes as a whole, or in none"), place)
-        text = whole.group(1) if whole else APART.split(rest, maxsplit=1)[0]
         place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
+        if last is not None:
+            self.call.named[last.argument], self.call.places[last.argument] = True, self.tokens[-1]
         if place.text:
             self.call.named[self.command.text] = place.text.strip("\"'")
             self.call.places[self.command.text] = place
+
+    def _quoted(self, rest: str) -> tuple[str | None, Word | None]:
+        """A name with its quotes, and the word behind it; no name if something else is there."""
+        whole = QUOTED.match(rest)
+        last = match(self.command.words, whole[3]) if whole and whole[3] else None
+        return whole[1] if whole and (last or not whole[3]) else None, last
+
+    def _unquoted(self, rest: str) -> tuple[str, Word | None]:
+        """A name, and the word behind it."""
+        text = APART.split(rest, maxsplit=1)[0]
+        found = LAST.fullmatch(text)
+        last = match(self.command.words, found[2]) if found else None
+        return found[1] or "" if found and last else text, last
 
     def _number(self, name: str, missing: int = 7, line: Line | None = None, advice: str = "") -> int | float:
         """Read the number `name`; error `missing` if there is none, and with `advice` on the same `line`."""

@@ -6,24 +6,29 @@ that were found last are followed at once, until they lead to nothing new; block
 there are about as many waves as blocks across the model. Nothing is trusted: a pointer that leads out of the
 heap, to an address where no group can stand or to another head code is not followed. So this tells what is
 there in a damaged heap, too; whether it is sound is for the checker to say.
+
+The table may be that of another program, whose restart file is being read.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.inspect.walk import HEADS, SOFT, one_of
+from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
+from udec_ia.inspect.walk import SOFT, one_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Group, layouts, read_table
+from udec_ia.layout.table import Group, Table, lay_out, read_table
 
 TABLE = read_table()
 CHOICES = {
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
 }  # kinds that such a pointer can lead to
+SOFT_NAMES = {head.name: SOFT[head.value] for head in TABLE.heads if head.value in SOFT}
 
 
 class Shape(NamedTuple):
@@ -40,22 +45,47 @@ def census(h: Memory) -> dict[str, Any]:
     An address to which two kinds of pointer lead is counted once, as the kind that comes first.
     """
     ratio, top = int(h.ra.itemsize // h.ia.itemsize), max(min(int(h.ci[g.MFREE]), len(h.ia) + 1), 1)
-    shapes = {group.name: _shape(group, ratio) for group in TABLE.groups}
-    kind_at = np.zeros(top, np.int8)  # number of the kind of the group that begins there; 0 for none
+    heads = ((str(field.target), int(h.ci[getattr(g, field.name)])) for field in list_heads(TABLE))
+    return reached(TABLE, ratio, h.ia[: top - 1], heads)
+
+
+def list_heads(table: Table) -> list[Any]:
+    """The fields of the common block that point to groups."""
+    return [field for field in table.common if field.target]
+
+
+def reached(
+    table: Table, ratio: int, words: Any, heads: Iterable[tuple[str, int]], strict: bool = False
+) -> dict[str, Any]:
+    """The same of any `table` and the words in use, where `heads`, pointers with their targets, lead.
+
+    strict: it is over as soon as groups have more words together than there are, as they lie in each other.
+    """
+    top = left = len(words) + 1
+    shapes = {group.name: _shape(table, group, ratio) for group in table.groups}
+    soft = {head.value: SOFT_NAMES[head.name] for head in table.heads if head.name in SOFT_NAMES}
+    kind_at = np.zeros(top, np.int16)  # number of the kind of the group that begins there; 0 for none
     place = np.empty(top, np.int64)
-    wave = _heads(h)
-    while wave:
+    wave: dict[str, list[Any]] = {}
+    for kind, address in heads:
+        wave.setdefault(kind, []).append(np.array([address], np.int64))
+    while wave and not (strict and left < 0):
         ahead: dict[str, list[Any]] = {}
         for number, (kind, shape) in enumerate(shapes.items(), 1):
-            at = np.concatenate([np.empty(0, np.int64), *wave.get(kind, ())])
+            if kind not in wave or shape.size >= top:
+                continue
+            at = np.concatenate(wave[kind])
             at = at[(at >= 1) & (at <= top - shape.size) & ((at - 1) % ratio == 0)]
             at = _once(at[kind_at[at] == 0], place)
             if shape.heads:
-                at = at[one_of(h.ia[at - 1], shape.heads)]
+                at = at[one_of(words[at - 1], shape.heads)]
             kind_at[at] = number
-            for offset, target in shape.pointers if len(at) else ():
-                to = h.ia[at + offset - 1].astype(np.int64)
-                for other, chosen in _by_kind(h, target, at, to):
+            left -= len(at) * shape.size
+            if not len(at) or (strict and left < 0):
+                continue
+            for offset, target in shape.pointers:
+                to = words[at + offset - 1].astype(np.int64)
+                for other, chosen in _by_kind(soft, words[at - 1], target, to):
                     ahead.setdefault(other, []).append(chosen)
         wave = ahead
     return {kind: np.flatnonzero(kind_at == number) for number, kind in enumerate(shapes, 1)}
@@ -68,30 +98,42 @@ def _once(at: Any, place: Any) -> Any:
     return at[place[at] == rows]
 
 
-def _heads(h: Memory) -> dict[str, list[Any]]:
-    """Where the pointers of the common block lead."""
-    wave: dict[str, list[Any]] = {}
-    for field in TABLE.common:
-        if field.role == "head" and field.target:
-            wave.setdefault(field.target, []).append(np.array([h.ci[getattr(g, field.name)]], np.int64))
-    return wave
-
-
-def _by_kind(h: Memory, target: str, owners: Any, to: Any) -> list[tuple[str, Any]]:
-    """What pointers of `owners` lead `to`, by kind: of what extends a block, its own head code says which."""
+def _by_kind(soft: dict[int, str], codes: Any, target: str, to: Any) -> list[tuple[str, Any]]:
+    """What pointers lead `to`, by kind: of what extends a block, its own head code says which."""
     if target == "soft":
-        return [(kind, to[(h.ia[owners - 1] == code) & (to != 0)]) for code, kind in SOFT.items()]
+        return [(kind, to[(codes == code) & (to != 0)]) for code, kind in soft.items()]
     to = to[to != 0]
     return [(kind, to) for kind in CHOICES.get(target, (target,))]
 
 
-def _shape(group: Group, ratio: int) -> Shape:
+def _shape(table: Table, group: Group, ratio: int) -> Shape:
     """What groups of a kind look like. What may be of any kind is reached by its own lists, not from here."""
-    layout = layouts(ratio)[group.name]
+    layout = lay_out(group, ratio)
     pointers = [
         (layout.offset[field.name] + i, str(field.target))
         for field in group.fields
         if field.target and field.target != "any"
         for i in range(field.count)
     ]
-    return Shape(layout.size, HEADS.get(group.name, ()), pointers)
+    return Shape(layout.size, tuple(one.value for one in table.heads if one.group == group.name), pointers)
+
+
+def junk_chains(words: Any, first: int) -> list[list[tuple[int, int]]]:
+    """The junk list of the words in use, from `first` (JUNK) on, as far as it makes sense.
+
+    For each size the groups of its chain, address and words.
+    """
+    free, found, seen = len(words) + 1, [], set()
+    word, (following, size_at, sizes) = memoryview(words), (at[0] - 1 for at in (JNEXT, JSIZE, JSIZES))
+    while 1 <= first < free - JSIZES[0] and first not in seen:
+        size, after, chain = word[first + size_at], word[first + sizes], []
+        iad = first
+        while size > 0 and 1 <= iad <= free - size and iad not in seen:
+            seen.add(iad)
+            chain.append((iad, size))
+            iad = word[iad + following]
+        if not chain:
+            break
+        found.append(chain)
+        first = after
+    return found

@@ -73,8 +73,9 @@ class Contents:
         _check_type(node.get_type(), kind, place)
         return self._read(place, node, np.dtype(kind), node.shape)
 
-    def words(self, place: str, kind: Any, many: int) -> Any:
-        """A row of `many` words of the type `kind`, in pieces that have a checksum each."""
+    def words(self, place: str, kind: Any, into: Any) -> None:
+        """Fill the row `into` with words of the type `kind`, from pieces that have a checksum each."""
+        many, size = len(into), np.dtype(kind).itemsize
         node = self._dataset(place, (many,))
         _check_type(node.get_type(), kind, place)
         plist = node.get_create_plist()
@@ -83,16 +84,18 @@ class Contents:
         pieces = plist.get_chunk() if plist.get_layout() == h5d.CHUNKED else None
         if pieces != (piece,) or filters != [h5z.FILTER_FLETCHER32]:
             raise _damaged(place, "is not stored as SAVE stores it")
-        self._spend(place, many * np.dtype(kind).itemsize)
-        words = np.empty(many, kind)
-        raw = np.empty(piece * words.itemsize + CHECKSUM, np.uint8)
+        raw = np.empty(piece * size + CHECKSUM, np.uint8)
         for first in range(0, many, piece):
             _, found = node.read_direct_chunk((first,), out=raw)
             if len(found) != len(raw):
                 raise _damaged(place, f"has {len(found)} bytes in a piece of {len(raw)}")
-            part = words[first : first + piece]
+            part = into[first : first + piece]
             part[:] = raw[:-CHECKSUM].view(kind)[: len(part)]
-        return words
+
+    def has_words(self, place: str, many: int, size: int) -> None:
+        """Judge by the header whether there are so many words of `size` bytes, and count them as read."""
+        self._dataset(place, (many,))
+        self._spend(place, many * size)
 
     def attribute(self, place: str, name: str) -> bytes:
         """A text that is attached to an object."""

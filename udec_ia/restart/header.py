@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from udec_ia.errors import MESSAGES, spoilt
+from udec_ia.heap.array import variable
+from udec_ia.inspect.check.unjudged import unfinished
+from udec_ia.inspect.translate import Words
 from udec_ia.layout.table import read_table
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents
-from udec_ia.restart.layout import differences, losses
+from udec_ia.restart.layout import shorten
 from udec_ia.restart.reader import (
     opened,
-    read_common,
     read_deck,
+    read_front,
     read_laws,
-    read_scheme,
-    read_their_table,
-    shorten,
+    read_mark,
+    read_state,
 )
-from udec_ia.restart.refusal import refusing
+from udec_ia.restart.refusal import OTHER_TABLE, RefusedError, refusing
 
 PROGRAMS = ("udec_ia", "python", "numpy", "numba", "h5py", "hdf5")
 LINE = 1000  # characters
@@ -33,19 +36,28 @@ def info(path: str | Path) -> str:
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        scheme, ours, theirs = read_scheme(file), read_table(), read_their_table(file)
-        values = read_common(file, scheme, theirs)
-        faults = differences(ours, theirs) + losses(ours, theirs, values)
+        front = read_front(file)
+        scheme, (layout, values) = front.scheme, _understood(file, front)
         lines = [("file", str(path)), ("format", _format(file)), ("written", _written(file))]
         lines += [("words", f"{scheme.name}: {scheme.int_bits}-bit integers, {scheme.real_bits}-bit reals")]
-        lines += [
-            ("layout", f"not that of this program: {shorten(faults)}" if faults else "that of this program")
-        ]
-        lines += [] if faults else _state(file, values)
+        lines += [("layout", layout), *(_state(file, values) if values else [])]
+        lines += [("unsound", f"saved by force: {shorten(mark)}")] if (mark := read_mark(file)) else []
         lines += [("deck", f"{len(read_deck(file))} command lines")]
         lines += [("law", f"{name} of {origin}, sha256 {d}") for name, (origin, d) in read_laws(file).items()]
         lines += [("heap", f"sha256 {_shown(file.attribute('heap/IA', 'sha256'))}")]
     return "\n".join(f"{name:10}{printable(value, LINE)}" for name, value in lines)
+
+
+def _understood(file: Contents, front: Words) -> tuple[str, Mapping[str, Any]]:
+    """How the words can be read here, and the common block; {} if they cannot be read."""
+    if front.table is read_table():
+        return "that of this program", front.common
+    try:
+        seen = read_state(file, front)
+    except RefusedError as error:
+        return f"not that of this program: {error.what.removeprefix(OTHER_TABLE)}", {}
+    values = {one.name: variable(seen.array.h, one)[0] for one in read_table().common if one.count == 1}
+    return f"another one: {', '.join(seen.news)}" if seen.news else "that of this program", values
 
 
 def _shown(text: bytes) -> str:
@@ -62,7 +74,7 @@ def _written(file: Contents) -> str:
     return f"{_shown(file.string('volatile/date'))} on {_shown(file.string('volatile/host'))} by {versions}"
 
 
-def _state(file: Contents, values: dict[str, Any]) -> list[tuple[str, str]]:
+def _state(file: Contents, values: Mapping[str, Any]) -> list[tuple[str, str]]:
     fixed = file.attribute_numbers("heap/IA", "mtop_fixed", "i1")
     top = f"fixed at {values['MTOP']}" if fixed else "grows as needed"
     error = int(values.get("NSPOIL", 0))
@@ -72,4 +84,5 @@ def _state(file: Contents, values: dict[str, Any]) -> list[tuple[str, str]]:
         ("model", blocks.format(**values)),
         ("run", "{MCTOT} cycles, time {TIME:.6g} s, time-step {TDEL:.6g} s".format(**values)),
         *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
+        *(("check", said) for said in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
     ]

@@ -6,22 +6,36 @@ per field: the same facts as `offsets/` holds, laid out for the word scheme of t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import h5py
 import numpy as np
 
-from udec_ia.layout.table import COMMON_TYPES, Field, Group, Table, lay_out
+from udec_ia.inspect.census import CHOICES
+from udec_ia.inspect.meaning import in_words
+from udec_ia.layout.table import COMMON_TYPES, RATIOS, Field, Group, HeadCode, Table, lay_out
+from udec_ia.printable import printable
 
 TEXT_COLUMNS = ("name", "type", "refers_to", "role", "unit", "page", "text")
 NUMBER_COLUMNS = ("count", "offset", "word")
+SHOWN, MAX_FAULT = 3, 200  # faults that a sentence lists, and characters of each
+MARK, MARKED = "unsound", 10  # attribute of a file that was saved by force, and violations that it lists
+MAX_KINDS, MAX_WORDS, MAX_HEAD = 1000, 4096, 2**15  # of groups, in one, and of head codes, by another's table
+SEVERAL = (*CHOICES, "any")  # what a pointer may point to beside one kind of group
 
 
 def text(value: str | bytes) -> Any:
     """A string as HDF5 keeps it in place: UTF-8 of fixed length."""
     raw = value if isinstance(value, bytes) else value.encode()
     return np.array(raw, h5py.string_dtype("utf-8", max(len(raw), 1)))
+
+
+def shorten(faults: Sequence[str], shown: int = SHOWN, between: str = "; ") -> str:
+    """The first few of `faults`, safe to print, and how many more there are."""
+    more = [f"and {len(faults) - shown} more"] if len(faults) > shown else []
+    return between.join([printable(fault, MAX_FAULT) for fault in faults[:shown]] + more)
 
 
 def field_rows(group: Group, ratio: int) -> Any:
@@ -50,57 +64,35 @@ def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
         yield field, slice(start, end[field.type])
 
 
-def differences(ours: Table, theirs: Table) -> list[str]:
-    """In words, where two tables give words of IA() another place or meaning; wording does not count.
-
-    A history knows a field by its place in the table, so the order counts.
-    """
-    mine, other = _places(ours), _places(theirs)
-    found = [f"{what} has {name} in this version only" for what, name in mine if (what, name) not in other]
-    found += [f"{what} has {name} in the file only" for what, name in other if (what, name) not in mine]
-    found += [
-        f"{what} has {name} as {other[what, name]} in the file, as {place} here"
-        for (what, name), place in mine.items()
-        if other.get((what, name), place) != place
-    ]
-    codes = {code.name: code.value for code in ours.codes}
-    found += [
-        f"the code {code.name} of {code.field} is {code.value} in the file, {codes[code.name]} here"
-        for code in theirs.codes
-        if codes.get(code.name, code.value) != code.value
-    ]
-    return found or ([] if list(mine) == list(other) else ["its groups or fields come in another order"])
-
-
-def losses(ours: Table, theirs: Table, values: dict[str, Any]) -> list[str]:
-    """In words, what of the common block `values`, written by `theirs`, cannot be told by `ours`.
-
-    Variables are taken by their names: what the file does not have is 0, as after START, and what has gone
-    since is no loss if it is 0; nor is a real that is a double now.
-    """
-    mine = {field.name: (_kind(field), place) for place, field in enumerate(ours.common)}
-    found = []
-    for place, field in enumerate(theirs.common):
-        kind, here = mine.get(field.name, ("", place))
-        if not kind and np.any(values[field.name]):
-            found.append(f"the common block has {field.name}, which is not 0, in the file only")
-        elif kind and kind != _kind(field) and (_kind(field), kind) != ("real", "double"):
-            found.append(f"the common block has {field.name} as {_kind(field)} in the file, as {kind} here")
-        elif kind and here != place and values.get("IHPNT"):
-            found.append(f"histories know {field.name} of the common block by another number")
-    return found
-
-
-def _places(table: Table) -> dict[tuple[str, str], str]:
-    """(group, field) to its place, in words, by the two layouts that tell all of them apart."""
-    found = {("the list of head codes", head.name): f"{head.value} of {head.group}" for head in table.heads}
+def table_faults(table: Table) -> list[str]:
+    """What keeps a table that came with a file from being used: names that mean two things, mad sizes."""
+    names, fields = [group.name for group in table.groups], list(table.common)
+    found = [f"two kinds of group are called {name}" for name in _double(names)]
+    for heads in ([one.name for one in table.heads], [one.value for one in table.heads]):
+        found += [f"two head codes are {one}" for one in _double(heads)]
+    found += [f"{one.name} is no head code of a group" for one in table.heads if not _is_head(one, names)]
+    if len(names) > MAX_KINDS:
+        found.append("it has too many kinds of group")
     for group in table.groups:
-        places = [lay_out(group, ratio).offset for ratio in (1, 2)]
-        for field in group.fields:
-            where = ", ".join(str(place[field.name]) for place in places)
-            found[f"group {group.name}", field.name] = f"{_kind(field)} {where}"
+        fields += group.fields
+        found += [f"group {group.name} has two {name}" for name in _double([f.name for f in group.fields])]
+        if lay_out(group, max(RATIOS)).size > MAX_WORDS:
+            found.append(f"group {group.name} is too large")
+        first = (group.fields[0].role, in_words(group.fields[0])) if group.fields else ()
+        if any(one.group == group.name for one in table.heads) and first != ("head", "int"):
+            found.append(f"group {group.name} does not begin with its head code")
+    for field in fields:
+        if field.count > MAX_WORDS:
+            found.append(f"there are too many of {field.name}")
+        if field.target is not None and (field.real or field.target not in (*names, *SEVERAL)):
+            found.append(f"{field.name} points to {field.target}, which is no kind of group")
     return found
 
 
-def _kind(field: Field) -> str:
-    return field.type + (f"*{field.count}" if field.count > 1 else "")
+def _is_head(head: HeadCode, kinds: list[str]) -> bool:
+    return head.group in kinds and head.value < MAX_HEAD
+
+
+def _double(names: list[Any]) -> list[Any]:
+    """Those that are there more than once."""
+    return [name for name, times in Counter(names).items() if times > 1]

@@ -2,6 +2,7 @@
 
 Nothing in the file is believed before it is tested: seal, format, completeness, field table, word
 widths, types and shapes, checksums, bounds, and at last the lists and pointers of the heap itself.
+A file that was written with another field table is read by the names of that table (inspect/translate.py).
 """
 
 from __future__ import annotations
@@ -12,59 +13,100 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.meaning import news
+from udec_ia.inspect.translate import TranslationError, Words, translate
+from udec_ia.inspect.walk import Unsound, groups
+from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, TableError, parse, read_table
+from udec_ia.ops.commands.recordable import HISTORY, by_codes
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.ops.run.watch import Series
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
-from udec_ia.restart.layout import differences, losses
+from udec_ia.restart.layout import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.recorded import recall
-from udec_ia.restart.refusal import OTHER_FILE, RefusedError, refusing
+from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
-SHOWN = 3  # differences or violations that a refusal lists
-MAX_FAULT = 200  # characters of one of them
-MAX_TABLE = 2**20  # bytes of another field table, which is read like a program
+FORCE = "udec check FILE lists all that is wrong; RESTART FILE FORCE takes it, to be looked at and mended"
+MAX_TABLE = 2**18  # bytes of another field table, which is read like a program
+
+
+class Seen(NamedTuple):
+    """The array in a restart file, and what is to be said of it.
+
+    news: in phrases, what its field table says in another way than that of this program; [] if nothing.
+    mark: what SAVE ... FORCE has found wrong with the state; [] if nothing.
+    """
+
+    array: MainArray
+    news: list[str]
+    mark: list[str]
+
+    @property
+    def said(self) -> list[str]:
+        """The same in sentences, safe to print."""
+        news = [printable(one, MAX_FAULT) for one in self.news]
+        return [
+            *(["read with another field table: " + ", ".join(news)] if news else []),
+            *([f"saved by force, being unsound: {shorten(self.mark)}"] if self.mark else []),
+        ]
 
 
 class Restored(NamedTuple):
     """What a restart file holds.
 
     deck: the command lines that led to the state. laws: file and SHA-256 of each constitutive law of the
-    user's that it was calculated with.
+    user's that it was calculated with. said: sentences on how it was read. unsound: what is wrong with its
+    links and codes, which must not be followed then.
     """
 
     array: MainArray
     deck: list[str]
     laws: dict[str, tuple[str, str]]
     series: list[Series]
+    said: list[str]
+    unsound: list[str]
 
 
-def load(path: str | Path) -> Restored:
+def load(path: str | Path, force: bool = False) -> Restored:
     """The state in the restart file `path`, in the file's own word scheme.
 
-    Raises UdecError 29, and nothing else, if the file is not exactly what `save` wrote or its heap is
-    unsound.
+    Raises UdecError 29, and nothing else, if the file is not exactly what `save` wrote or, unless taken by
+    `force`, its heap is unsound or it is marked as that.
     """
     path = Path(path)
-    with refusing(path), opened(path) as file:
-        array = _read_state(file)
-        _check_heap(array)
-        return Restored(array, read_deck(file), read_laws(file), recall(file, array))
+    with refusing(path):
+        with opened(path) as file:
+            seen = read_state(file, read_front(file))
+            series = recall(file, seen.array) if _histories_known(seen.array) else []
+            deck, laws = read_deck(file), read_laws(file)
+        faults = _faults(seen.array)  # takes memory, and that of the file is given back by now
+        if not force:
+            _refuse_unsound(seen.mark, faults)
+        return Restored(seen.array, deck, laws, series, seen.said, faults)
 
 
-def look_into(path: str | Path) -> MainArray:
+def see(path: str | Path) -> Seen:
     """The array in the restart file `path`, in whatever state its heap is: to look at, not to go on with.
 
     Raises UdecError 29 if the file is not what `save` wrote.
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        return _read_state(file)
+        return read_state(file, read_front(file))
+
+
+def look_into(path: str | Path) -> MainArray:
+    """The array in the restart file `path` alone, as `see` has it."""
+    return see(path).array
 
 
 @contextmanager
@@ -114,23 +156,20 @@ def read_their_table(file: Contents) -> Table:
     if len(written) > MAX_TABLE:
         raise RefusedError(f"has a field table of {len(written)} bytes")
     try:
-        return parse(written.decode())
+        table = parse(written.decode())
     except (TableError, UnicodeDecodeError) as error:
         raise _other_table(file, [f"it cannot be read here: {error}"]) from error
+    if faults := table_faults(table):
+        raise _other_table(file, faults)
+    return table
 
 
 def _other_table(file: Contents, faults: list[str]) -> RefusedError:
     version = file.attribute("provenance", "udec_ia").decode("utf-8", "backslashreplace")
     return RefusedError(
-        f"was written with another field table: {shorten(faults)}",
+        OTHER_TABLE + shorten(faults),
         f"read it with the version that wrote it, udec_ia {printable(version)}",
     )
-
-
-def shorten(faults: list[str]) -> str:
-    """The first few of `faults`, and how many there are."""
-    more = [f"and {len(faults) - SHOWN} more"] if len(faults) > SHOWN else []
-    return "; ".join([printable(fault, MAX_FAULT) for fault in faults[:SHOWN]] + more)
 
 
 def read_scheme(file: Contents) -> Scheme:
@@ -161,34 +200,82 @@ def _check_sum(file: Contents, place: str, content: Any) -> None:
         raise RefusedError(f"is damaged: the checksum of /{place} is wrong")
 
 
-def _read_state(file: Contents) -> MainArray:
-    scheme, ours, theirs = read_scheme(file), read_table(), read_their_table(file)
-    values = read_common(file, scheme, theirs)
-    faults = differences(ours, theirs) + losses(ours, theirs, values)
-    if faults:
-        raise _other_table(file, faults)
-    mfree, mtop = (int(values.get(name, 0)) for name in ("MFREE", "MTOP"))
+def read_front(file: Contents) -> Words:
+    """The state in the file but for the words of IA(), in the words and by the table of the file."""
+    scheme, table = read_scheme(file), read_their_table(file)
+    return Words(table, scheme, (), read_common(file, scheme, table))
+
+
+def read_state(file: Contents, front: Words) -> Seen:
+    """The array of the file, whose `front` was read before."""
+    scheme, ours, theirs = front.scheme, read_table(), front.table
+    mfree, mtop = front.integer("MFREE"), front.integer("MTOP")
     if not (1 <= mfree <= mtop + 1 and mtop <= scheme.top_address and mtop % scheme.ratio == 0):
         raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} cannot be in {scheme.name}")
-    words = file.words("heap/IA", scheme.int_type.newbyteorder("<"), mfree - 1)
-    _check_sum(file, "heap/IA", words)
+    file.has_words("heap/IA", mfree - 1, scheme.int_type.itemsize)
+    if theirs is ours:
+        array = _array(front)
+        _read_words(file, scheme, array.h.ia[: mfree - 1])
+    else:
+        words = np.empty(mfree - 1, scheme.int_type)
+        _read_words(file, scheme, words)
+        try:
+            state = translate(front._replace(ia=words), ours, scheme)
+        except TranslationError as error:
+            raise _other_table(file, error.faults) from error
+        array = _array(state)
+        array.h.ia[: len(state.ia)] = state.ia
+    array.fixed = bool(file.attribute_numbers("heap/IA", "mtop_fixed", "i1"))
+    return Seen(array, [] if theirs is ours else news(theirs, ours), read_mark(file))
+
+
+def _read_words(file: Contents, scheme: Scheme, into: Any) -> None:
+    """Fill `into` with the words of IA()."""
+    kind = scheme.int_type.newbyteorder("<")
+    file.words("heap/IA", kind, into)
+    _check_sum(file, "heap/IA", into.astype(kind, copy=False))
+
+
+def _array(state: Words) -> MainArray:
+    """An array of the size of `state` with its common block; IA() is yet to be filled."""
+    mtop = state.integer("MTOP")
     try:
-        array = MainArray(scheme, max(mtop, 1))
+        array = MainArray(state.scheme, max(mtop, 1))
     except (MemoryError, ValueError) as error:  # NumPy raises the latter beyond 2**63 bytes
         raise RefusedError(f"asks for {mtop} words, more memory than there is") from error
-    array.fixed = bool(file.attribute_numbers("heap/IA", "mtop_fixed", "i1"))
-    array.h.ia[: mfree - 1] = words
-    for field in ours.common:
-        variable(array.h, field)[:] = values.get(field.name, 0)
+    for field in state.table.common:
+        variable(array.h, field)[:] = state.common[field.name]
     return array
 
 
-def _check_heap(array: MainArray) -> None:
-    """Refuse a heap whose links are broken or whose codes, such as materials or the pass, do not exist.
+def _faults(array: MainArray) -> list[str]:
+    """What is wrong with the links of a heap, or with codes such as materials or the pass.
 
-    Compiled routines follow these without a further test. Forces and overlaps that have run away are
-    taken: such a state is there to be looked at.
+    Compiled routines follow these without a further test. Forces and overlaps that have run away are no
+    faults here: such a state is there to be looked at.
     """
-    faults = [violation.message for violation in check_links(array) or check_common(array)]
+    return [violation.message for violation in check_links(array) or check_common(array)]
+
+
+def _refuse_unsound(mark: list[str], faults: list[str]) -> None:
+    """Refuse a file that is marked as unsound, or whose heap is."""
+    if mark:
+        raise RefusedError(f"was saved by force, being unsound: {shorten(mark)}", FORCE)
     if faults:
-        raise RefusedError(f"holds an unsound heap: {shorten(faults)}")
+        raise RefusedError(f"holds an unsound heap: {shorten(faults)}", FORCE)
+
+
+def read_mark(file: Contents) -> list[str]:
+    """What SAVE ... FORCE has found wrong with the state that it wrote; [] for a sound one."""
+    if not file.has_attribute("", MARK):
+        return []
+    return file.attribute("", MARK).decode("utf-8", "backslashreplace").splitlines()
+
+
+def _histories_known(array: MainArray) -> bool:
+    """True if the histories of an unsound heap can be read."""
+    h = array.h
+    try:
+        return all((iget(h, ih, g.KHK), iget(h, ih, g.KHF)) in by_codes() for ih in groups(h, HISTORY))
+    except Unsound:
+        return False

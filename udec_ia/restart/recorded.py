@@ -56,6 +56,8 @@ def recall(file: Contents, array: MainArray) -> list[Series]:
 def _recall(file: Contents, number: int, definition: Definition) -> Series:
     where = f"{RECORDED}/{number}"
     series = Series(number, definition)
+    if not (file.has(RECORDED) and file.has(where)):  # of a state that was saved by force
+        return series
     columns = [file.numbers(f"{where}/{name}", kind, None) for name, kind in TYPES.items()]
     cycles = columns[0]
     if len({len(one) for one in columns}) > 1 or (np.diff(cycles, prepend=-1) <= 0).any():
@@ -66,6 +68,8 @@ def _recall(file: Contents, number: int, definition: Definition) -> Series:
     known = not group or (kind == definition.what.group and ADDRESS.fullmatch(address))
     if not (known and PLACE.fullmatch(place)):
         raise RefusedError(f"is damaged: /{where} does not say of what it is the history")
-    series.group, series.place = group, place
+    series.place = place
+    if not definition.address:  # else it is known where the group is now
+        series.group = group
     series.lost = bool(file.attribute_numbers(where, "lost", "i1"))
     return series

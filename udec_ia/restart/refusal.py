@@ -13,6 +13,7 @@ from pathlib import Path
 from udec_ia.errors import UdecError
 
 OTHER_FILE = "RESTART reads files written by SAVE: give the name of one"
+OTHER_TABLE = "was written with another field table: "
 OLDER_FILE = "use another restart file, or run the deck again from START"
 
 

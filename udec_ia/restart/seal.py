@@ -15,7 +15,7 @@ from udec_ia.restart.refusal import OTHER_FILE, RefusedError
 
 SIZE = 512  # the smallest user block that HDF5 allows
 MAGIC = b"udec_ia restart file\n"
-VERSION = (1, 1)  # a reader of major version n reads every minor version of n
+VERSION = (1, 2)  # a reader of major version n reads every minor version of n
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 TEXT = """\
 format {major}.{minor}

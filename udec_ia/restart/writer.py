@@ -24,7 +24,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import CHUNK
-from udec_ia.restart.layout import common_places, field_rows, text
+from udec_ia.restart.layout import MARK, MARKED, common_places, field_rows, shorten, text
 from udec_ia.restart.recorded import RECORDED, store
 from udec_ia.restart.refusal import RefusedError
 from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
@@ -42,17 +42,18 @@ def save(
     deck: Sequence[str] = (),
     laws: Mapping[str, tuple[str, str]] = NO_LAWS,
     series: Sequence[Series] = (),
+    unsound: Sequence[str] = (),
 ) -> Path:
     """Write `array`, the command lines that led to it and what was recorded to the restart file `path`.
 
-
     laws: file and SHA-256 of each constitutive law of the user's that the state was calculated with.
+    unsound: what is wrong with the state, if anything is known to be: the file is marked with that.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
     checksum of the seal. Raises UdecError 31 if the file cannot be written, or if something stands there that
     is no restart file; that is then untouched.
     """
     path = Path(path)
-    put_in_place(path, _image(array, deck, laws, series), _judge)
+    put_in_place(path, _image(array, deck, laws, series, unsound), _judge)
     return path
 
 
@@ -70,6 +71,7 @@ def _image(
     deck: Sequence[str],
     laws: Mapping[str, tuple[str, str]],
     series: Sequence[Series],
+    unsound: Sequence[str],
 ) -> bytes:
     """The bytes of the whole file: no view of the buffer, which could not be closed before the view is."""
     table = read_table()
@@ -78,6 +80,8 @@ def _image(
         file.attrs["format"] = text("udec_ia restart")
         file.attrs["format_version"] = np.array(VERSION, "<i4")
         file.attrs["byte_order"] = text("little-endian")
+        if unsound:
+            file.attrs[MARK] = text(shorten(unsound, MARKED, "\n"))
         _write_heap(file, array)
         _write_common(file, array, table)
         _write_layout(file, table, array.scheme.ratio)

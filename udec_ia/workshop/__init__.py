@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.workshop import debug, look
+from udec_ia.workshop import check, debug, look
 
-PARTS = (look, debug)
+PARTS = (check, look, debug)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 
 

@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, iget
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.census import CHOICES, census
+from udec_ia.heap.accessors import Memory
+from udec_ia.inspect.census import CHOICES, census, junk_chains
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 
@@ -71,20 +70,7 @@ class Atlas:
     @cached_property
     def chains(self) -> list[list[tuple[int, int]]]:
         """The junk list: for each size the groups of its chain (address, words), as far as it makes sense."""
-        h, found, seen = self.h, [], set()
-        sizes = int(h.ci[g.JUNK])
-        while 1 <= sizes < self.free - JSIZES[0] and sizes not in seen:
-            size, following, chain = iget(h, sizes, JSIZE), iget(h, sizes, JSIZES), []
-            iad = sizes
-            while size > 0 and 1 <= iad <= self.free - size and iad not in seen:
-                seen.add(iad)
-                chain.append((iad, size))
-                iad = iget(h, iad, JNEXT)
-            if not chain:
-                break
-            found.append(chain)
-            sizes = following
-        return found
+        return junk_chains(self.h.ia[: self.free - 1], int(self.h.ci[g.JUNK]))
 
     @cached_property
     def _spans(self) -> tuple[Any, Any, Any]:

@@ -1,0 +1,175 @@
+"""What the words of one field table mean by another one: fields, codes and recorded numbers go by names.
+
+`theirs` is the table that a state was written by, `ours` the one that it is to be read by.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+from udec_ia.layout.table import Field, Table, lay_out, read_table
+
+SAME_CODES = {"KUFIX": "KGFIX"}  # so the text of the field says
+HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
+UNGROUPED = {code.name: code.value for code in read_table().codes if code.field == KIND}
+SHOWN = 4  # names that a sentence lists
+
+
+class UnknownError(ValueError):
+    """A word means nothing by the other table; the message is a phrase that follows what it is."""
+
+
+def same_words(theirs: Table, ours: Table, counted: bool) -> bool:
+    """True if every word of IA() means by `ours` what it means by `theirs`.
+
+    counted: there are histories, which know a variable of the common block by its number.
+    """
+    known = {(code.field, code.name): code.value for code in ours.codes}
+    return (
+        [(group.name, [_word(field) for field in group.fields]) for group in theirs.groups]
+        == [(group.name, [_word(field) for field in group.fields]) for group in ours.groups]
+        and {(head.name, head.value, head.group) for head in theirs.heads}
+        == {(head.name, head.value, head.group) for head in ours.heads}
+        and not (known and any(known.get((one.field, one.name)) != one.value for one in theirs.codes))
+        and not (counted and [one.name for one in theirs.common] != [one.name for one in ours.common])
+    )
+
+
+def _word(field: Field) -> tuple[Any, ...]:
+    return field.name, field.type, field.count, field.target is None
+
+
+def in_words(field: Field) -> str:
+    """What a field holds: a pointer, an int*3, a real."""
+    kind = "pointer" if field.target else field.type
+    return kind + (f"*{field.count}" if field.count > 1 else "")
+
+
+def is_alike(old: Field, new: Field) -> bool:
+    """True if what stands in `old` may stand in `new`, being of the same kind. A real may be a double."""
+    if old.type == "real" and new.type == "double":
+        return True
+    return old.type == new.type and (old.target is None) == (new.target is None)
+
+
+def may_be_0(field: Field) -> bool:
+    """True if the field may hold 0."""
+    return not field.allowed or any(low <= 0 <= (0 if high is None else high) for low, high in field.allowed)
+
+
+def news(theirs: Table, ours: Table) -> list[str]:
+    """What of a state had to be told in another way, in phrases: fields that are new, that have gone, ..."""
+    mine, other = _all_fields(ours), _all_fields(theirs)
+    kinds, known_kinds = ([group.name for group in table.groups] for table in (theirs, ours))
+    gone = [name for name, at in other.items() if name not in mine and at[0] in ("", *known_kinds)]
+    known, named = _all_codes(ours), _all_codes(theirs)
+    told = {
+        "field {} new and 0": [n for n, at in mine.items() if n not in other and at[0] in ("", *kinds)],
+        "field {} not known here, and 0": gone,
+        "field {} elsewhere in the group": [n for n, at in mine.items() if other.get(n, at) != at],
+        "kind of group {} new": [kind for kind in known_kinds if kind not in kinds],
+        "kind of group {} not known here, and empty": [kind for kind in kinds if kind not in known_kinds],
+        "code {} under another number": [
+            name for name, value in named.items() if known.get(name, value) != value
+        ],
+    }
+    return [_counted(names, what) for what, names in told.items() if names]
+
+
+def _all_codes(table: Table) -> dict[str, int]:
+    """Head codes and codes of fields by their names."""
+    return {one.name: one.value for one in table.heads} | {one.name: one.value for one in table.codes}
+
+
+def _all_fields(table: Table) -> dict[str, tuple[Any, ...]]:
+    """Each field by its name, with its kind of group, and where it stands for the ratios 1 and 2."""
+    found: dict[str, tuple[Any, ...]] = {field.name: ("", ()) for field in table.common}
+    for group in table.groups:
+        layouts = [lay_out(group, ratio).offset for ratio in (1, 2)]
+        for field in group.fields:
+            name = f"{field.name} of {group.name}"
+            found[name] = group.name, [layout[field.name] for layout in layouts]
+    return found
+
+
+def _counted(names: list[str], what: str) -> str:
+    """2 fields are new and 0 (KNEW of block, LNEW)."""
+    noun, verb = what.split(" {} ")
+    few = ", ".join(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
+    first, *rest = noun.split()
+    noun = " ".join([first if len(names) == 1 else f"{first}s", *rest])
+    return f"{len(names)} {noun} {'is' if len(names) == 1 else 'are'} {verb} ({few})"
+
+
+class Meaning:
+    """Translates codes, head codes and what histories record."""
+
+    def __init__(self, theirs: Table, ours: Table) -> None:
+        self.theirs, self.ours = theirs, ours
+
+    def names(self, field: Field, kind: str, old: bool) -> dict[int, str]:
+        """What the codes of a field of groups of `kind` are called, by the `old` table or by the new one."""
+        table = self.theirs if old else self.ours
+        if field.role == "head" and field.target is None:
+            return {head.value: head.name for head in table.heads if head.group == kind}
+        known = {code.value: code.name for code in table.codes if code.field == field.name}
+        same = SAME_CODES.get(field.name)
+        return known or {code.value: code.name for code in table.codes if code.field == same}
+
+    def codes(self, old: Field, new: Field, kind: str, values: list[int]) -> dict[int, int]:
+        """The new number of each of `values` of a field, {} if none has another.
+
+        UnknownError if one has none.
+        A number without a name is a sum of flags, or 0. A field without names of codes has none to lose.
+        """
+        here = {name: value for value, name in self.names(new, kind, old=False).items()}
+        there = self.names(old, kind, old=True)
+        if not here or not there or all(here.get(name) == value for value, name in there.items()):
+            return {}
+        return {value: _renumbered(value, there, here) for value in values}
+
+    @cached_property
+    def _numbers(self) -> dict[tuple[int, int], tuple[int, int]]:
+        """(KHK, KHF) by the new table, for each by the old one."""
+        here = {
+            (group.name, field.name): (kind, number)
+            for kind, group in enumerate(self.ours.groups, 1)
+            for number, field in enumerate(group.fields)
+        }
+        here |= {("", field.name): (UNGROUPED["COMMON_BLOCK"], n) for n, field in enumerate(self.ours.common)}
+        return {number: here[name] for number, name in self._recordable.items() if name in here}
+
+    @cached_property
+    def _recordable(self) -> dict[tuple[int, int], tuple[str, str]]:
+        """Kind of group and name of the field for each (KHK, KHF) by the old table."""
+        found = {
+            (kind, number): (group.name, field.name)
+            for kind, group in enumerate(self.theirs.groups, 1)
+            for number, field in enumerate(group.fields)
+        }
+        return found | {
+            (UNGROUPED["COMMON_BLOCK"], n): ("", one.name) for n, one in enumerate(self.theirs.common)
+        }
+
+    def recorded(self, kind: int, number: int) -> tuple[int, int]:
+        """KHK and KHF of a history by the new table. UnknownError if there is no such number any more."""
+        if kind == UNGROUPED["WHOLE_MODEL"]:
+            return kind, number
+        if (kind, number) in self._numbers:
+            return self._numbers[kind, number]
+        group, name = self._recordable.get((kind, number), ("", ""))
+        what = f"{name} of {group or 'the common block'}" if name else "nothing that there is"
+        raise UnknownError(f"records {what}" + (", which is not known here" if name else ""))
+
+
+def _renumbered(value: int, there: dict[int, str], here: dict[str, int]) -> int:
+    """The new number of one code, of the sum of several flags, or of 0."""
+    if value in there:
+        if there[value] not in here:
+            raise UnknownError(f"is {value}, {there[value]} in the file, which is not known here")
+        return here[there[value]]
+    flags = [code for code in there if code > 0 and code & (code - 1) == 0 and code & value]
+    if sum(flags) != value or any(there[code] not in here for code in flags):
+        raise UnknownError(f"is {value}, which is no code in the file")
+    return sum(here[there[code]] for code in flags)
