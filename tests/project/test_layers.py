@@ -10,7 +10,7 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "udec_ia"
 FOLDERS = {  # of a layer, each of which imports from those before it and from files beside them only
-    "inspect": ("check", "look"),
+    "inspect": ("check", "look", "change"),
     "kernels": ("links", "geometry", "map", "body", "detect", "energy", "contact", "split", "drive"),
     "ops": ("common", "laws", "mesh", "commands", "run"),
 }
@@ -22,7 +22,7 @@ BELOW = {  # layers that a layer imports
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
-    "workshop": {"errors", "heap", "inspect", "layout", "restart"},
+    "workshop": {"errors", "heap", "inspect", "layout", "printable", "restart"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

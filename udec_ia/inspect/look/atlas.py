@@ -56,6 +56,29 @@ class Word(NamedTuple):
         return self.field.name + (f"({self.element + 1})" if self.field.count > 1 else "")
 
 
+def junk_chains(h: Memory) -> list[list[tuple[int, int]]]:
+    """The junk list: for each size the groups of its chain (address, words), as far as it makes sense."""
+    free, found, seen = first_free(h), [], set()
+    sizes = int(h.ci[g.JUNK])
+    while 1 <= sizes < free - JSIZES[0] and sizes not in seen:
+        size, following, chain = iget(h, sizes, JSIZE), iget(h, sizes, JSIZES), []
+        iad = sizes
+        while size > 0 and 1 <= iad <= free - size and iad not in seen:
+            seen.add(iad)
+            chain.append((iad, size))
+            iad = iget(h, iad, JNEXT)
+        if not chain:
+            break
+        found.append(chain)
+        sizes = following
+    return found
+
+
+def first_free(h: Memory) -> int:
+    """The first unused address, as far as it can be believed."""
+    return max(min(int(h.ci[g.MFREE]), len(h.ia) + 1), 1)
+
+
 class Atlas:
     """The words of one memory. groups: addresses of the groups of every kind, ascending."""
 
@@ -63,28 +86,15 @@ class Atlas:
         self.h = h
         self.ratio = int(h.ra.itemsize // h.ia.itemsize)
         self.layout = layouts(self.ratio)
-        self.free = max(min(int(self.h.ci[g.MFREE]), len(self.h.ia) + 1), 1)
+        self.free = first_free(h)
         self.groups: dict[str, Any] = census(self.h)
 
     # ---- spans
 
     @cached_property
     def chains(self) -> list[list[tuple[int, int]]]:
-        """The junk list: for each size the groups of its chain (address, words), as far as it makes sense."""
-        h, found, seen = self.h, [], set()
-        sizes = int(h.ci[g.JUNK])
-        while 1 <= sizes < self.free - JSIZES[0] and sizes not in seen:
-            size, following, chain = iget(h, sizes, JSIZE), iget(h, sizes, JSIZES), []
-            iad = sizes
-            while size > 0 and 1 <= iad <= self.free - size and iad not in seen:
-                seen.add(iad)
-                chain.append((iad, size))
-                iad = iget(h, iad, JNEXT)
-            if not chain:
-                break
-            found.append(chain)
-            sizes = following
-        return found
+        """The junk list, as `junk_chains` gives it."""
+        return junk_chains(self.h)
 
     @cached_property
     def _spans(self) -> tuple[Any, Any, Any]:
