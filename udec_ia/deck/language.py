@@ -67,7 +67,7 @@ class Command:
     numbers: names of the numbers that must be given. optional: of those that may be left off.
     words: its keywords. first: the argument that its first word must set, and the error if it does not.
     list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
-    it stands, to the end of the line. opens: may come before START.
+    it stands, to the end of the line; needs_text: it must be given. opens: may come before START.
     ours: what of the command is not in Appendix I-1.
     """
 
@@ -81,6 +81,7 @@ class Command:
     first_error: int = 10
     list: str = ""
     text: str = ""
+    needs_text: bool = False
     opens: bool = False
     ours: str = ""
 
@@ -106,7 +107,7 @@ class Command:
                 choice = " | ".join(forms) if len(forms) < MANY else argument
                 parts.append(choice if argument == self.first else f"[{choice}]")
         parts += [f"{self.list} ..."] if self.list else []
-        parts += [f"[{self.text}]"] if self.text else []
+        parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
         return " ".join(part for part in parts if part)
 
 
@@ -278,6 +279,16 @@ COMMANDS = (
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
+        ours="the command",
+    ),
+    Command(
+        "PAtch",
+        "Give words of the main array other values by name: the field of a group, a variable of the common "
+        "block, or an integer word by its address; several with commas between them. All or none: the state "
+        "is proved sound with them first.",
+        "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
+        text="assignments",
+        needs_text=True,
         ours="the command",
     ),
     Command(

@@ -150,6 +150,8 @@ class _Parser:
         place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
+        if self.command.needs_text and not place.text:
+            raise at(UdecError(7, self.command.text, self._advice()), self._gap())
         if place.text:
             self.call.named[self.command.text] = place.text.strip("\"'")
             self.call.places[self.command.text] = place
