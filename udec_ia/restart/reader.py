@@ -52,7 +52,7 @@ def load(path: str | Path) -> Restored:
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        array = _read_state(file)
+        array = read_state(file)
         _check_heap(array)
         return Restored(array, read_deck(file), read_laws(file), recall(file, array))
 
@@ -64,7 +64,7 @@ def look_into(path: str | Path) -> MainArray:
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        return _read_state(file)
+        return read_state(file)
 
 
 @contextmanager
@@ -161,7 +161,8 @@ def _check_sum(file: Contents, place: str, content: Any) -> None:
         raise RefusedError(f"is damaged: the checksum of /{place} is wrong")
 
 
-def _read_state(file: Contents) -> MainArray:
+def read_state(file: Contents) -> MainArray:
+    """The array, in whatever state its heap is."""
     scheme, ours, theirs = read_scheme(file), read_table(), read_their_table(file)
     values = read_common(file, scheme, theirs)
     faults = differences(ours, theirs) + losses(ours, theirs, values)
