@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scenes
+import soft_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from kinds import every_kind
@@ -301,6 +303,27 @@ def test_coordinates_too_coarse_for_the_rounding_are_told() -> None:
     m.round(0.05)
     made = convert(m.array, scheme("i32r32"))
     assert "the rounding length is 0.05, and 32-bit reals resolve 0.0119" in str(made.broken[-1])
+
+
+@pytest.mark.parametrize("seed", [3, 8, 17, 32])
+@pytest.mark.parametrize("play", [scenes.play, soft_scenes.play], ids=["rigid", "all types"])
+def test_random_scenes_in_reals_of_the_other_width(play: Any, seed: int) -> None:
+    """Sound at once and twenty cycles later; narrow ones, unless they are too coarse for the rounding."""
+    for name, other in (("i32r32", "i32r64"), ("i32r64", "i32r32")):
+        m = Model(name)
+        m.tell = lambda _: None
+        scene = play(seed, m, cycles=(5, 20))
+        made = convert(scene.model.array, scheme(other))
+        if made.broken and other == "i32r32":
+            assert all("which asks for" in str(one) for one in made.broken)
+            continue
+        assert made.broken == []
+        there = Model(other)
+        there.start()
+        there.tell, there.array = m.tell, made.array
+        if not scene.ended:
+            there.cycle(20)
+            assert prove(there.array) == []
 
 
 def test_between_two_passes_contacts_are_left_alone() -> None:
