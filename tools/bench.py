@@ -1,7 +1,8 @@
 """How fast the program is, measured: cycles against a structure of arrays, SPLIT, and the ball.
 
     python tools/bench.py                                     everything
-    python tools/bench.py cycle --blocks 1000 10000 100000    one of: cycle, zones, split, proof, laws, ball
+    python tools/bench.py cycle --blocks 1000 10000 100000    one of: cycle, zones, split, proof, change,
+                                                              laws, ball
 
 Times are processor time, so that other work on the machine disturbs them little; only the ball is timed
 by the clock on the wall. Program and yardstick take turns, and the ratio is the median over the turns.
@@ -15,6 +16,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter, process_time
 
@@ -25,11 +27,15 @@ from soa import EVENTS, Slab, extract, run_soa
 
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.words import scheme
+from udec_ia.inspect.change import convert, renumber
 from udec_ia.inspect.table import table
 from udec_ia.kernels.body.law_call import MATERIAL_SIZE, _jump
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.ops.run.watch import run_unwatched
+from udec_ia.restart import load_to_change, save_changed
 
 ROOT = Path(__file__).parent.parent
 TURNS = 15
@@ -263,6 +269,37 @@ def bench_proof(sizes: list[int]) -> None:
         print(f"| {n} | {violations or line} |", flush=True)
 
 
+def bench_change(sizes: list[int]) -> None:
+    """Reading a slab, making another state of it and writing that, as the commands of the workshop do.
+
+    Target: 100,000 blocks in 3 s; where reals change their width the new state is proved as well.
+    """
+    print("| blocks | change | read, s | changed, s | written, s | together |\n|---|---|---|---|---|---|")
+    changes: dict[str, Callable[[MainArray], MainArray]] = {
+        "convert to i64r64": lambda array: convert(array, scheme("i64r64")).array,
+        "convert to i32r32": lambda array: convert(array, scheme("i32r32")).array,
+        "renumber": lambda array: (renumber(array), array)[1],
+    }
+    for blocks in sizes:
+        model = slab(blocks)
+        model.cycle(SETTLE)
+        with tempfile.TemporaryDirectory() as folder:
+            file, to = model.save(Path(folder) / "slab.h5"), Path(folder) / "to.h5"
+            for name, change in changes.items():
+                times = []
+                for _ in range(PROOFS):
+                    clock = [process_time()]
+                    state = load_to_change(file)
+                    clock.append(process_time())
+                    array = change(state.array)
+                    clock.append(process_time())
+                    save_changed(state, array, to, f"* {name}")
+                    times.append(np.diff([*clock, process_time()]))
+                read, changed, written = np.median(times, axis=0)
+                line = f"{name} | {read:.2f} | {changed:.2f} | {written:.2f} | {read + changed + written:.2f}"
+                print(f"| {int(model.h.ci[NBLK])} | {line} |", flush=True)
+
+
 LAWS = {  # bodies of joint laws that look something up in a table of 100 numbers
     "interpolates": "x = abs(us); k = int(x); return (T[k] + (x - k) * (T[k + 1] - T[k])) * dun, m.ks * dus",
     "sums 100 up": "return sum([T[I[k]] for k in range(100)]) * dun, m.ks * dus",
@@ -317,14 +354,16 @@ def main() -> None:
     """Run what the command line asks for."""
     parser = argparse.ArgumentParser(description="Measure the speed of cycles, of SPLIT and of the ball.")
     parser.add_argument(
-        "what", nargs="*", help="any of: cycle, zones, split, proof, laws, ball; all of them if left off"
+        "what",
+        nargs="*",
+        help="any of: cycle, zones, split, proof, change, laws, ball; all of them if left off",
     )
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--cut", type=int, nargs="+", default=[30_000, 300_000])
     parser.add_argument("--skew", type=float, default=0.0, help="lean of the second joint set, dx to dy")
     args = parser.parse_args()
-    what = args.what or ["cycle", "zones", "split", "proof", "laws", "ball"]
+    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "ball"]
     if "cycle" in what:
         bench_cycles(args.blocks, args.skew)
     if "zones" in what:
@@ -333,6 +372,8 @@ def main() -> None:
         bench_split(args.cut)
     if "proof" in what:
         bench_proof(args.blocks)
+    if "change" in what:
+        bench_change(args.blocks)
     if "laws" in what:
         bench_laws()
     if "ball" in what:

@@ -29,6 +29,7 @@ from udec_ia.heap.interpreting import mode
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.inspect.arrange import arrange
+from udec_ia.inspect.change import patch
 from udec_ia.inspect.check import check, check_shapes, unjudged
 from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.table import table
@@ -494,6 +495,17 @@ class Model(Session):
         settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
         self._touched = True
+
+    @command
+    def patch(self, assignments: str) -> None:
+        """PATCH: give words of the array other values by name, as in "block@88.KXD = 0.5, FRAC = 0.1".
+
+        All of them, and only if the state is sound with them (inspect.change.patch): else error 10, 28 or 30.
+        """
+        self._ready(sound=False)
+        patch(self.array, assignments)
+        self._boxes.forget()
+        self._touched = self._unproved = False
 
     # ---- numbers
 

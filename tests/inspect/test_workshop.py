@@ -9,6 +9,7 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.cli import main
+from udec_ia.workshop import VERBS
 
 PAGE = Path(__file__).parents[2] / "docs" / "workshop.md"
 TEXT = PAGE.read_text()
@@ -27,7 +28,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_there_is_something_shown() -> None:
-    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk", "check"}
+    assert {command.split()[0] for command, _ in SHOWN} == {*VERBS}
 
 
 def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

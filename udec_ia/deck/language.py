@@ -67,7 +67,8 @@ class Command:
     numbers: names of the numbers that must be given. optional: of those that may be left off.
     words: its keywords. first: the argument that its first word must set, and the error if it does not.
     list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
-    it stands, to the end of the line or to the word that stands last in it. opens: may come before START.
+    it stands, to the end of the line or to the word that stands last in it; needs_text: it must be given.
+    opens: may come before START.
     ours: what of the command is not in Appendix I-1.
     """
 
@@ -81,6 +82,7 @@ class Command:
     first_error: int = 10
     list: str = ""
     text: str = ""
+    needs_text: bool = False
     opens: bool = False
     ours: str = ""
 
@@ -98,7 +100,7 @@ class Command:
     def form(self) -> str:
         """The command as the report prints it, brackets around what may be left off."""
         parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
-        parts += [f"[{self.text}]"] if self.text else []
+        parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
         for argument in dict.fromkeys(word.argument for word in self.words):
             forms = [word.form for word in self.words if word.argument == argument]
             if argument == SEVERAL:
@@ -279,6 +281,16 @@ COMMANDS = (
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
+        ours="the command",
+    ),
+    Command(
+        "PAtch",
+        "Give words of the main array other values by name: the field of a group, a variable of the common "
+        "block, or an integer word by its address; several with commas between them. All or none: the state "
+        "is proved sound with them first.",
+        "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
+        text="assignments",
+        needs_text=True,
         ours="the command",
     ),
     Command(

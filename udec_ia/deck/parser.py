@@ -152,6 +152,8 @@ class _Parser:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
         if last is not None:
             self.call.named[last.argument], self.call.places[last.argument] = True, self.tokens[-1]
+        if self.command.needs_text and not place.text:
+            raise at(UdecError(7, self.command.text, self._advice()), self._gap())
         if place.text:
             self.call.named[self.command.text] = place.text.strip("\"'")
             self.call.places[self.command.text] = place

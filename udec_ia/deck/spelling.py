@@ -33,6 +33,10 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
     if command is None:
         return []
     given = _signature(method).bind(None, *args, **named).arguments
+    if command.text:
+        return [
+            " ".join([command.keyword.upper(), *given[command.text].split()])
+        ]  # which no line may be cut in
     parts = [command.keyword.upper(), *_parts(command, _signature(method), given)]
     return textwrap.wrap(" ".join(parts), WIDTH, subsequent_indent=f"{CONTINUATION} ", **WHOLE_WORDS)
 

@@ -1,4 +1,4 @@
-"""The heap workshop on the command line: to look into a restart file, sound or not, word by word.
+"""The heap workshop on the command line: to look into a restart file word by word, and to change it.
 
 Each file here holds the commands of one kind. A command is one function of `udec_ia.inspect`, which works the
 same on a model that runs; --python prints how to call it, --json prints what programs can read.
@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.workshop import check, debug, look
+from udec_ia.workshop import change, check, debug, look
 
-PARTS = (check, look, debug)
+PARTS = (check, look, change, debug)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 
 

@@ -273,7 +273,7 @@ def check_outlines(state: State, o: Outlines) -> None:
         )
     _check_circles(state, o)
     centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
-    far = np.maximum.reduceat(np.hypot(*(o.p - centroid[o.owner]).T), o.first)
+    far = reaches(o, centroid)
     noted = state.column("block", "KBRO")[rows]
     for i in np.flatnonzero(np.abs(far - noted) > 2 * o.slack[o.first]):
         state.report(
@@ -281,16 +281,29 @@ def check_outlines(state: State, o: Outlines) -> None:
         )
 
 
-def _check_circles(state: State, o: Outlines) -> None:
-    """Centre and radius against D tan(theta/2); a flat corner and a point of an edge have no radius.
+def circles(o: Outlines) -> tuple[Numbers, Numbers]:
+    """Centre and radius of the circle that each corner's edges ask for: D tan(theta/2).
 
-    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
-    (1 + (R/D)^2)/2 times as much.
+    A flat corner and a point of an edge have none: radius 0, and the corner itself.
     """
     bent = (np.abs(np.sin(o.turn)) >= FLAT) & ~o.pointed
     radius = np.where(bent, o.d / np.tan(o.turn / 2), 0.0)
     reach = np.where(radius == 0, 0.0, o.d)
-    centre = o.p - reach[:, None] * o.t - radius[:, None] * o.e
+    return o.p - reach[:, None] * o.t - radius[:, None] * o.e, radius
+
+
+def reaches(o: Outlines, centroid: Numbers) -> Numbers:
+    """Distance of the farthest corner of each block from its centroid."""
+    return np.asarray(np.maximum.reduceat(np.hypot(*(o.p - centroid[o.owner]).T), o.first))
+
+
+def _check_circles(state: State, o: Outlines) -> None:
+    """Centre and radius against those that the edges ask for.
+
+    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
+    (1 + (R/D)^2)/2 times as much.
+    """
+    centre, radius = circles(o)
     slack = o.slack * (1 + (radius / o.d) ** 2)
     wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
     border = (np.abs(np.abs(np.sin(o.turn)) - FLAT) < o.slack / o.d) & ~o.pointed

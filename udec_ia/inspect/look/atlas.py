@@ -55,6 +55,16 @@ class Word(NamedTuple):
         return self.field.name + (f"({self.element + 1})" if self.field.count > 1 else "")
 
 
+def junk_list(h: Memory) -> list[list[tuple[int, int]]]:
+    """For each size the groups of its chain (address, words), as far as it makes sense."""
+    return junk_chains(h.ia[: first_free(h) - 1], int(h.ci[g.JUNK]))
+
+
+def first_free(h: Memory) -> int:
+    """The first unused address, as far as it can be believed."""
+    return max(min(int(h.ci[g.MFREE]), len(h.ia) + 1), 1)
+
+
 class Atlas:
     """The words of one memory. groups: addresses of the groups of every kind, ascending."""
 
@@ -62,15 +72,15 @@ class Atlas:
         self.h = h
         self.ratio = int(h.ra.itemsize // h.ia.itemsize)
         self.layout = layouts(self.ratio)
-        self.free = max(min(int(self.h.ci[g.MFREE]), len(self.h.ia) + 1), 1)
+        self.free = first_free(h)
         self.groups: dict[str, Any] = census(self.h)
 
     # ---- spans
 
     @cached_property
     def chains(self) -> list[list[tuple[int, int]]]:
-        """The junk list: for each size the groups of its chain (address, words), as far as it makes sense."""
-        return junk_chains(self.h.ia[: self.free - 1], int(self.h.ci[g.JUNK]))
+        """The junk list, as `junk_list` gives it."""
+        return junk_list(self.h)
 
     @cached_property
     def _spans(self) -> tuple[Any, Any, Any]:

@@ -1,0 +1,64 @@
+"""A sound state in the words of another scheme, ready to go on.
+
+Every number is written as it is (rewrite.py), and with reals of the same width that is all: the run goes on
+to the same last digit. In reals of another width circles, which follow from the corners, and overlaps, which
+follow from both, need not fit any more. The last digit of wider ones is finer than all that narrow ones could
+say, so these are found anew from the corners (settle.py); in narrower ones, if the checker asks for it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.words import Scheme
+from udec_ia.inspect.change.movable import junk_words
+from udec_ia.inspect.change.prove import prove, too_coarse
+from udec_ia.inspect.change.rewrite import Rewritten, rewrite
+from udec_ia.inspect.change.settle import settle
+from udec_ia.inspect.check import Violation
+from udec_ia.layout import offsets as g
+
+
+class Converted(NamedTuple):
+    """A state in other words. said: what has happened to it; broken: what the new reals have made unsound."""
+
+    array: MainArray
+    said: list[str]
+    broken: list[Violation]
+
+
+def convert(array: MainArray, to: Scheme) -> Converted:
+    """The state of `array`, which stays as it is, in the words of the scheme `to`.
+
+    Raises Unsound if there are groups that cannot be told apart, UdecError 1 if the addresses of `to` end
+    before the groups do, and 28 if its integers or reals cannot hold all numbers.
+    """
+    made = rewrite(array, to)
+    before, after = (int(one.h.ci[g.MFREE]) - 1 for one in (array, made.array))
+    junk = junk_words(array)
+    said = [f"{array.scheme.name} to {to.name}: {before} words with {junk} of junk are {after} words now"]
+    if to.real_bits == array.scheme.real_bits:
+        return Converted(made.array, said, [])
+    narrower = to.real_bits < array.scheme.real_bits
+    broken = prove(made.array) if narrower else []
+    if broken or not narrower:
+        change = settle(made.array)
+        said.append(
+            f"circles and contacts are found anew from the corners, and differ by up to {change:.2g} m"
+        )
+        broken = prove(made.array)
+    if narrower:
+        said.insert(1, _rounding(made))
+        broken += too_coarse(made.array)
+    return Converted(made.array, said, broken)
+
+
+def _rounding(made: Rewritten) -> str:
+    """What narrower reals have cost."""
+    if not made.rounded:
+        return f"none of {made.reals} reals has lost a digit"
+    worst = f"the largest relative change is {made.change:.2g}, in {made.where}" if made.where else ""
+    gone = f"{made.vanished} are too small and now 0" if made.vanished else ""
+    lost = f"{made.rounded} of {made.reals} reals have lost digits"
+    return "; ".join(part for part in (lost, worst, gone) if part)

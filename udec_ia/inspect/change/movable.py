@@ -1,0 +1,93 @@
+"""Groups that can be told apart word for word: what laying them out afresh needs, and no more.
+
+A word of IA() says nothing of itself. It is known by its group and field, so a heap can only be written in
+another form if every word is in one group or in the junk list, and if every pointer leads to a group of the
+kind that the table gives it. Whether the map that they make is sound, and what the numbers are, does not
+matter.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import integers
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check.groups import KIND_CODE, TABLE, TARGETS
+from udec_ia.inspect.look.atlas import Atlas, junk_list
+from udec_ia.inspect.look.fields import called
+from udec_ia.inspect.table import addresses
+from udec_ia.inspect.walk import Unsound
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import layouts
+
+
+def movable(array: MainArray) -> dict[str, Any]:
+    """Addresses of the groups of every kind, in the order of their lists, those of blocks block by block.
+
+    Raises Unsound unless the groups in use and the junk list fill the heap, each word once, and every pointer
+    is 0 or leads to a group of its kind.
+    """
+    words, free = len(array.h.ia), int(array.h.ci[g.MFREE])
+    if not 1 <= free <= words + 1:
+        raise Unsound(f"MFREE is {free}, which is no address in an array of {words} words")
+    found = {group.name: addresses(array, group.name) for group in TABLE.groups}
+    _check_words(array, found)
+    _check_pointers(array, found)
+    return found
+
+
+def name_at(array: MainArray, address: int) -> str:
+    """The group at `address` with the blocks that it belongs to: corner@412 of block@88."""
+    atlas = Atlas(array.h)
+    return called(atlas, atlas.span(address))
+
+
+def junk_words(array: MainArray) -> int:
+    """Words of the junk list."""
+    return sum(size for chain in junk_list(array.h) for _, size in chain)
+
+
+def _check_words(array: MainArray, found: dict[str, Any]) -> None:
+    """Unsound unless groups and junk groups, in the order of their addresses, lie end to end."""
+    layout, free = layouts(array.scheme.ratio), int(array.h.ci[g.MFREE])
+    junk = np.array([one for chain in junk_list(array.h) for one in chain], np.int64).reshape(-1, 2)
+    start = np.concatenate([*found.values(), junk[:, 0]])
+    size = np.concatenate([*(np.full(len(at), layout[kind].size) for kind, at in found.items()), junk[:, 1]])
+    order = np.argsort(start)
+    begins, ends = np.append(start[order], free), np.append(0, start[order] + size[order] - 1)
+    wrong = np.flatnonzero(begins != ends + 1)
+    if len(wrong):
+        begin, end = int(begins[wrong[0]]), int(ends[wrong[0]])
+        if begin > end:
+            raise Unsound(f"words {end + 1} to {begin - 1} are in no group, so nobody knows what they mean")
+        raise Unsound(f"the group that ends at word {end} and the one that begins at {begin} share words")
+
+
+def _check_pointers(array: MainArray, found: dict[str, Any]) -> None:
+    """Unsound unless every pointer of a group or of the common block is 0 or leads to a group of its kind."""
+    h, free = array.h, int(array.h.ci[g.MFREE])
+    kind_at = np.zeros(free + 1, np.int8)  # the last one stands for all addresses where no group can be
+    for kind, at in found.items():
+        kind_at[at] = KIND_CODE[kind]
+
+    def astray(values: Any, target: str) -> Any:
+        """Where `values` are neither 0 nor addresses of groups that `target` means."""
+        inside = np.where((values >= 0) & (values < free), values, free)
+        good = np.zeros(len(KIND_CODE) + 1, bool)
+        good[[KIND_CODE[kind] for kind in TARGETS[target]]] = True
+        return np.flatnonzero(~good[kind_at[inside]] & (values != 0))
+
+    for kind, at in found.items():
+        for field in TABLE.group(kind).fields if len(at) else ():
+            for i in range(field.count if field.target else 0):
+                values = integers(h, at, getattr(g, field.name), i)
+                for row in astray(values, str(field.target))[:1]:
+                    owner = name_at(array, int(at[row]))
+                    raise Unsound(f"{field.name} of {owner} points to {values[row]}, no {field.target}")
+    for field in TABLE.common:
+        if field.target:
+            value = h.ci[[getattr(g, field.name)]]
+            if len(astray(value, field.target)):
+                raise Unsound(f"{field.name} points to {value[0]}, which is no {field.target}")

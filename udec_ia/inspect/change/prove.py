@@ -1,0 +1,39 @@
+"""Whether a state that a tool has made can be gone on with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from udec_ia.heap.accessors import getr
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check import Violation, check
+from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.table import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
+
+SHOWN = 3  # violations that are named
+
+
+def prove(array: MainArray) -> list[Violation]:
+    """All that RESTART, commands and the checker find wrong; empty if the state is sound."""
+    return [*check_common(array), *check(array)]
+
+
+def in_short(broken: Sequence[Violation]) -> str:
+    """The first of some violations, in words."""
+    more = [f"and {len(broken) - SHOWN} more"] if len(broken) > SHOWN else []
+    return "; ".join([*map(str, broken[:SHOWN]), *more])
+
+
+def too_coarse(array: MainArray) -> list[Violation]:
+    """Whether the reals resolve the rounding length where the blocks are as well as ROUND asks for."""
+    at = addresses(array, "corner")
+    size = float(sum(np.abs(getr(array.h, at, k)) for k in (g.KXP, g.KYP)).max(initial=0.0))
+    d, digit = float(array.h.cr[g.DTOL]), last_digit(array, size)
+    if d >= ROUNDING_DIGITS * digit:
+        return []
+    what = f"the rounding length is {d:g}, and {array.scheme.real_bits}-bit reals resolve {digit:g} there"
+    return [Violation(7, f"{what}, which asks for {ROUNDING_DIGITS * digit:g}")]

@@ -1,0 +1,58 @@
+"""A restart file is read, changed by a tool, and written again, with all that stands beside the array.
+
+Its heap may be in any state: tools are there to repair it, too. Only the histories must be such that one can
+tell whose numbers were recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from udec_ia.heap.accessors import iget
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.walk import Unsound, groups
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.history import definitions
+from udec_ia.ops.commands.recordable import HISTORY, by_codes
+from udec_ia.restart.reader import Restored, opened, read_deck, read_front, read_laws, read_state
+from udec_ia.restart.recorded import recall
+from udec_ia.restart.refusal import RefusedError, refusing
+from udec_ia.restart.writer import save
+
+
+def load_to_change(path: str | Path) -> Restored:
+    """All that the restart file `path` holds, its heap in whatever state it is.
+
+    Raises UdecError 29 if the file is not what `save` wrote, or if its histories cannot be told.
+    """
+    path = Path(path)
+    with refusing(path), opened(path) as file:
+        seen = read_state(file, read_front(file))
+        if not _has_sound_histories(seen.array):
+            raise RefusedError("does not say what its histories have recorded: the list of them is broken")
+        series = recall(file, seen.array)
+        return Restored(seen.array, read_deck(file), read_laws(file), series, seen.said, seen.mark)
+
+
+def save_changed(
+    state: Restored, array: MainArray, path: str | Path, line: str, unsound: Sequence[str] = ()
+) -> Path:
+    """Write `array`, which was made of that of `state`, with all else of `state` to the file `path`.
+
+    line: what the deck is to say of it, a command or a comment. unsound: what is wrong with it, with which
+    the file is marked. Raises UdecError 31 as `save` does.
+    """
+    if _has_sound_histories(array):
+        for series, definition in zip(state.series, definitions(array), strict=False):
+            series.follow(definition)
+    return save(array, path, [*state.deck, line], state.laws, state.series, unsound)
+
+
+def _has_sound_histories(array: MainArray) -> bool:
+    """True if the list of histories comes to an end, and all of them record something."""
+    h = array.h
+    try:
+        return all((iget(h, iad, g.KHK), iget(h, iad, g.KHF)) in by_codes() for iad in groups(h, HISTORY))
+    except Unsound:
+        return False
