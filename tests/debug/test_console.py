@@ -20,10 +20,10 @@ from udec_ia.debug import Console, debug
 
 
 def talk(out: Path, *lines: str, deck: str = PILE) -> str:
-    """What the debugger says to these commands."""
+    """What the debugger says to these commands, which it repeats behind its prompt."""
     said = io.StringIO()
     debug(Model(out=out), deck, said, lines)
-    return said.getvalue()
+    return re.sub(r"^\(\d+(?: past)?\) .*\n", "", said.getvalue(), flags=re.M)
 
 
 def test_it_stops_before_the_first_command(tmp_path: Path) -> None:

@@ -105,6 +105,8 @@ class Console(cmd.Cmd):
 
     def precmd(self, line: str) -> str:
         """Echo what a script says; complete a command that is cut short; - in its name is _."""
+        if self.ends:
+            self.say(f"{self.prompt}{line}")
         head, _, rest = line.strip().partition(" ")
         head = ALIASES.get(head, head.replace("-", "_"))
         known = [name[3:] for name in self.get_names() if name.startswith("do_")]
