@@ -103,11 +103,12 @@ class Tame(Model):
     def solve(self, ratio: float, limit: int = MAX_CYCLES) -> Solution:
         return super().solve(ratio, min(limit, MAX_CYCLES))
 
-    def save(self, path: str | Path | None = None) -> Path:
-        return super().save(None)
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
+        return super().save(None, force=force)
 
-    def restart(self, path: str | Path | None = None) -> None:
-        super().restart(None)
+    def restart(self, path: str | Path | None = None, *, force: bool = False) -> None:
+        super().restart(None, force=force)
+        self.damaged |= force
 
     def rset(self, v: float, ia: int, ioff: int) -> None:
         super().rset(v, ia, ioff)

@@ -70,7 +70,7 @@ CASES: dict[str, tuple[Callable[[h5py.File], object], str]] = {
         "/deck is no text of fixed length",
     ),
     "rank": (lambda f: replaced(f, VALUE, (1,) * 32, "<f8"), "instead of one row"),
-    "names": (lambda f: packed_names(np.random.default_rng(3), f, Path()), "is not there"),
+    "names": (lambda f: packed_names(np.random.default_rng(3), f, Path()), "/recorded is no group"),
     "attribute": (
         lambda f: f["recorded/1"].attrs.create("group", text("x" * 5000)),
         "/recorded/1, group is a text of 5000 bytes",
