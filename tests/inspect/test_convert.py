@@ -368,6 +368,30 @@ def test_reals_that_do_not_fit() -> None:
     assert getr(convert(array, scheme("i64r64")).array.h, 1, g.KX) == getr(array.h, 1, g.KX)
 
 
+def test_reals_that_are_too_small_are_counted() -> None:
+    array = base().copy()
+    array.h.cr[g.PAR1 : g.PAR1 + 3] = 1e-300, 2.0**-149, 2.0**-150  # the second is a number of 32 bits
+    made = convert(array, scheme("i32r32"))
+    assert made.said[1].endswith("; too small, and 0 now: 2")
+    assert made.array.h.cr[g.PAR1 : g.PAR1 + 3].tolist() == [0, 2.0**-149, 0]
+
+
+@pytest.mark.parametrize(("name", "to"), [("i32r64", "i32r32"), ("i32r32", "i32r64")])
+def test_numbers_that_have_run_away(name: str, to: str) -> None:
+    """They are converted, and told to be unsound, or refused; nothing else is raised."""
+    rng, told = np.random.default_rng(2), 0
+    for _ in range(40):
+        array = base(name).copy()
+        h, reals = array.h, int(array.h.ci[g.MFREE]) // array.scheme.ratio
+        for _ in range(int(rng.integers(1, 4))):
+            h.ra[int(rng.integers(reals))] = rng.choice([0.0, -1.0, 1e30, np.nan, np.inf, -1e-30])
+        try:
+            told += convert(array, scheme(to)).broken != []
+        except UdecError:
+            continue
+    assert told > 5
+
+
 def test_addresses_that_do_not_fit() -> None:
     m = Model()
     m.block(0, 0, 0, 1, 30, 1, 30, 0)

@@ -59,6 +59,6 @@ def _rounding(made: Rewritten) -> str:
     if not made.rounded:
         return f"none of {made.reals} reals has lost a digit"
     worst = f"the largest relative change is {made.change:.2g}, in {made.where}" if made.where else ""
-    gone = f"{made.vanished} are too small and now 0" if made.vanished else ""
+    gone = f"too small, and 0 now: {made.vanished}" if made.vanished else ""
     lost = f"{made.rounded} of {made.reals} reals have lost digits"
     return "; ".join(part for part in (lost, worst, gone) if part)
