@@ -22,7 +22,7 @@ BELOW = {  # layers that a layer imports
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
-    "workshop": {"errors", "heap", "inspect", "layout", "restart"},
+    "workshop": {"errors", "heap", "inspect", "layout", "output", "restart"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 
