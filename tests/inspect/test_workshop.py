@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
 
 from udec_ia import Model
 from udec_ia.cli import main
+from udec_ia.workshop import VERBS as LOOKS
 
 PAGE = Path(__file__).parents[2] / "docs" / "workshop.md"
 TEXT = PAGE.read_text()
@@ -27,11 +29,20 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_there_is_something_shown() -> None:
-    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk"}
+    assert {command.split()[0] for command, _ in SHOWN} == {*LOOKS}
 
 
 def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for command, shown in SHOWN:
-        assert main(command.split()) == 0
+        assert main(shlex.split(command)) == 0
         printed = capsys.readouterr().out
         assert printed == "".join(f"{line[4:]}\n" for line in shown.splitlines()), command
+
+
+def test_the_page_shows_what_a_wrong_condition_gets(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (shown,) = re.findall(r"^    (udec find: .*)\n((?:    .*\n)+)", TEXT, re.M)
+    wrong = shown[1].splitlines()[0].strip()
+    assert main(["find", "slide.h5", wrong]) == 2
+    assert capsys.readouterr().err == f"{shown[0]}\n" + "".join(
+        f"{line[4:]}\n" for line in shown[1].splitlines()
+    )
