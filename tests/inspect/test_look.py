@@ -64,11 +64,10 @@ def test_every_field_of_every_group(scene: Model) -> None:
     for group in GROUPS:
         for row in scene.table(group.name):
             span = atlas.span(int(row["address"]))
-            words = iter(atlas.words(span))
             for field in group.fields:
-                for value in np.atleast_1d(row[field.name]).tolist():
-                    word = next(words)
-                    assert (word.field, atlas.value(word)) == (field, value)
+                for element, value in enumerate(np.atleast_1d(row[field.name]).tolist()):
+                    word = atlas.word(span, field, element)
+                    assert atlas.value(word) == value
                     for address in (word.first, word.last):
                         assert atlas.word_at(address) == (span, word)
 
@@ -161,6 +160,18 @@ def test_a_walk_ends_where_it_has_been() -> None:
     puti(h, corner, g.KL, items[1])
     (said,) = walk(Atlas(h), "block", block).said
     assert f"{items.index(corner) + 1} groups, and then it breaks" in said
+
+
+def test_what_says_what_the_value_means() -> None:
+    m = every_kind()
+    atlas, contact = Atlas(m.array.h), m.table("contact")[0]
+    words = {word.name: word.first for word in atlas.words(atlas.span(int(contact["address"])))}
+    said = {name: what(atlas, first).said[1] for name, first in words.items()}
+    block = contact["KB1"]
+    assert said["KB1"] == f"KB1, first block involved: {block}, block@{block}"
+    assert said["KCM"] == "KCM, material number: 1"
+    assert said["HEAD"] == "HEAD, MCON: 5, MCON: contact"
+    assert said["KCCOD"].endswith(": 3, EDGE_CORNER: an edge of block KB1 and an arc of block KB2")
 
 
 def test_junk_counts_all_words(scene: Model) -> None:

@@ -153,6 +153,10 @@ class Atlas:
         for word in self.shapes[span.kind]:
             yield word._replace(first=span.first + word.first, last=span.first + word.last)
 
+    def word(self, span: Span, field: Field, element: int = 0) -> Word:
+        """Where an element of a field of a group stands."""
+        return next(word for word in self.words(span) if (word.field, word.element) == (field, element))
+
     def word_at(self, address: int) -> tuple[Span, Word | None]:
         """The span and the field at an address; None where no field is, in a padding or outside of groups."""
         span = self.span(address)

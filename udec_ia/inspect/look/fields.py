@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.inspect.check.codes import allowed, in_words
-from udec_ia.inspect.look.atlas import TABLE, Atlas, Span
+from udec_ia.inspect.look.atlas import TABLE, Atlas, Span, Word
 from udec_ia.inspect.look.names import leads_to
 from udec_ia.layout.table import Field
 
@@ -89,6 +89,12 @@ def word_width(words: Any, radix: int) -> int:
 
 def _joined(parts: list[list[str]]) -> Iterable[str]:
     return parts[0] if len(parts) == 1 else map(" ".join, zip(*parts, strict=True))
+
+
+def meaning(atlas: Atlas, span: Span, word: Word) -> str:
+    """What the value of one field of a group says."""
+    (told,) = _meanings(atlas, span.kind, word.field, atlas.gather(word, np.zeros(1, np.int64)))
+    return told
 
 
 def _meanings(atlas: Atlas, kind: str, field: Field, values: Any) -> Iterable[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from udec_ia.inspect.look.atlas import JUNK, KINDS, Atlas, Word
-from udec_ia.inspect.look.fields import COLUMNS, span_rows
+from udec_ia.inspect.look.fields import COLUMNS, meaning, span_rows
 from udec_ia.inspect.look.listing import Listing
 from udec_ia.inspect.look.names import called
 from udec_ia.inspect.look.place import places
@@ -21,7 +21,9 @@ def what(atlas: Atlas, address: int) -> Listing:
     if word is None:
         said.append("no field: it fills up the group to whole reals")
     else:
-        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}")
+        told = meaning(atlas, span, word)
+        more = f", {told}" if told != word.field.text else ""
+        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}{more}")
     return Listing(said + places(atlas, span), COLUMNS, span_rows(atlas, span))
 
 
