@@ -68,6 +68,16 @@ def test_watching_a_word(tmp_path: Path) -> None:
     assert float(re.search(r"block@721.KYD = (\S+)", before)[1]) >= -0.2  # type: ignore[index]
 
 
+def test_a_condition_is_stopped_at(tmp_path: Path) -> None:
+    wanted = "block where KYD < -0.2"
+    said = talk(tmp_path, "goto 61", f"break {wanted}", "c", f"find {wanted}")
+    cycle = int(re.search(r"break block .*block@(\d+)\nafter cycle (\d+)", said)[2])  # type: ignore[index]
+    assert "1 of " in said
+    before = talk(tmp_path, f"goto {cycle - 1}", f"find {wanted}")
+    assert "0 of " in before
+    assert "did you mean" in talk(tmp_path, "goto 3", "break block where KYDD < 1")
+
+
 def test_within_a_cycle(tmp_path: Path) -> None:
     said = talk(tmp_path, "goto 50", *["rs pass", "rs group", "rs write"], *["s write", "s group", "s pass"])
     assert said.count("within the next cycle") >= 4

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.errors import DAMAGED
 from udec_ia.deck.monitor import run_deck
+from udec_ia.errors import DAMAGED
 
 DECKS = sorted((Path(__file__).parents[1] / "decks").glob("err*.dat"))
 EXPECT = re.compile(r"\* expect (\d+):(\d+) error (\d+)(?: with mtop=(\d+))?(?: without (\w+))?")

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-import time
-from pathlib import Path
+import re
 
 import numpy as np
 import pytest
@@ -14,12 +10,10 @@ from kinds import GROUPS, every_kind
 from naive.census import census as naive_census
 
 from udec_ia import Model
-from udec_ia.cli import main
-from udec_ia.heap.accessors import iget
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.accessors import iget, puti
+from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES, find, lose
 from udec_ia.inspect.look import Atlas, junk, walk, what, who
-from udec_ia.inspect.look.atlas import JUNK, KINDS, NOTHING, UNUSED
+from udec_ia.inspect.look.atlas import JUNK, UNUSED
 from udec_ia.inspect.walk import boundary, groups, loop, members
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
@@ -69,9 +63,9 @@ def test_every_field_of_every_group(scene: Model) -> None:
     atlas = Atlas(scene.array.h)
     for group in GROUPS:
         for row in scene.table(group.name):
+            span = atlas.span(int(row["address"]))
             for field in group.fields:
                 for element, value in enumerate(np.atleast_1d(row[field.name]).tolist()):
-                    span = atlas.span(int(row["address"]))
                     word = atlas.word(span, field, element)
                     assert atlas.value(word) == value
                     for address in (word.first, word.last):
@@ -127,13 +121,103 @@ def test_walks(scene: Model) -> None:
         walk(atlas, "block", int(scene.table("corner")["address"][0]))
 
 
+def test_a_field_beside_each_group(scene: Model) -> None:
+    atlas, block = Atlas(scene.array.h), int(scene.table("block")["address"][0])
+    places = {int(row["address"]): float(row["KXP"]) for row in scene.table("corner")}
+    around = walk(atlas, "block", block, field="KXP")
+    assert around.columns[-1] == "KXP"
+    assert [row[3] for row in around.rows] == [places.get(iad, "") for iad in boundary(scene.array.h, block)]
+    short = walk(atlas, "block", block, "KXP", limit=2)
+    assert short.rows == around.rows[:2]
+    assert short.said == [f"{around.said[0]}; the first 2:"]
+    assert walk(atlas, "block", block, limit=1000).said == around.said
+    zone = scene.table("zone")[0]
+    (first, *_) = walk(atlas, "KZ", int(zone["address"]), "KZG(2)").rows
+    assert first[3] == zone["KZG"][1]
+    for field, says in (
+        ("KZG", "it is KZG(1) to KZG(3)"),
+        ("KXPP", "did you mean KXP"),
+        ("qqq", "no group has"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(says)):
+            walk(atlas, "block", field=field)
+    with pytest.raises(ValueError, match="1 or more"):
+        walk(atlas, "block", limit=0)
+
+
+def test_a_walk_ends_where_it_has_been() -> None:
+    """A main list, the list around a block and the one around a domain that run into themselves."""
+    m = every_kind()
+    h, blocks = m.array.h, m.table("block")["address"]
+    puti(h, int(blocks[4]), g.KB, int(blocks[2]))
+    (said,) = (listing := walk(Atlas(h), "block")).said
+    assert f"5 groups, and then it breaks: it leads back to block@{blocks[2]}" in said
+    assert len(listing.rows) == 5
+    m = every_kind()
+    h, block = m.array.h, int(m.table("block")["address"][1])
+    items = list(boundary(h, block))
+    corner = next(iad for iad in items[3:] if iad in m.table("corner")["address"])
+    puti(h, corner, g.KL, items[1])
+    (said,) = walk(Atlas(h), "block", block).said
+    assert f"{items.index(corner) + 1} groups, and then it breaks" in said
+
+
+def test_what_says_what_the_value_means() -> None:
+    m = every_kind()
+    atlas, contact = Atlas(m.array.h), m.table("contact")[0]
+    words = {word.name: word.first for word in atlas.words(atlas.span(int(contact["address"])))}
+    said = {name: what(atlas, first).said[1] for name, first in words.items()}
+    block = contact["KB1"]
+    assert said["KB1"] == f"KB1, first block involved: {block}, block@{block}"
+    assert said["KCM"] == "KCM, material number: 1"
+    assert said["HEAD"] == "HEAD, MCON: 5, MCON: contact"
+    assert said["KCCOD"].endswith(": 3, EDGE_CORNER: an edge of block KB1 and an arc of block KB2")
+
+
 def test_junk_counts_all_words(scene: Model) -> None:
     listing = junk(Atlas(scene.array.h))
     used = int(scene.h.ci[g.MFREE]) - 1
     assert sum(row[3] for row in listing.rows) == used
+    assert sum(row[4] for row in listing.rows) == pytest.approx(100, abs=0.5)
     given = sum(junk_groups(scene).values())
-    assert f"junk: {given} words" in listing.said[1]
-    assert f"{used - given} are" in listing.said[0]
+    said = "\n".join(listing.said)
+    assert f"high water: {used} of {len(scene.array.h.ia)} words" in said
+    assert f"junk: {given} words" in said
+    assert f"in use: {used - given} words" in said
+
+
+def test_fragmentation() -> None:
+    """Runs of junk: two groups side by side, one alone."""
+    h = Model().array.h
+    one, *_ = [find(h, g.NVCR) for _ in range(6)]
+    size = layouts(2)["corner"].size
+    for k in (0, 1, 3):
+        lose(h, one + k * size, g.NVCR)
+    said = junk(Atlas(h)).said
+    assert said[2] == f"junk: {3 * size} words, 50.0% of those, in 1 sizes"
+    assert said[3] == f"fragmentation: 2 runs, 33.3% of the junk outside the largest, of {2 * size} words"
+    assert said[4].startswith(f"not linked: {3 * size} words, 50.0% of those")
+    assert junk(Atlas(Model().array.h)).said[-1] == "junk: none"
+
+
+def test_where_it_lies(scene: Model) -> None:
+    """Centroid and corners of the blocks, from the tables."""
+    atlas = Atlas(scene.array.h)
+    blocks = {int(row["address"]): row for row in scene.table("block")}
+    corners = scene.table("corner")
+    contact = scene.table("contact")[2]
+    said = what(atlas, int(contact["address"])).said[2:]
+    assert len(said) == 2
+    for block, line in zip((int(contact["KB1"]), int(contact["KB2"])), said, strict=True):
+        own = corners[corners["KNB"] == block]
+        x, y = (float(blocks[block][name]) for name in ("KX", "KY"))
+        assert line.startswith(f"block@{block}: centroid ({x:.6g}, {y:.6g}) m, {len(own)} corners in ")
+        assert line.endswith(
+            f"x {own['KXP'].min():.6g} to {own['KXP'].max():.6g} m, y {own['KYP'].min():.6g} to "
+            f"{own['KYP'].max():.6g} m"
+        )
+    for kind, many in (("domain", 2), ("zone", 1), ("signal", 0)):
+        assert len(what(atlas, int(scene.table(kind)["address"][0])).said) == 2 + many
 
 
 def test_a_wrong_pointer_is_told(scene: Model) -> None:
@@ -144,63 +228,3 @@ def test_a_wrong_pointer_is_told(scene: Model) -> None:
     (row,) = (row for row in what(Atlas(scene.array.h), word).rows if row[2] == "KB1")
     assert row[5].startswith(f"corner@{corner} of block@")
     assert row[5].endswith(", no block")
-
-
-@pytest.mark.parametrize("build", ALL_SCHEMES)
-def test_a_damaged_heap_can_be_looked_at(build: str) -> None:
-    """Whatever the words say: every look ends, in time, and says something."""
-    sound, rng = every_kind(build), np.random.default_rng(7)
-    used = int(sound.h.ci[g.MFREE]) - 1
-    start = time.process_time()
-    for _ in range(60):
-        array = sound.array.copy()
-        for _ in range(int(rng.integers(1, 40))):
-            at = int(rng.integers(used))
-            array.h.ia[at] = rng.choice([0, 1, -1, int(rng.integers(used)), 32767])
-        atlas = Atlas(array.h)
-        assert sum(span.last - span.first + 1 for span in atlas.spans()) == len(array.h.ia)
-        assert {span.kind for span in atlas.spans()} <= {*KINDS, JUNK, NOTHING, UNUSED}
-        address = int(rng.integers(1, used))
-        listings = [what(atlas, address), who(atlas, address), junk(atlas), walk(atlas, "block")]
-        listings += [
-            walk(atlas, kind, int(iad)) for kind in ("block", "domain") for iad in atlas.groups[kind][:3]
-        ]
-        assert all(listing.as_text() and json.loads(listing.as_json()) for listing in listings)
-    assert time.process_time() - start < 60
-
-
-def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """They print what the functions give, as text, as JSON, and as a program that prints the same."""
-    m = every_kind()
-    file = str(m.save(tmp_path / "state.h5"))
-    atlas = Atlas(m.array.h)
-    block = int(m.table("block")["address"][1])
-    calls = {
-        ("what", "40"): what(atlas, 40),
-        ("who", str(block)): who(atlas, block),
-        ("walk", "block", str(block)): walk(atlas, "block", block),
-        ("walk", "contact"): walk(atlas, "contact"),
-        ("junk",): junk(atlas),
-    }
-    for (name, *rest), listing in calls.items():
-        assert main([name, file, *rest]) == 0
-        assert capsys.readouterr().out == listing.as_text()
-        assert main([name, file, *rest, "--json"]) == 0
-        assert json.loads(capsys.readouterr().out) == json.loads(listing.as_json())
-        assert main([name, file, *rest, "--python"]) == 0
-        program = capsys.readouterr().out
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-        assert done.stdout.rstrip("\n") == listing.as_text().rstrip("\n")
-
-
-def test_what_cannot_be_looked_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = str(every_kind().save(tmp_path / "state.h5"))
-    for given, says in (
-        (["what", file, "0"], "IA() has the addresses 1 to"),
-        (["who", file, "99999999"], "IA() has the addresses 1 to"),
-        (["walk", file, "nothing"], "no list nothing"),
-    ):
-        assert main(given) == 2
-        assert says in capsys.readouterr().err
-    assert main(["junk", str(tmp_path / "none.h5")]) == 1
-    assert "error 29" in capsys.readouterr().err

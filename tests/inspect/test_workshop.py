@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,15 @@ def test_there_is_something_shown() -> None:
 
 def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for command, shown in SHOWN:
-        assert main(command.split()) == ("violation" in shown.partition("\n")[0])
+        assert main(shlex.split(command)) == ("violation" in shown.partition("\n")[0])
         printed = capsys.readouterr().out
         assert printed == "".join(f"{line[4:]}\n" for line in shown.splitlines()), command
+
+
+def test_the_page_shows_what_a_wrong_condition_gets(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (shown,) = re.findall(r"^    (udec find: .*)\n((?:    .*\n)+)", TEXT, re.M)
+    wrong = shown[1].splitlines()[0].strip()
+    assert main(["find", "slide.h5", wrong]) == 2
+    assert capsys.readouterr().err == f"{shown[0]}\n" + "".join(
+        f"{line[4:]}\n" for line in shown[1].splitlines()
+    )

@@ -23,7 +23,7 @@ BELOW = {  # layers that a layer imports
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
     "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
-    "workshop": {"debug", "errors", "heap", "inspect", "layout", "model", "printable", "restart"},
+    "workshop": {"debug", "errors", "heap", "inspect", "layout", "model", "output", "printable", "restart"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

@@ -15,6 +15,8 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
+from udec_ia.inspect.look import Atlas, dump, heap_map
+from udec_ia.layout import offsets as g
 from udec_ia.ops.run.timestep import bound, describe
 from udec_ia.output import histories
 from udec_ia.output.outline import snapshot
@@ -66,6 +68,9 @@ def held(n: int) -> Model:
     ("build", "run", "n"),
     [
         (grid, lambda m: m.print("contacts"), 100),
+        (grid, lambda m: [None for _ in dump(Atlas(m.array.h)).lines()], 100),
+        (grid, lambda m: m.dump(1, int(m.h.ci[g.MFREE]) - 1), 100),
+        (grid, lambda m: heap_map(Atlas(m.array.h)), 500),
         (grid, lambda m: m.boundary(*ALL, yvel=0.0), 500),
         (held, lambda m: m.boundary(*ALL, xvel=1.0), 250),
         (held, lambda m: m.boundary(*ALL[:2], 1, 1e6, free=True), 500),
@@ -73,7 +78,18 @@ def held(n: int) -> Model:
         (held, lambda m: m.delete(*ALL[:2], 1, 1e6), 250),
         (held, lambda m: m.change(*ALL[:2], 1, 1e6, type="fdef"), 150),
     ],
-    ids=["PRINT", "BOUNDARY", "BOUNDARY again", "BOUNDARY FREE", "FREE", "DELETE", "CHANGE"],
+    ids=[
+        "PRINT",
+        "dump",
+        "DUMP",
+        "map",
+        "BOUNDARY",
+        "BOUNDARY again",
+        "BOUNDARY FREE",
+        "FREE",
+        "DELETE",
+        "CHANGE",
+    ],
 )
 def test_commands(build: Callable[[int], Model], run: Callable[[Model], object], n: int) -> None:
     small, large = times(build, run, n)

@@ -14,7 +14,7 @@ from udec_ia.debug.timeline import Timeline
 from udec_ia.debug.tracing import Access, Trace
 from udec_ia.heap.accessors import Memory
 from udec_ia.inspect.look.atlas import KINDS, Atlas
-from udec_ia.inspect.look.fields import called
+from udec_ia.inspect.look.names import called
 
 MANY = 12  # origins of a value that are told
 

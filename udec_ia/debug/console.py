@@ -15,7 +15,7 @@ from typing import Any, TextIO
 
 from udec_ia.debug import answers
 from udec_ia.debug.places import place
-from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, shown
+from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, shown
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
 from udec_ia.deck.reader import statements
@@ -239,11 +239,13 @@ class Console(cmd.Cmd):
     # ---- stopping
 
     def do_break(self, text: str) -> None:
-        """break made | broken | recoded: stop when a contact is."""
+        """break made | broken | recoded: stop at that. break KIND where CONDITION: when that is true."""
         if text in ("made", "broken", "recoded"):
             self._add(Contacts(text))
+        elif " where " in text:
+            self._add(Where(text))
         else:
-            raise ValueError("break what? made, broken or recoded")
+            raise ValueError("break what? made, broken, recoded, or as in: contact where KCN > 0.1")
 
     def do_watch(self, text: str) -> None:
         """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or when that comes true."""
@@ -304,6 +306,10 @@ class Console(cmd.Cmd):
     def do_walk(self, text: str) -> None:
         """walk LIST [ADDRESS]: along a list."""
         self._look("walk", text)
+
+    def do_find(self, text: str) -> None:
+        """find KIND where CONDITION: groups for which it is true."""
+        self.stdout.write(look.find(self.debugger.atlas, text).as_text())
 
     def do_junk(self, _: str) -> None:
         """junk: how full the memory is."""

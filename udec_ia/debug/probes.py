@@ -13,6 +13,8 @@ import numpy as np
 
 from udec_ia.debug.places import Place
 from udec_ia.heap.array import MainArray
+from udec_ia.inspect.look.atlas import Atlas
+from udec_ia.inspect.look.condition import satisfying
 from udec_ia.inspect.table import addresses, table
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
@@ -119,13 +121,16 @@ def _codes(array: MainArray) -> dict[int, int]:
 
 
 class Where:
-    """A condition that comes true for a group: `contact where KCN > 0.1`. find: those for which it is."""
+    """A condition that comes true for a group: `contact where KCN > 0.1`, as `udec find` takes it."""
 
-    def __init__(self, text: str, find: Callable[[MainArray], list[int]]) -> None:
+    def __init__(self, text: str) -> None:
         self.text = f"break {text}"
-        self.kind = text.split()[0]
-        self._find = find
+        self.condition, self.kind = text, text.split()[0]
         self._seen: set[int] = set()
+
+    def _find(self, array: MainArray) -> list[int]:
+        found: list[int] = satisfying(Atlas(array.h), self.condition).at.tolist()
+        return found
 
     def begin(self, array: MainArray) -> None:
         """See Probe."""

@@ -104,7 +104,7 @@ def draw_blocks(axes: Axes, states: list[State], inches: float) -> None:
     for state, new, shade in zip(states, drawn, shades, strict=True):
         moving = np.isin(state.outlines.address, moved)
         _still(axes, state.outlines, new & ~moving, inches)
-        _blocks(axes, state.outlines, new & moving, (*shade[:3], 0.3), tuple(shade), inches)
+        draw_outlines(axes, state.outlines, new & moving, (*shade[:3], 0.3), tuple(shade), inches)
     if len(states) > 1:
         _key(axes, states, shades)
 
@@ -167,36 +167,39 @@ def _still(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
     for material in np.unique(o.material[chosen]):
         face = ROCKS[(material - 1) % len(ROCKS)]
         here = chosen & (o.material == material)
-        _blocks(axes, o, here & ~o.fixed, face, INK, inches)
-        _blocks(axes, o, here & o.fixed, face, INK, inches, hatched=True)
+        draw_outlines(axes, o, here & ~o.fixed, face, INK, inches)
+        draw_outlines(axes, o, here & o.fixed, face, INK, inches, hatched=True)
 
 
-def _blocks(
+def draw_outlines(
     axes: Axes, o: Outlines, chosen: Any, face: Any, edge: Any, inches: float, hatched: bool = False
 ) -> None:
-    """The chosen blocks in one colour, with their centroids: as few compound paths as the renderer bears."""
+    """The chosen blocks in one colour, with their centroids: as few compound paths as the renderer bears.
+
+    The range of the axes is given: add_patch would look for that of the paths, and take longer than to draw.
+    """
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Curve
 
     if not chosen.any():
         return
     vertices, codes, block = curves(o)
-    thin = min(1.0, 0.03 * _diameter(o) * inches / POINT)
+    thin = min(1.0, 0.03 * diameter(o) * inches / POINT)
     indices = np.flatnonzero(chosen)
     for start in range(0, len(indices), PIECE):
         piece = np.isin(block, indices[start : start + PIECE])
         curve = Curve(vertices[piece], codes[piece])
         if hatched:
-            axes.add_patch(PathPatch(curve, facecolor=face, edgecolor=HATCH, linewidth=0.0, hatch="////"))
-        axes.add_patch(
+            axes.add_artist(PathPatch(curve, facecolor=face, edgecolor=HATCH, linewidth=0.0, hatch="////"))
+        axes.add_artist(
             PathPatch(curve, facecolor="none" if hatched else face, edgecolor=edge, linewidth=thin)
         )
-    size = min(6.0, 0.12 * _diameter(o) * inches / POINT)
+    size = min(6.0, 0.12 * diameter(o) * inches / POINT)
     x, y = o.centroid[chosen].T
     axes.plot(x, y, "+", color=INK, markersize=size, markeredgewidth=0.6 * thin, zorder=2.5)
 
 
-def _diameter(o: Outlines) -> float:
+def diameter(o: Outlines) -> float:
     """Median over the blocks of the greater side of the bounding box, in m."""
     sides = np.maximum.reduceat(o.corner, o.first[:-1]) - np.minimum.reduceat(o.corner, o.first[:-1])
     return float(np.median(sides.max(axis=1)))

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
-from udec_ia.inspect.look.atlas import JUNK, KINDS, Atlas, Span, Word
+from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, Atlas, Span, Word
+from udec_ia.inspect.look.dump import parts
+from udec_ia.inspect.look.listing import LINES, Listing, Stream
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
@@ -20,14 +25,43 @@ def dump(h: Memory, n: int, m: int) -> str:
     Several words to a line; beside them the group and the fields that they belong to, reals decoded. Error 30
     unless 1 <= n <= m and m lies within the array.
     """
+    return "".join(f"{line.text}\n" for line in raw(Atlas(h), n, m).lines())
+
+
+def raw(atlas: Atlas, n: int = 1, m: int | None = None) -> Listing:
+    """The same line by line, however many there are; all words if none are named."""
+    h = atlas.h
+    m = len(h.ia) if m is None else m
     if not 1 <= n <= m <= len(h.ia):
         advice = f"give two addresses in rising order, from 1 to {len(h.ia)}"
         raise UdecError(30, f"DUMP {n} {m}", advice, parameter="n")
-    lines = ["  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in POINTERS)]
-    atlas = Atlas(h)
-    for span in atlas.spans(n, m):
-        lines += _span_lines(atlas, span, n, m)
-    return "\n".join(lines) + "\n"
+    pointers = "  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in POINTERS)
+    return Listing([pointers], LINES, Stream(lambda: ((line,) for line in _lines(atlas, n, m))))
+
+
+def _lines(atlas: Atlas, n: int, m: int) -> Iterator[str]:
+    for begin, end, kind in parts(atlas, n, m):
+        texts = _texts(atlas, begin, kind)
+        for i, (first, last, number) in enumerate(
+            zip(begin.tolist(), end.tolist(), kind.tolist(), strict=True)
+        ):
+            yield from _span_lines(atlas, Span(first, last, NAMES[number]), n, m, texts.get(i, ()))
+
+
+def _texts(atlas: Atlas, begin: Any, kind: Any) -> dict[int, tuple[str, ...]]:
+    """NAME=value for every field of those of some spans that are groups, in the order of Atlas.shapes."""
+    found: dict[int, tuple[str, ...]] = {}
+    for number, name in enumerate(KINDS):
+        here = np.flatnonzero(kind == number)
+        columns = [_column(word, atlas.gather(word, begin[here]).tolist()) for word in atlas.shapes[name]]
+        found.update(zip(here.tolist(), zip(*columns, strict=True), strict=True))
+    return found
+
+
+def _column(word: Word, values: list[Any]) -> list[str]:
+    if word.field.role == "head":
+        return [f"head={HEAD_NAMES.get(value, value)}" for value in values]
+    return [f"{word.name}={value:.6g}" if word.field.real else f"{word.name}={value}" for value in values]
 
 
 def _label(span: Span) -> str:
@@ -36,34 +70,22 @@ def _label(span: Span) -> str:
     return span.name if span.kind in KINDS else span.kind
 
 
-def _span_lines(atlas: Atlas, span: Span, n: int, m: int) -> Iterator[str]:
+def _span_lines(atlas: Atlas, span: Span, n: int, m: int, texts: Sequence[str]) -> Iterator[str]:
     """The lines of those words of a span that lie between n and m; lines count from the span's start."""
     first, last, words = max(n, span.first), min(m, span.last), atlas.h.ia
-    known = span.kind in KINDS
-    if not known and not words[first - 1 : last].any():
+    if not texts and not words[first - 1 : last].any():
         yield f"{first:8} | 0 to address {last}  | {_label(span)}"
         return
+    fields = atlas.shapes[span.kind] if texts else []
     digits = {2: 6, 4: 11, 8: 20}[words.itemsize]
     step = 2 if words.itemsize == 8 else 4
+    width = step * (digits + 1) - 1
     for start in range(span.first + (first - span.first) // step * step, last + 1, step):
         begin, stop = max(start, first), min(start + step - 1, last)
-        raw = " ".join(f"{words[iad - 1]:{digits}}" for iad in range(begin, stop + 1))
+        raw = " ".join([f"{word:{digits}}" for word in words[begin - 1 : stop].tolist()])
+        low, high = begin - span.first, stop - span.first
+        told = [
+            text for one, text in zip(fields, texts, strict=True) if one.first <= high and one.last >= low
+        ]
         label = _label(span) if start <= first else ""
-        meaning = " ".join(_meanings(atlas, span, begin, stop)) if known else ""
-        width = step * (digits + 1) - 1
-        yield f"{begin:8} | {raw:{width}} | {label:14} {meaning}".rstrip()
-
-
-def _meanings(atlas: Atlas, span: Span, first: int, last: int) -> Iterator[str]:
-    """NAME=value for every field with a word between the addresses first and last."""
-    for word in atlas.words(span):
-        if word.first <= last and word.last >= first:
-            head = word.field.role == "head"
-            yield f"{'head' if head else word.name}={_value(atlas, word)}"
-
-
-def _value(atlas: Atlas, word: Word) -> str:
-    value = atlas.value(word)
-    if word.field.role == "head":
-        return HEAD_NAMES.get(int(value), str(value))
-    return f"{value:.6g}" if word.field.real else str(value)
+        yield f"{begin:8} | {raw:{width}} | {label:14} {' '.join(told)}".rstrip()

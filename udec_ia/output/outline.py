@@ -7,7 +7,7 @@ from them whenever they are needed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -105,9 +105,9 @@ def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: b
     )
 
 
-def outlines(h: Memory) -> Outlines:
-    """The outlines of all blocks. Unsound if the heap cannot be walked."""
-    blocks = list(groups(h, "block"))
+def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
+    """The outlines of all blocks, or of those chosen by address. Unsound if the heap cannot be walked."""
+    blocks = list(groups(h, "block")) if chosen is None else list(chosen)
     lists = [list(reverse(h, block))[::-1] for block in blocks]
     corners = np.array([corner for one in lists for corner in one], np.int64)
     return Outlines(

@@ -44,5 +44,18 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
     except (IndexError, ValueError) as error:
         print(f"udec {verb}: {error}", file=sys.stderr)
         return MISUSE
-    sys.stdout.write(found.as_json() + "\n" if args.json else found.as_text())
+    _print(found, args.json)
     return found.status
+
+
+def _print(found: Listing, as_json: bool) -> None:
+    """In colours to a terminal, as plain text elsewhere; line by line, however long it is."""
+    if as_json:
+        sys.stdout.writelines(found.json())
+        sys.stdout.write("\n")
+    elif sys.stdout.isatty():
+        from udec_ia.workshop.terminal import show
+
+        show(found, sys.stdout)
+    else:
+        sys.stdout.writelines(f"{line.text}\n" for line in found.lines())

@@ -1,57 +1,196 @@
 """Commands that look into one restart file.
 
-udec what FILE 412        udec who FILE 412        udec walk FILE block 88        udec junk FILE
+udec what FILE 412        udec dump FILE 412-500    udec find FILE 'block where KXD > 0.1'
+udec who FILE 412         udec junk FILE            udec map FILE --out map.png
+udec walk FILE block 88                             udec graph FILE 412 --depth 2 --out graph.svg
 """
 
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+import re
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from udec_ia.workshop.common import command, file
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
-VERBS = ("what", "who", "walk", "junk")
+VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
+OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
+LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows"}
+STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
+COMMON = "common"
+
+
+class Call(NamedTuple):
+    """The function of the library that does the work of a command, and what it is given after its subject."""
+
+    function: str
+    given: tuple[Any, ...] = ()
+    named: dict[str, Any] = {}  # noqa: RUF012  never changed
+    module: str = "udec_ia.inspect.look"
+    subject: str = "atlas"  # or the whole "array"
+
+    def on(self, path: Path) -> Listing:
+        """What it finds in a restart file."""
+        from udec_ia.inspect.look import Atlas
+        from udec_ia.restart import look_into
+
+        array = look_into(path)
+        function: Callable[..., Listing] = getattr(import_module(self.module), self.function)
+        return function(Atlas(array.h) if self.subject == "atlas" else array, *self.given, **self.named)
+
+    def script(self, path: Path) -> str:
+        """The same in Python."""
+        given = [
+            self.subject,
+            *map(repr, self.given),
+            *(f"{name}={one!r}" for name, one in self.named.items()),
+        ]
+        return (
+            f"from udec_ia.inspect.look import Atlas\nfrom {self.module} import {self.function}\n"
+            f"from udec_ia.restart import look_into\n\n"
+            f"array = look_into({str(path)!r})  # of a model: model.array\natlas = Atlas(array.h)\n"
+            f"print({self.function}({', '.join(given)}).as_text(), end='')"
+        )
 
 
 def add_commands(commands: Any) -> None:
     """Add them to those of `udec`."""
-    what = _look(commands, "what", "say what a word is, and show the group that it is part of")
+    what = _look(
+        commands, "what", "say what a word is, show the group that it is part of, and where it lies", _what
+    )
     what.add_argument("address", **ADDRESS)
-    who = _look(commands, "who", "list all words that point to the group of a word")
+    what.add_argument("--out", **OUT)
+    who = _look(commands, "who", "list all words that point to the group of a word", _who)
     who.add_argument("address", **ADDRESS)
-    walk = _look(commands, "walk", "follow a list: block, contact, ..., block ADDRESS, KR ADDRESS, ...")
+    walk = _look(
+        commands, "walk", "follow a list: block, contact, ..., block ADDRESS, KR ADDRESS, ...", _walk
+    )
     walk.add_argument("along", metavar="LIST", help="kind of group, or the field that links the list")
     walk.add_argument("start", nargs="?", **ADDRESS)
-    _look(commands, "junk", "say how full the memory is: kinds of groups, junk by sizes, lost words")
+    walk.add_argument("--field", metavar="FIELD", help="show this field of each group that has it")
+    walk.add_argument("--limit", **LIMIT)
+    _look(commands, "junk", "say how full the memory is: kinds of groups, junk by sizes, lost words", _junk)
+    _add_dump(commands)
+    _add_find(commands)
+    a_map = _look(
+        commands, "map", "show the heap by kind of group, as text or as a picture beside the blocks", _map
+    )
+    a_map.add_argument("--out", **OUT)
+    graph = _look(commands, "graph", "show the pointers around a group, as a list or as a picture", _graph)
+    graph.add_argument("address", **ADDRESS)
+    graph.add_argument("--depth", type=int, default=1, metavar="N", help="pointers to follow (default: 1)")
+    graph.add_argument("--out", metavar="PICTURE", help="file to draw to, .png, .svg or .dot")
 
 
-def _look(commands: Any, verb: str, text: str) -> argparse.ArgumentParser:
-    """A command that is the function of inspect/look/ of the same name."""
+def _add_dump(commands: Any) -> None:
+    dump = _look(
+        commands, "dump", "show words field by field: all, or ADDRESS, ADDRESS-ADDRESS, ADDRESS/WORDS", _dump
+    )
+    dump.add_argument(
+        "words",
+        nargs="?",
+        metavar="WORDS",
+        help=f"412, 412-500 (to 500), 412/20 (20 words) or {COMMON}; all if left off",
+    )
+    form = dump.add_mutually_exclusive_group()
+    form.add_argument("--raw", action="store_true", help="as DUMP of 1980 does: several words to a line")
+    form.add_argument(
+        "--radix", type=int, choices=(8, 10, 16), default=10, help="of the words as they are (default: 10)"
+    )
 
-    def look(args: argparse.Namespace) -> Listing:
-        from udec_ia.inspect import look
-        from udec_ia.restart import look_into
 
-        found: Listing = getattr(look, verb)(look.Atlas(look_into(args.file).h), *_given(args))
-        return found
+def _add_find(commands: Any) -> None:
+    find = _look(
+        commands, "find", "find groups by a condition, numbers by value, pointers by where they lead", _find
+    )
+    wanted = find.add_mutually_exclusive_group(required=True)
+    wanted.add_argument("condition", nargs="?", help="such as 'block where KXD > 0.1 and KMAT == 2'")
+    wanted.add_argument("--value", type=float, metavar="X", help="find all numbers that are X")
+    wanted.add_argument("--points-to", type=int, metavar="ADDRESS", help="find all pointers that lead there")
+    find.add_argument(
+        "--tolerance", type=float, metavar="SHARE", help="of X, that numbers may differ by (1e-6)"
+    )
+    find.add_argument("--limit", **LIMIT)
 
-    def script(args: argparse.Namespace) -> str:
-        given = "".join(f", {value!r}" for value in _given(args))
-        return (
-            f"from udec_ia.inspect.look import Atlas, {verb}\nfrom udec_ia.restart import look_into\n\n"
-            f"atlas = Atlas(look_into({str(args.file)!r}).h)  # of a model: Atlas(model.h)\n"
-            f"print({verb}(atlas{given}).as_text())"
-        )
 
-    parser = command(commands, verb, text, look, script)
+def _look(
+    commands: Any, verb: str, text: str, call: Callable[[argparse.Namespace], Call]
+) -> argparse.ArgumentParser:
+    """A command that prints what a function of the library finds in FILE."""
+    parser = command(
+        commands, verb, text, lambda args: call(args).on(args.file), lambda args: call(args).script(args.file)
+    )
     file(parser)
     return parser
 
 
-def _given(args: argparse.Namespace) -> list[Any]:
-    """The arguments after FILE that are there."""
-    return [value for key in ("along", "address", "start") if (value := vars(args).get(key)) is not None]
+def _named(args: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """Those of some options that were given."""
+    return {name: vars(args)[name] for name in names if vars(args)[name] is not None}
+
+
+def _what(args: argparse.Namespace) -> Call:
+    if args.out is not None:
+        return Call("draw", (args.address, args.out), module="udec_ia.output.place_picture")
+    return Call("what", (args.address,))
+
+
+def _who(args: argparse.Namespace) -> Call:
+    return Call("who", (args.address,))
+
+
+def _walk(args: argparse.Namespace) -> Call:
+    start = () if args.start is None else (args.start,)
+    return Call("walk", (args.along, *start), _named(args, "field", "limit"))
+
+
+def _junk(_: argparse.Namespace) -> Call:
+    return Call("junk")
+
+
+def _dump(args: argparse.Namespace) -> Call:
+    radix = {} if args.radix == 10 else {"radix": args.radix}
+    if args.words == COMMON and not args.raw and not radix:
+        return Call("common")
+    limits = () if args.words is None else _limits(args.words)
+    return Call("raw", limits, module="udec_ia.output.dump") if args.raw else Call("dump", limits, radix)
+
+
+def _limits(words: str) -> tuple[int, int]:
+    """First and last address of 412, 412-500 or 412/20."""
+    given = STRETCH.fullmatch(words)
+    if given is None:
+        forms = f"412, 412-500 (to address 500), 412/20 (20 words), or {COMMON} alone"
+        raise ValueError(f"{words}: give {forms}")
+    first, last, many = given.groups(default="")
+    return int(first), int(last) if last else int(first) + int(many or 1) - 1
+
+
+def _find(args: argparse.Namespace) -> Call:
+    limit = _named(args, "limit")
+    if args.tolerance is not None and args.value is None:
+        raise ValueError("--tolerance goes with --value")
+    if args.value is not None:
+        return Call("find_value", (args.value,), _named(args, "tolerance", "limit"))
+    if args.points_to is not None:
+        return Call("find_pointers", (args.points_to,), limit)
+    return Call("find", (args.condition,), limit)
+
+
+def _map(args: argparse.Namespace) -> Call:
+    if args.out is None:
+        return Call("heap_map")
+    return Call("draw", (args.out, args.file.name), module="udec_ia.output.heap_picture", subject="array")
+
+
+def _graph(args: argparse.Namespace) -> Call:
+    if args.out is None:
+        return Call("graph", (args.address, args.depth))
+    return Call("draw", (args.address, args.out, args.depth), module="udec_ia.output.pointer_picture")

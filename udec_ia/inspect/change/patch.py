@@ -22,7 +22,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.change.prove import in_short, prove
 from udec_ia.inspect.check import Violation
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Span, Word
-from udec_ia.inspect.look.fields import called
+from udec_ia.inspect.look.names import called
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
 from udec_ia.ops.commands.recordable import HISTORY

@@ -17,6 +17,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.inspect.census import CHOICES, census, junk_chains
+from udec_ia.inspect.walk import one_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 
@@ -42,7 +43,7 @@ class Span(NamedTuple):
 
 
 class Word(NamedTuple):
-    """One field of a group, and one element of it. first, last: its words; offset: as in the table."""
+    """One field of a group, and one element of it. first, last: addresses of its words."""
 
     field: Field
     element: int
@@ -66,7 +67,11 @@ def first_free(h: Memory) -> int:
 
 
 class Atlas:
-    """The words of one memory. groups: addresses of the groups of every kind, ascending."""
+    """The words of one memory.
+
+    groups: addresses of the groups of every kind, ascending. shapes: the fields of a group of every kind,
+    element by element, as they would stand in a group at the address 0.
+    """
 
     def __init__(self, h: Memory) -> None:
         self.h = h
@@ -74,6 +79,15 @@ class Atlas:
         self.layout = layouts(self.ratio)
         self.free = first_free(h)
         self.groups: dict[str, Any] = census(self.h)
+        self.shapes = {kind: list(self._shape(kind)) for kind in KINDS}
+
+    def _shape(self, kind: str) -> Iterator[Word]:
+        offset = self.layout[kind].offset
+        for field in TABLE.group(kind).fields:
+            wide = self.ratio if field.real else 1
+            first = (offset[field.name] - 1) * wide if field.real else offset[field.name]
+            for element in range(field.count):
+                yield Word(field, element, first + element * wide, first + (element + 1) * wide - 1)
 
     # ---- spans
 
@@ -83,7 +97,16 @@ class Atlas:
         return junk_list(self.h)
 
     @cached_property
-    def _spans(self) -> tuple[Any, Any, Any]:
+    def junk_places(self) -> dict[int, str]:
+        """Where in the junk list the group at an address stands: number 3 of 7 of 20 words."""
+        return {
+            iad: f"number {k} of {len(chain)} of {size} words"
+            for chain in self.chains
+            for k, (iad, size) in enumerate(chain, 1)
+        }
+
+    @cached_property
+    def bounds(self) -> tuple[Any, Any, Any]:
         """First and last address and kind, by its place in NAMES, of all spans: ascending, without gaps."""
         junk = np.array([one for chain in self.chains for one in chain], np.int64).reshape(-1, 2)
         first = np.concatenate([*self.groups.values(), junk[:, 0]])
@@ -91,9 +114,7 @@ class Atlas:
             [*(np.full(len(at), self.layout[k].size) for k, at in self.groups.items()), junk[:, 1]]
         )
         kind = np.repeat(np.arange(len(KINDS) + 1), [*(len(at) for at in self.groups.values()), len(junk)])
-        first, once = np.unique(
-            first, return_index=True
-        )  # a group in use goes before junk at the same address
+        first, once = np.unique(first, return_index=True)  # a group in use goes before junk at its address
         size, kind = size[once], kind[once]
         top = min(self.free, len(self.h.ia) + 1)
         last = np.minimum(first + size, np.append(first[1:], top)) - 1
@@ -104,15 +125,12 @@ class Atlas:
         parts = [(first, last, kind), (before[gap], after[gap] - 1, nothing)]
         rows = [np.concatenate([*(part[c] for part in parts), [one[c] for one in rest]]) for c in range(3)]
         order = np.argsort(rows[0], kind="stable")
-        return (
-            rows[0][order].astype(np.int64),
-            rows[1][order].astype(np.int64),
-            rows[2][order].astype(np.int64),
-        )
+        begin, end, kinds = (row[order].astype(np.int64) for row in rows)
+        return begin, end, kinds
 
     def spans(self, first: int = 1, last: int | None = None) -> Iterator[Span]:
         """What the words `first` to `last` belong to, in rising order and without gaps; each span whole."""
-        begin, end, kind = self._spans
+        begin, end, kind = self.bounds
         k = int(np.searchsorted(begin, first, "right")) - 1
         while k < len(begin) and (last is None or begin[k] <= last):
             yield Span(int(begin[k]), int(end[k]), NAMES[kind[k]])
@@ -128,16 +146,12 @@ class Atlas:
 
     def words(self, span: Span) -> Iterator[Word]:
         """The fields of a group, element by element, in the order of its words."""
-        for field in TABLE.group(span.kind).fields:
-            for element in range(field.count):
-                yield self.word(span, field, element)
+        for word in self.shapes[span.kind]:
+            yield word._replace(first=span.first + word.first, last=span.first + word.last)
 
     def word(self, span: Span, field: Field, element: int = 0) -> Word:
         """Where an element of a field of a group stands."""
-        offset = self.layout[span.kind].offset[field.name]
-        wide = self.ratio if field.real else 1
-        first = span.first + ((offset - 1 + element) * wide if field.real else offset + element)
-        return Word(field, element, first, first + wide - 1)
+        return next(word for word in self.words(span) if (word.field, word.element) == (field, element))
 
     def word_at(self, address: int) -> tuple[Span, Word | None]:
         """The span and the field at an address; None where no field is, in a padding or outside of groups."""
@@ -149,47 +163,73 @@ class Atlas:
 
     def value(self, word: Word) -> int | float:
         """What a field holds."""
-        if word.field.real:
-            return float(self.h.ra[(word.first - 1) // self.ratio])
-        return int(self.h.ia[word.first - 1])
+        found: int | float = self.gather(word, np.zeros(1, np.int64)).tolist()[0]
+        return found
 
-    def read(self, span: Span, name: str, element: int = 0) -> int | float:
-        """What the field `name` of a group holds."""
-        field = next(field for field in TABLE.group(span.kind).fields if field.name == name)
-        return self.value(self.word(span, field, element))
+    def gather(self, word: Word, at: Any) -> Any:
+        """What a field of a shape holds in the groups at the addresses `at`: int64, or reals."""
+        index = at + (word.first - 1)
+        return self.h.ra[index // self.ratio] if word.field.real else self.h.ia[index].astype(np.int64)
 
     # ---- relations
 
-    def holds(self, kind: str, address: int) -> bool:
-        """True if a group of that kind is there; "item", "soft" and "any" stand for several kinds."""
-        kinds = KINDS if kind == "any" else CHOICES.get(kind, (kind,))
-        for one in kinds:
-            k = int(np.searchsorted(self.groups[one], address))
-            if k < len(self.groups[one]) and self.groups[one][k] == address:
-                return True
-        return False
+    @cached_property
+    def starts(self) -> Any:
+        """For each address below MFREE: 1 + place in KINDS of the group that begins there, or 0."""
+        found = np.zeros(self.free, np.int8)
+        for number, at in enumerate(self.groups.values(), 1):
+            found[at] = number
+        return found
+
+    def holding(self, target: str, addresses: Any) -> Any:
+        """True for each of `addresses` at which a group stands that a pointer to `target` may lead to."""
+        within = (addresses >= 1) & (addresses < self.free)
+        return one_of(self.starts[np.where(within, addresses, 0)], _numbers(target))
+
+    def holds(self, target: str, address: int) -> bool:
+        """The same for one address."""
+        return bool(self.holding(target, np.array([address]))[0])
 
     @cached_property
-    def _owner(self) -> dict[int, int]:
+    def held(self) -> dict[int, int]:
         """Block of each group that hangs on a block and does not name it: extensions, and lists in these."""
-        found: dict[int, int] = {}
+        links = {  # by number of the kind: offset, role, and numbers of the kinds that the pointer leads to
+            number: [
+                (word.first - 1, word.field.role, _numbers(str(word.field.target)))
+                for word in self.shapes[kind]
+                if word.field.role in ("extension", "first", "next")
+            ]
+            for number, kind in enumerate(KINDS, 1)
+        }
+        words, starts, found = memoryview(self.h.ia), memoryview(self.starts), dict[int, int]()
         waiting = [(block, block) for block in self.groups["block"].tolist()]
         while waiting:
             iad, block = waiting.pop()
-            span = self.span(iad)
-            for field in TABLE.group(span.kind).fields:
-                leads = field.role in ("extension", "first") or (field.role == "next" and iad in found)
-                to = int(self.read(span, field.name)) if leads else 0
-                if to and to not in found and self.holds(str(field.target), to):
+            for offset, role, numbers in links[starts[iad]]:
+                to = words[iad + offset]
+                if role == "next" and iad not in found:  # the list of blocks itself
+                    continue
+                if 0 < to < self.free and starts[to] in numbers and to not in found:
                     found[to] = block
                     waiting.append((to, block))
         return found
 
     def owners(self, span: Span) -> list[int]:
         """The blocks that a group belongs to: two for a contact, none for a domain; a block is its own."""
+        if span.kind not in KINDS:
+            return []
         if span.kind == "block":
             return [span.first]
-        fields = TABLE.group(span.kind).fields if span.kind in KINDS else ()
-        hosts = [int(self.read(span, field.name)) for field in fields if field.role == "host"]
-        held = self._owner.get(span.first)
+        hosts = [int(self.value(word)) for word in self.words(span) if word.field.role == "host"]
+        held = self.held.get(span.first)
         return hosts or ([held] if held else [])
+
+
+def choices(target: str) -> tuple[str, ...]:
+    """The kinds of group that a pointer to `target` may lead to."""
+    return KINDS if target == "any" else CHOICES.get(target, (target,))
+
+
+def _numbers(target: str) -> tuple[int, ...]:
+    """The same by their numbers in Atlas.starts."""
+    return tuple(KINDS.index(kind) + 1 for kind in choices(target))

@@ -1,92 +1,126 @@
-"""Fields of groups in words: what a value means, and what a pointer leads to."""
+"""Fields of groups, one a line: words, name, value, unit and what the value means. Many groups at a time.
+
+A value that the field table does not allow, and a pointer to something else than it says, are told as such.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import repeat
+from typing import Any
 
-from udec_ia.inspect.look.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word
-from udec_ia.inspect.look.listing import Listing
-from udec_ia.layout import offsets as g
+import numpy as np
+
+from udec_ia.inspect.check.codes import allowed, in_words
+from udec_ia.inspect.look.atlas import TABLE, Atlas, Span, Word
+from udec_ia.inspect.look.names import leads_to
+from udec_ia.layout.table import Field
 
 COLUMNS = ("address", "words", "field", "value", "unit", "meaning")
-HEADS = {(head.group, head.value): head for head in TABLE.heads}
-CODES = {(code.field, code.value): f"{code.name}: {code.text}" for code in TABLE.codes}
+Row = tuple[Any, ...]
+HEADS = {(head.group, head.value): f"{head.name}: {head.text}" for head in TABLE.heads}
+CODES: dict[str, dict[int, str]] = {}  # by field and value
+for _code in TABLE.codes:
+    CODES.setdefault(_code.field, {})[_code.value] = f"{_code.name}: {_code.text}"
+COMMON = "common block"  # what its variables stand under
+RADICES = (8, 10, 16)
+NOT_ALLOWED = "not allowed"  # begins what is said of a value that the table does not allow
 
 
-def called(atlas: Atlas, span: Span) -> str:
-    """A span by name, with the blocks that it belongs to: corner@412 of block@88; junk with its place."""
-    if span.kind == JUNK:
-        return f"{span.name}, {junk_place(atlas, span.first)}"
-    blocks = " and ".join(f"block@{block}" for block in atlas.owners(span))
-    return f"{span.name} of {blocks}" if blocks and span.kind != "block" else span.name
+def group_rows(atlas: Atlas, kind: str, at: Any, radix: int = 10) -> list[tuple[Row, ...]]:
+    """For each group of a kind at the addresses `at` (n,) its rows of COLUMNS, field by field."""
+    fields = []
+    for word in atlas.shapes[kind]:
+        values = atlas.gather(word, at)
+        wide = range(word.first - 1, word.last)
+        words = _joined([digits(atlas.h.ia[at + offset], radix) for offset in wide])
+        told = _meanings(atlas, kind, word.field, values)
+        addresses = (at + word.first).tolist()
+        unit = word.field.unit.strip("-")
+        fields.append(
+            zip(addresses, words, repeat(word.name), values.tolist(), repeat(unit), told, strict=False)
+        )
+    return list(zip(*fields, strict=True))
 
 
-def junk_place(atlas: Atlas, address: int) -> str:
-    """Where in the junk list a group stands: third of 7 of 20 words."""
-    for chain in atlas.chains:
-        for k, (iad, size) in enumerate(chain, 1):
-            if iad == address:
-                return f"number {k} of {len(chain)} of {size} words"
-    raise KeyError(address)
+def span_rows(atlas: Atlas, span: Span, radix: int = 10) -> list[Row]:
+    """The rows of one group, and of words of it that no field has, if there is something in them."""
+    rows = list(group_rows(atlas, span.kind, np.array([span.first]), radix)[0])
+    for address in _padding(atlas, span):
+        word = atlas.h.ia[address - 1 : address]
+        rows.append((address, digits(word, radix)[0], "", "", "", "no field, but not 0"))
+    return sorted(row for row in rows if row[0] <= span.last)
+
+
+def padded(atlas: Atlas, kind: str, at: Any) -> Any:
+    """True for each group of a kind at the addresses (n,) with something in words that no field has."""
+    found = np.zeros(len(at), bool)
+    for offset in _gaps(atlas, kind):
+        found |= atlas.h.ia[at + offset - 1] != 0
+    return found
+
+
+def _gaps(atlas: Atlas, kind: str) -> list[int]:
+    """The words of a group of a kind, counted from 0, that no field has: they fill up to whole reals."""
+    taken = {offset for word in atlas.shapes[kind] for offset in range(word.first, word.last + 1)}
+    return [offset for offset in range(atlas.layout[kind].size) if offset not in taken]
+
+
+def _padding(atlas: Atlas, span: Span) -> Iterator[int]:
+    for offset in _gaps(atlas, span.kind):
+        if span.first + offset <= span.last and atlas.h.ia[span.first + offset - 1]:
+            yield span.first + offset
+
+
+def digits(words: Any, radix: int) -> list[str]:
+    """Words in a radix: decimal with a sign, else all digits of the word as it is."""
+    if radix == 10:
+        return list(map(str, words.tolist()))
+    bits = words.itemsize * 8
+    form = f"{{:0{bits // 4}x}}" if radix == 16 else f"{{:0{-(-bits // 3)}o}}"
+    return list(map(form.format, words.view(f"u{words.itemsize}").tolist()))
+
+
+def word_width(words: Any, radix: int) -> int:
+    """How many characters a word of that type has in a radix, if it has all digits."""
+    lowest = np.array([np.iinfo(words.dtype).min], words.dtype)
+    return len(digits(lowest, radix)[0])
+
+
+def _joined(parts: list[list[str]]) -> Iterable[str]:
+    return parts[0] if len(parts) == 1 else map(" ".join, zip(*parts, strict=True))
 
 
 def meaning(atlas: Atlas, span: Span, word: Word) -> str:
-    """What the value of a field says: the group that it leads to, a code's name, or the table's text."""
-    field, value = word.field, atlas.value(word)
+    """What the value of one field of a group says."""
+    (told,) = _meanings(atlas, span.kind, word.field, atlas.gather(word, np.zeros(1, np.int64)))
+    return told
+
+
+def _meanings(atlas: Atlas, kind: str, field: Field, values: Any) -> Iterable[str]:
+    """What the values (n,) of a field say: groups that they lead to, names of codes, or the table's text."""
     if field.role == "head":
-        head = HEADS.get((span.kind, int(value)))
-        return f"{head.name}: {head.text}" if head else "no head code of its kind"
+        return [HEADS.get((kind, value), "no head code of its kind") for value in values.tolist()]
     if field.target:
-        return leads_to(atlas, field.target, int(value))
-    return CODES.get((field.name, int(value)), field.text) if not field.real else field.text
+        return leads_to(atlas, field.target, values, required=not allowed(field, np.zeros(1)).all())
+    return data_meanings(field, values)
 
 
-def leads_to(atlas: Atlas, target: str, value: int) -> str:
-    """What a pointer leads to, or that it is not what the table says."""
-    if value == 0:
-        return "nothing"
-    if not 1 <= value <= len(atlas.h.ia):
-        return f"outside IA(), no {target}"
-    span = atlas.span(value)
-    if span.first == value and atlas.holds(target, value):
-        return called(atlas, span)
-    place = called(atlas, span) if span.first == value else f"word {value - span.first + 1} of {span.name}"
-    return f"{place}, no {target}"
+def data_meanings(field: Field, values: Any) -> Iterable[str]:
+    """The same for a field that is no pointer."""
+    good, told = np.isfinite(values) & allowed(field, values), CODES.get(field.name)
+    if good.all() and not told:
+        return repeat(field.text, len(values))
+    wrong = f"{NOT_ALLOWED}, {in_words(field) if field.allowed else 'finite'}: {field.text}"
+    return [
+        (_coded(told, value, field.text) if told else field.text) if is_good else wrong
+        for value, is_good in zip(values.tolist(), good.tolist(), strict=True)
+    ]
 
 
-def lines(atlas: Atlas, span: Span, first: int, last: int) -> Iterator[tuple[object, ...]]:
-    """Rows of COLUMNS for the fields of a group with a word from `first` to `last`."""
-    for word in atlas.words(span):
-        if word.last >= first and word.first <= last:
-            raw = " ".join(str(atlas.h.ia[iad - 1]) for iad in range(word.first, word.last + 1))
-            told = meaning(atlas, span, word)
-            yield word.first, raw, word.name, atlas.value(word), word.field.unit.strip("-"), told
-
-
-def what(atlas: Atlas, address: int) -> Listing:
-    """What the word at `address` is, and the whole group that it is part of. IndexError outside IA()."""
-    span, word = atlas.word_at(address)
-    size, place = span.last - span.first + 1, address - span.first + 1
-    said = [f"{address} is word {place} of {size} of {called(atlas, span)}"]
-    if span.kind not in KINDS:
-        said[0] = f"{address} is word {place} of {size} that are {span.kind}"
-        if span.kind == JUNK:
-            said = [f"{address} is word {place} of {size} of {called(atlas, span)}, free to be used again"]
-        return Listing(said)
-    if word is None:
-        said.append("no field: it fills up the group to whole reals")
-    else:
-        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}")
-    return Listing(said, COLUMNS, list(lines(atlas, span, span.first, span.last)))
-
-
-def _value(atlas: Atlas, word: Word) -> str:
-    unit = word.field.unit.strip("-")
-    return f"{atlas.value(word)}{' ' if unit else ''}{unit}"
-
-
-def heads(atlas: Atlas) -> Iterator[tuple[str, int, str]]:
-    """The list heads and other pointers of the common block: name, value, kind of group."""
-    for field in TABLE.common:
-        if field.role == "head" and field.target:
-            yield field.name, int(atlas.h.ci[getattr(g, field.name)]), field.target
+def _coded(told: dict[int, str], value: int, text: str) -> str:
+    """The name of a code, or those of the flags that add up to it."""
+    flags = {flag: one for flag, one in told.items() if flag > 0 and value & flag == flag}
+    if value in told or sum(flags) != value:
+        return told.get(value, text)
+    return ", ".join(flags.values()) or text

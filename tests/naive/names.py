@@ -1,0 +1,49 @@
+"""What each group is called, from tables alone: corner@412 of block@88."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia import Model
+
+
+def names(m: Model) -> dict[int, str]:
+    """Names by address. Every list is followed by hand."""
+    tables = {kind: {int(row["address"]): row for row in m.table(kind)} for kind in KINDS}
+    found = {iad: f"{kind}@{iad}" for kind, rows in tables.items() for iad in rows}
+
+    def of(iad: int, *blocks: Any) -> None:
+        found[iad] += " of " + " and ".join(f"block@{int(block)}" for block in blocks)
+
+    for iad, row in tables["corner"].items():
+        of(iad, row["KNB"])
+    for iad, row in tables["contact"].items():
+        of(iad, row["KB1"], row["KB2"])
+    for iad, row in tables["bound"].items():
+        of(iad, row["KUB"])
+    for block, row in tables["block"].items():
+        extension = int(row["KBEX"])
+        if extension:
+            of(extension, block)
+        for kind, head, link in (("gridpoint", "KFG", "KG"), ("zone", "KFZ", "KZ")):
+            iad = int(tables["fdef"][extension][head]) if extension in tables["fdef"] else 0
+            while iad:
+                of(iad, block)
+                iad = int(tables[kind][iad][link])
+    return found
+
+
+KINDS = (
+    "block",
+    "corner",
+    "contact",
+    "domain",
+    "sdef",
+    "fdef",
+    "zone",
+    "gridpoint",
+    "bound",
+    "signal",
+    "tabpoint",
+    "history",
+)

@@ -1,0 +1,194 @@
+"""The heap beside the rock, in the same colours: what a block, a corner or a contact is in both.
+
+The heap is read as a page, from left to right and down; each stretch of words has the colour of the kind of
+group with the largest share of it. Of a damaged heap the blocks that hang together are drawn, and no domains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check import check_links
+from udec_ia.inspect.look.atlas import KINDS, NAMES, Atlas
+from udec_ia.inspect.look.cover import FINE, cover, stretch
+from udec_ia.inspect.look.kinds import COLOURS
+from udec_ia.inspect.look.listing import Listing
+from udec_ia.layout import offsets as g
+from udec_ia.output.draw import INK, POINT, diameter, draw_outlines, limits, paper, scale_for, title
+from udec_ia.output.outline import Outlines, State, apex, domain_polygons
+from udec_ia.output.picture import picture_path, write_as
+from udec_ia.output.remains import is_near, outlines_left, points
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PAGE = (3.6, 4.4)  # inches of the heap, width and height
+CELLS = 180 * 220  # stretches that it shows, at most
+GAP = 0.95  # inches between blocks and heap
+KEY, BELOW = 0.6, 0.55  # inches for the key to the colours, and from the blocks down to it
+MANY = 3000  # domains beyond which they are not drawn: they could not be seen
+PALE = "55"  # opacity of areas
+
+
+def draw(array: MainArray, out: str | Path, name: str = "") -> Listing:
+    """Draw heap and blocks to the file `out`, PNG or SVG. name: title.
+
+    ValueError for another kind of file, error 31 if it cannot be written.
+    """
+    from matplotlib import rc_context
+
+    path = picture_path(out)
+    with rc_context({"svg.hashsalt": "udec"}):
+        write_as(figure(array, name), path)
+    return Listing([f"wrote {path}"])
+
+
+def figure(array: MainArray, name: str) -> Figure:
+    """The picture: blocks on the left, the heap on the right, a key to the colours below."""
+    atlas = Atlas(array.h)
+    o, left_out = outlines_left(atlas)
+    box = limits([State(0, 0.0, o)])
+    inches = scale_for(box, 0.0)
+    height = (box[3] - box[2]) * inches
+    below = KEY + max(PAGE[1] - height, 0.0)
+    picture, axes = paper(box, inches, GAP + PAGE[0], below)
+    title(axes, name)
+    sound = not check_links(array)
+    _rock(axes, atlas, o, sound, inches)
+    page = _page_axes(picture, axes, max(PAGE[1], height))
+    _heap(page, atlas)
+    _key(picture, axes, atlas)
+    if left_out or not sound:
+        said = f"{left_out} blocks left out" if left_out else "no domains are drawn"
+        axes.set_title(f"damaged: {said}", loc="right", fontsize=8, color=COLOURS["not linked"])
+    return picture
+
+
+def _rock(axes: Axes, atlas: Atlas, o: Outlines, sound: bool, inches: float) -> None:
+    """Domains, blocks, zones, and the points where corners, grid-points and contacts are."""
+    from matplotlib.collections import PolyCollection
+
+    if sound and len(atlas.groups["domain"]) <= MANY:
+        inner = [domain.polygon for domain in domain_polygons(atlas.h) if not domain.outer]
+        blue, thin = COLOURS["domain"], min(1.2, 0.03 * _size(o, inches))
+        axes.add_collection(
+            PolyCollection(inner, facecolors=blue + PALE, edgecolors=blue, linewidths=thin, zorder=2.8)
+        )
+    every = np.ones(len(o.address), bool)
+    draw_outlines(axes, o, every, COLOURS["block"] + PALE, COLOURS["block"], inches)
+    size = min(5.0, 0.1 * _size(o, inches))
+    triangles = list(_triangles(atlas, o))
+    axes.add_collection(
+        PolyCollection(
+            triangles, facecolors="none", edgecolors=COLOURS["zone"], linewidths=0.12 * size, zorder=2.6
+        )
+    )
+    for kind, places in _dots(atlas, o):
+        axes.plot(*places.T, "o", color=COLOURS[kind], markersize=size, markeredgewidth=0.0, zorder=3)
+
+
+def _size(o: Outlines, inches: float) -> float:
+    """The size of a block in the picture, in points."""
+    return diameter(o) * inches / POINT if len(o.address) else 0.0
+
+
+def _dots(atlas: Atlas, o: Outlines) -> Iterator[tuple[str, Any]]:
+    """Places of corners, grid-points and contacts (n, 2) in m, as far as they are any."""
+    yield "corner", apex(o.corner, o.centre, o.radius)
+    for kind, kx, ky in (("gridpoint", g.KXG, g.KYG), ("contact", g.KXC, g.KYC)):
+        places = points(atlas, atlas.groups[kind], kx, ky)
+        yield kind, places[is_near(places, o.corner)]
+
+
+def _triangles(atlas: Atlas, o: Outlines) -> Iterator[Any]:
+    """The zones whose three grid-points are there, (3, 2) in m."""
+    corners = [word for word in atlas.shapes["zone"] if word.field.role == "triple"]
+    at = np.stack([atlas.gather(word, atlas.groups["zone"]) for word in corners], axis=-1)
+    at = at[atlas.holding("gridpoint", at).all(axis=1)]
+    places = points(atlas, at, g.KXG, g.KYG)
+    good = is_near(places.reshape(-1, 2), o.corner).reshape(-1, 3).all(axis=1)
+    yield from places[good]
+
+
+def _page_axes(picture: Figure, axes: Axes, height: float) -> Axes:
+    """Room for the heap on the right, its top where that of the blocks is."""
+    width, whole = picture.get_size_inches()
+    top = axes.get_position().y1
+    return picture.add_axes(
+        (1.0 - (PAGE[0] + 0.2) / width, top - height / whole, PAGE[0] / width, height / whole)
+    )
+
+
+def _heap(page: Axes, atlas: Atlas) -> None:
+    """The words that have been in use as a page, and the addresses at which its lines begin."""
+    from matplotlib.colors import ListedColormap
+
+    step = stretch(atlas, CELLS)
+    found = cover(atlas, step)
+    box = page.get_window_extent()
+    across = max(int(np.ceil(np.sqrt(len(found) * box.width / box.height))), 1)
+    lines = max(-(-len(found) // across), 1)
+    cells = np.full(across * lines, NAMES.index("unused"))
+    cells[: len(found)] = found
+    colours = ListedColormap([COLOURS[name] for name in NAMES])
+    page.imshow(
+        cells.reshape(lines, across),
+        colours,
+        vmin=-0.5,
+        vmax=len(NAMES) - 0.5,
+        aspect="auto",
+        interpolation="nearest",
+    )
+    if step <= FINE and len(found) <= 60 * 60:
+        _borders(page, (atlas.bounds[0][atlas.bounds[0] < atlas.free] - 1) // step, across, lines)
+    rows = np.unique(np.linspace(0, lines - 1, min(lines, 9)).astype(int))
+    page.set_yticks(rows, [str(int(row) * across * step + 1) for row in rows])
+    page.set_xticks([])
+    page.tick_params(labelsize=8, colors=INK, width=0.6)
+    for spine in page.spines.values():
+        spine.set(linewidth=0.6, color="#8a857c")
+    unit = "a cell is one word" if step == 1 else f"a cell is {step} words"
+    page.set_title(f"IA(), {atlas.free - 1} words in use", loc="left", fontsize=10, color=INK)
+    page.set_xlabel(unit, fontsize=8, color=INK)
+
+
+def _borders(page: Axes, begins: Any, across: int, lines: int) -> None:
+    """White lines between the lines of the page, and before each group."""
+    from matplotlib.collections import LineCollection
+
+    row, place = np.divmod(begins, across)
+    ends = [
+        [(x - 0.5, y - 0.5), (x - 0.5, y + 0.5)] for x, y in zip(place.tolist(), row.tolist(), strict=True)
+    ]
+    rules = [[(-0.5, y - 0.5), (across - 0.5, y - 0.5)] for y in range(1, lines)]
+    page.add_collection(LineCollection(ends, colors="white", linewidths=1.2))
+    page.add_collection(LineCollection(rules, colors="white", linewidths=0.5))
+
+
+def _key(picture: Figure, axes: Axes, atlas: Atlas) -> None:
+    """Which colour is which kind, with groups and words."""
+    from matplotlib.patches import Patch
+
+    first, last, kind = atlas.bounds
+    patches = []
+    for number in np.unique(kind[first < atlas.free]).tolist():
+        here = kind == number
+        words, name = int((last[here] - first[here] + 1).sum()), NAMES[number]
+        many = f"{int(here.sum())}, " if name in KINDS else ""
+        patches.append(Patch(color=COLOURS[name], label=f"{name}: {many}{words} words"))
+    place = axes.get_position()
+    corner = (place.x0, place.y0 - BELOW / picture.get_figheight())
+    style: dict[str, Any] = {
+        "fontsize": 8,
+        "frameon": False,
+        "labelcolor": INK,
+        "borderaxespad": 0.0,
+        "borderpad": 0.0,
+    }
+    picture.legend(handles=patches, loc="upper left", bbox_to_anchor=corner, ncols=4, **style)

@@ -1,0 +1,113 @@
+"""Where a group lies in the rock, as a picture: its blocks among their neighbours, and the group marked.
+
+A corner, a contact, a grid-point or a block is marked where it is. Other groups are where the groups are that
+they lead to, such as the grid-points of a zone, or those that lead to them, such as the contacts of a domain.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from udec_ia.inspect.look.atlas import KINDS, Atlas, Span
+from udec_ia.inspect.look.kinds import COLOURS
+from udec_ia.inspect.look.listing import Listing
+from udec_ia.inspect.look.names import called
+from udec_ia.inspect.look.place import homes
+from udec_ia.inspect.look.pointers import pointers
+from udec_ia.inspect.look.what import what
+from udec_ia.layout import offsets as g
+from udec_ia.output.draw import INK, draw_addresses, draw_outlines, paper, scale_for, title
+from udec_ia.output.outline import Outlines
+from udec_ia.output.picture import picture_path, write_as
+from udec_ia.output.remains import is_near, outlines_left, part, points
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+POINTS = {
+    "block": (g.KX, g.KY),
+    "corner": (g.KXP, g.KYP),
+    "contact": (g.KXC, g.KYC),
+    "gridpoint": (g.KXG, g.KYG),
+}
+OF_ITSELF = ("member", "triple", "watched")  # roles of pointers to what is where the group is
+MARGIN = 0.6  # around its blocks, as a share of their size
+FACE = "#efeae0"  # of the other blocks
+
+
+def draw(atlas: Atlas, address: int, out: str | Path) -> Listing:
+    """What the word at `address` is, and where its group lies drawn to the file `out`, PNG or SVG.
+
+    IndexError outside IA(), ValueError for what lies nowhere or another kind of file, error 31 if it cannot
+    be written.
+    """
+    from matplotlib import rc_context
+
+    path, span, found = picture_path(out), atlas.span(address), what(atlas, address)
+    o, _ = outlines_left(atlas)
+    own = np.isin(o.address, homes(atlas, span))
+    if not own.any():
+        raise ValueError(f"{called(atlas, span)} lies in no block that can be drawn")
+    with rc_context({"svg.hashsalt": "udec"}):
+        write_as(_figure(atlas, span, o, own), path)
+    return found._replace(said=[*found.said, f"wrote {path}"])
+
+
+def _figure(atlas: Atlas, span: Span, o: Outlines, own: Any) -> Figure:
+    """The blocks `own`, the groups that mark the place, and what is around them."""
+    places = spots(atlas, span)
+    places = places[is_near(places, o.corner)]
+    box = _around(np.concatenate([o.corner[np.repeat(own, np.diff(o.first))], places]))
+    inches = scale_for(box, 0.0)
+    inside = _reaching(o, box)
+    o, own = part(o, inside), own[inside]
+    figure, axes = paper(box, inches)
+    title(axes, called(atlas, span))
+    draw_outlines(axes, o, ~own, FACE, INK, inches)
+    draw_outlines(axes, o, own, COLOURS["block"] + "55", COLOURS["block"], inches)
+    draw_addresses(axes, o, inches)
+    colour = COLOURS[span.kind]
+    if len(places) > 2 and span.kind != "domain":
+        axes.fill(*places.T, facecolor=colour + "55", edgecolor=colour, zorder=3)
+    ring: dict[str, Any] = {
+        "markersize": 13,
+        "markerfacecolor": "none",
+        "markeredgecolor": colour,
+        "markeredgewidth": 2,
+    }
+    axes.plot(*places.T, "o", zorder=7, **ring)
+    return figure
+
+
+def _around(places: Any) -> tuple[float, float, float, float]:
+    """x and y range of some places, and a margin."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    size = MARGIN * float(max(high - low)) or 0.5
+    return float(low[0] - size), float(high[0] + size), float(low[1] - size), float(high[1] + size)
+
+
+def _reaching(o: Outlines, box: tuple[float, float, float, float]) -> Any:
+    """True for each block with a part in a range."""
+    low, high = np.minimum.reduceat(o.corner, o.first[:-1]), np.maximum.reduceat(o.corner, o.first[:-1])
+    x1, x2, y1, y2 = box
+    return (high[:, 0] > x1) & (low[:, 0] < x2) & (high[:, 1] > y1) & (low[:, 1] < y2)
+
+
+def spots(atlas: Atlas, span: Span) -> Any:
+    """Places (n, 2) in m where a group is, or the groups are that it leads to or that lead to it."""
+    at = [span.first]
+    if span.kind not in POINTS:
+        words = [word for word in atlas.words(span) if word.field.role in OF_ITSELF]
+        at = [int(atlas.value(word)) for word in words]
+        if span.kind == "domain":
+            loops = [one for one in pointers(atlas) if one.word is not None and one.word.field.role == "loop"]
+            at += [int(iad) for one in loops for iad in one.at[one.to == span.first]]
+    found = [np.zeros((0, 2))]
+    for iad in dict.fromkeys(at):
+        kind = KINDS[atlas.starts[iad] - 1] if atlas.holds("any", iad) else ""
+        if kind in POINTS:
+            found.append(points(atlas, np.array([iad]), *POINTS[kind]))
+    return np.concatenate(found)
