@@ -7,7 +7,7 @@ any byte is refused before a word of it is believed. `docs/restart-format.md` is
 """
 
 from udec_ia.restart.header import info
-from udec_ia.restart.reader import load, look_into
+from udec_ia.restart.reader import deck_in, load, look_into
 from udec_ia.restart.writer import save
 
-__all__ = ["info", "load", "look_into", "save"]
+__all__ = ["deck_in", "info", "load", "look_into", "save"]
