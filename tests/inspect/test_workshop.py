@@ -27,7 +27,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_there_is_something_shown() -> None:
-    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk"}
+    assert {command.split()[0] for command, _ in SHOWN} == {"what", "who", "walk", "junk", "view"}
 
 
 def test_the_page_shows_what_is_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,7 +22,8 @@ BELOW = {  # layers that a layer imports
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
-    "workshop": {"errors", "heap", "inspect", "layout", "restart"},
+    "view": {"files", "heap", "inspect", "layout", "printable"},
+    "workshop": {"errors", "heap", "inspect", "layout", "restart", "view"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

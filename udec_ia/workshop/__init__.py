@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.workshop import look
+from udec_ia.workshop import look, view
 
-PARTS = (look,)
+PARTS = (look, view)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 
 
