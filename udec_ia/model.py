@@ -765,6 +765,19 @@ class Model(Session):
         self._ready()
         return self.draw(self.array, n or 0, what)
 
+    @looking
+    def view(self, path: str | Path) -> Path:
+        """Write the page `path` that shows the array beside the blocks, in a browser. Returns its name.
+
+        Of several states make a `udec_ia.view.Page`. Error 31 if something else stands there, or it cannot be
+        written.
+        """
+        from udec_ia.view import Page
+
+        page = Page()
+        page.add(self.array, f"{self.name}, cycle {self.array.h.ci[MCTOT]}", self.deck_log)
+        return page.write(path)
+
 
 def _words(mtop: SupportsIndex) -> int:
     """`mtop` as an integer; TypeError that says so if it is none."""

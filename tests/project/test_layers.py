@@ -22,8 +22,20 @@ BELOW = {  # layers that a layer imports
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},
     "restart": {"errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
+    "view": {"files", "heap", "inspect", "layout", "printable"},
     "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
-    "workshop": {"debug", "errors", "heap", "inspect", "layout", "model", "output", "printable", "restart"},
+    "workshop": {
+        "debug",
+        "errors",
+        "heap",
+        "inspect",
+        "layout",
+        "model",
+        "output",
+        "printable",
+        "restart",
+        "view",
+    },
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

@@ -8,7 +8,7 @@ any byte is refused before a word of it is believed. `docs/restart-format.md` is
 
 from udec_ia.restart.changing import load_to_change, save_changed
 from udec_ia.restart.header import info
-from udec_ia.restart.reader import load, look_into, see
+from udec_ia.restart.reader import deck_in, load, look_into, see
 from udec_ia.restart.writer import save
 
-__all__ = ["info", "load", "load_to_change", "look_into", "save", "save_changed", "see"]
+__all__ = ["deck_in", "info", "load", "load_to_change", "look_into", "save", "save_changed", "see"]

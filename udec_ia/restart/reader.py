@@ -109,6 +109,13 @@ def look_into(path: str | Path) -> MainArray:
     return see(path).array
 
 
+def deck_in(path: str | Path) -> list[str]:
+    """The command lines that led to the state in the restart file `path`. Raises as `look_into` does."""
+    path = Path(path)
+    with refusing(path), opened(path) as file:
+        return read_deck(file)
+
+
 @contextmanager
 def opened(path: Path) -> Iterator[Contents]:
     """The contents of a sealed, complete restart file of a format that this program reads."""

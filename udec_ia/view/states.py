@@ -1,0 +1,84 @@
+"""What the page holds of one state: its words as they are, what each belongs to, and what the checker says.
+
+The words and all else that there is much of go as bytes: little-endian, deflated, in base64. What the page
+has no room for is left out from the end, and said.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.array import MainArray
+from udec_ia.inspect.check import Violation, check
+from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.look.atlas import NAMES, TABLE, UNUSED, Atlas, Span
+from udec_ia.printable import MESSAGE, printable
+
+FAULTS = 1000  # violations that the page lists
+LINES = 2000  # lines of the deck that it shows, the last ones
+NAMING = {group.name for group in TABLE.groups if any(field.role == "host" for field in group.fields)}
+
+
+def state(array: MainArray, name: str, lines: Sequence[str], limit: int) -> dict[str, Any]:
+    """The state of `array`, which is called `name` and came to be by the deck `lines`, as JSON.
+
+    limit: words that the page has room for.
+    """
+    h, atlas, faults = array.h, Atlas(array.h), _faults(array)
+    spans = list(_shown(atlas, limit))
+    shown = sum(span.last - span.first + 1 for span in spans if span.kind != UNUSED)
+    first = {span.first for span in spans}
+    return {
+        "name": printable(name),
+        "scheme": array.scheme.name,
+        "ints": array.scheme.int_bits,
+        "reals": array.scheme.real_bits,
+        "used": atlas.free - 1,
+        "top": len(h.ia),
+        "shown": shown,
+        "words": packed(h.ia[:shown]),
+        "sizes": packed(np.array([span.last - span.first + 1 for span in spans], "f8")),
+        "kinds": packed(np.array([NAMES.index(span.kind) for span in spans], "u1")),
+        "owners": packed(np.array([_owner(atlas, span) for span in spans], "f8")),
+        "chains": [[iad for iad, _ in chain if iad in first] for chain in atlas.chains],
+        "common": [packed(h.ci), packed(h.cr), packed(h.cd)],
+        "faults": [[one.invariant, one.message] for one in faults[:FAULTS]],
+        "faultsLeft": len(faults[FAULTS:]),
+        "deck": [printable(line, MESSAGE) for line in lines[-LINES:]],
+        "deckLeft": len(lines[:-LINES]),
+    }
+
+
+def packed(numbers: Any) -> str:
+    """An array as text: base64 of its deflated little-endian bytes."""
+    little = np.ascontiguousarray(numbers, numbers.dtype.newbyteorder("<"))
+    return base64.b64encode(zlib.compress(little.tobytes())).decode("ascii")
+
+
+def _shown(atlas: Atlas, limit: int) -> Iterator[Span]:
+    """The spans, from the first one on, that the page has room for; words that are not used take none."""
+    for span in atlas.spans():
+        if span.kind == UNUSED or span.last <= limit:
+            yield span
+        elif span.kind not in atlas.groups:
+            yield span._replace(last=limit)
+            return
+        else:
+            return
+
+
+def _owner(atlas: Atlas, span: Span) -> int:
+    """The block of a group that does not name it, such as a zone; 0 for all others."""
+    if span.kind in NAMING or span.kind == "block" or span.kind not in atlas.groups:
+        return 0
+    return next(iter(atlas.owners(span)), 0)
+
+
+def _faults(array: MainArray) -> list[Violation]:
+    """What the checker has to say, each sentence once."""
+    return list(dict.fromkeys([*check(array), *check_common(array)]))

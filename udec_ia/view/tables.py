@@ -1,0 +1,62 @@
+"""The field table as the page needs it: kinds with their fields, codes, and where each field stands."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.heap.memory import JNEXT
+from udec_ia.inspect.census import CHOICES
+from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, Layout, layouts, read_table
+
+TABLE = read_table()
+
+
+def tables(ratios: set[int]) -> dict[str, Any]:
+    """All that does not change from state to state, for word schemes of these ratios, as JSON.
+
+    spans: names of what a span can be, kinds of groups before the rest. layouts: by ratio and kind the size
+    of a group and the first word of each field, counted from 0.
+    """
+    return {
+        "spans": NAMES,
+        "junk": JUNK,
+        "nothing": NOTHING,
+        "unused": UNUSED,
+        "junkNext": JNEXT[0],
+        "kinds": {
+            group.name: {
+                "text": group.text,
+                "fields": [_field(field, k) for k, field in enumerate(group.fields)],
+            }
+            for group in TABLE.groups
+        },
+        "common": [_field(field, getattr(g, field.name)) for field in TABLE.common],
+        "heads": [[head.group, head.value, f"{head.name}: {head.text}"] for head in TABLE.heads],
+        "codes": [[code.field, code.value, f"{code.name}: {code.text}"] for code in TABLE.codes],
+        "choices": CHOICES | {"any": KINDS},
+        "layouts": {
+            ratio: {kind: _layout(kind, layouts(ratio)[kind], ratio) for kind in KINDS} for ratio in ratios
+        },
+    }
+
+
+def _field(field: Field, place: int) -> dict[str, Any]:
+    """place: its number in its group, or where it stands among the integers, reals or doubles there."""
+    return {
+        "place": place,
+        "name": field.name,
+        "type": field.type,
+        "count": field.count,
+        "target": field.target,
+        "role": field.role,
+        "unit": field.unit.strip("-"),
+        "text": field.text,
+    }
+
+
+def _layout(kind: str, layout: Layout, ratio: int) -> dict[str, Any]:
+    offsets = [(field, layout.offset[field.name]) for field in TABLE.group(kind).fields]
+    words = [(offset - 1) * ratio if field.real else offset for field, offset in offsets]
+    return {"size": layout.size, "words": words}
