@@ -83,7 +83,7 @@ def test_who_wrote_a_word(debugger: Debugger) -> None:
     for block in atlas.groups["block"].tolist():
         word = place(atlas, f"block@{block}.KYD")
         told = "\n".join(wrote(timeline, event, word))
-        if atlas.read(atlas.span(block), "KBFIX"):
+        if place(atlas, f"block@{block}.KBFIX").value(atlas.h):
             continue
         found = re.search(r"-> (\S+) .* in (\w+) \((\w+\.py):(\d+)\), move_all, \w+ of block@(\d+)", told)
         assert found, told
@@ -96,7 +96,9 @@ def test_who_wrote_a_word(debugger: Debugger) -> None:
 def test_who_wrote_what_no_cycle_has_written(debugger: Debugger) -> None:
     timeline = debugger.timeline
     atlas = debugger.atlas
-    fixed = next(ib for ib in atlas.groups["block"].tolist() if atlas.read(atlas.span(ib), "KBFIX"))
+    fixed = next(
+        ib for ib in atlas.groups["block"].tolist() if place(atlas, f"block@{ib}.KBFIX").value(atlas.h)
+    )
     assert "FIX 0,4 0,1" in "\n".join(wrote(timeline, timeline.now, place(atlas, f"block@{fixed}.KBFIX")))
     assert "PROPERTY" in "\n".join(wrote(timeline, timeline.now, place(atlas, "AKN")))
 

@@ -69,12 +69,14 @@ def test_watching_a_word(tmp_path: Path) -> None:
 
 
 def test_a_condition_is_stopped_at(tmp_path: Path) -> None:
+    """When it comes true for a group: so it is not yet in the cycle before."""
     wanted = "block where KYD < -0.2"
     said = talk(tmp_path, "goto 61", f"break {wanted}", "c", f"find {wanted}")
-    cycle = int(re.search(r"break block .*block@(\d+)\nafter cycle (\d+)", said)[2])  # type: ignore[index]
-    assert "1 of " in said
-    before = talk(tmp_path, f"goto {cycle - 1}", f"find {wanted}")
-    assert "0 of " in before
+    found = re.search(r"break block .*(block@\d+)\nafter cycle (\d+)", said)
+    assert found
+    shown = f"  {found[1]} "
+    assert shown in said
+    assert shown not in talk(tmp_path, f"goto {int(found[2]) - 1}", f"find {wanted}")
     assert "did you mean" in talk(tmp_path, "goto 3", "break block where KYDD < 1")
 
 

@@ -7,13 +7,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
 VERBS = ("debug",)
 
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
     text = "run a deck under the debugger: stop it, look at every word, go back"
     parser = commands.add_parser("debug", help=text, description=text)
     parser.add_argument("deck", type=Path, help="file of commands")
