@@ -21,7 +21,7 @@ Vector = Any  # array of two
 WIDE, HIGH = 2.0, 1.0  # half the box
 
 
-class _Frame:
+class Frame:
     """Where the scene's own coordinates lie: turned, and shifted."""
 
     def __init__(self, rng: Rng) -> None:
@@ -33,6 +33,10 @@ class _Frame:
         """Points as numbers of a command."""
         return [float(v) for point in points for v in self.turn @ point + self.shift]
 
+    def own(self, point: Vector) -> Vector:
+        """A point in the scene's own coordinates."""
+        return (point - self.shift) @ self.turn
+
 
 def _around(point: Vector, reach: float) -> list[float]:
     """The range around a point."""
@@ -40,7 +44,7 @@ def _around(point: Vector, reach: float) -> list[float]:
     return [x - reach, x + reach, y - reach, y + reach]
 
 
-def _cut(stage: Stage, rng: Rng, frame: _Frame) -> None:
+def _cut(stage: Stage, rng: Rng, frame: Frame) -> None:
     """A box, cut across so that thin wedges left and right of a point can be taken away; two blocks stay."""
     stage.do("block", *frame.place((-WIDE, -HIGH), (-WIDE, HIGH), (WIDE, HIGH), (WIDE, -HIGH)))
     middle, rise, fall = float(rng.uniform(-0.5, 0.5)), *(float(s) for s in rng.uniform(0.01, 0.06, 2))
@@ -61,18 +65,18 @@ def _cut(stage: Stage, rng: Rng, frame: _Frame) -> None:
 
 def bend(stage: Stage, rng: Rng) -> None:
     """Draw a bend and play it. Raises Wrong or Over."""
-    frame, stiff = _Frame(rng), 10.0 ** rng.uniform(7, 9)
+    frame, stiff = Frame(rng), 10.0 ** rng.uniform(7, 9)
     stage.do("property", 1, density=2000.0, kn=stiff, ks=stiff, friction=0.5, bulk=stiff * 20, g=stiff * 12)
     _cut(stage, rng, frame)
     stage.do("round", float(10.0 ** rng.uniform(-2, -0.7)))
     outline = {ib: body.corners for ib, body in stage.bodies().items()}
     if len(outline) != 2 or not stage.d:
         return
-    lower, upper = sorted(outline, key=lambda ib: float(((stage.centroid(ib) - frame.shift) @ frame.turn)[1]))
+    lower, upper = sorted(outline, key=lambda ib: float(frame.own(stage.centroid(ib))[1]))
     for ib in (lower, upper)[: 1 + int(rng.random() < 0.3)]:
         stage.do("generate", *_around(stage.centroid(ib), 0.01), "automatic", edge=2.5 * WIDE)
     stage.do("cycle", 0)
-    apex = int(((outline[lower] - frame.shift) @ frame.turn - (0, HIGH))[:, 1].argmax())
+    apex = int((frame.own(outline[lower]) - (0, HIGH))[:, 1].argmax())
     for _ in range(int(rng.integers(3, 12))):
         lift = float(rng.choice([-1, 1]) * 10.0 ** rng.uniform(-2.5, -0.2))
         follow = lift + float(rng.normal() * 10.0 ** rng.uniform(-3.5, -1))

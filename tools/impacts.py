@@ -3,7 +3,8 @@
 Draws random scenes from a seed, plays them in processes of their own, and looks at them from outside
 (tests/stage.py, tests/naive/overlaps.py). Kinds of scenes: impacts of two bodies or three by their corners
 (acute, right, obtuse, concave, needles: tests/strikes.py), many blocks that move for long (long, extreme:
-tests/piles.py), and corners of deformable blocks bent through the straight line (bends: tests/bends.py).
+tests/piles.py), corners of deformable blocks bent through the straight line (bends: tests/bends.py), and
+faces of slight bends that slide over one another (grazes: tests/grazes.py).
 
     python tools/impacts.py --count 1000 --jobs 2
     python tools/impacts.py --kinds concave --play 17
@@ -42,12 +43,14 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 import numpy as np
 from bends import bend
+from grazes import graze
 from piles import PILES, pile
 from stage import Over, Stage, Wrong
 from strikes import SHAPES, strike
 
 SCHEMES = {"i16r32": 0.15, "i32r32": 0.1, "i16r64": 0.15, "i32r64": 0.5, "i64r64": 0.1}
-KINDS = (*SHAPES, *PILES, "bends")
+FACES = {"bends": bend, "grazes": graze}
+KINDS = (*SHAPES, *PILES, *FACES)
 WARM = 1800.0  # seconds in which the first scene of every scheme must end: it compiles
 SECONDS = 120.0  # for a scene
 TELL = 60.0  # seconds from one line on the progress to the next
@@ -79,8 +82,8 @@ def play(kind: str, seed: int, number: int, build: str | None = None) -> Outcome
     stage = Stage(build or drawn)
     found = Outcome(kind, number, build=stage.build)
     try:
-        if kind == "bends":
-            bend(stage, rng)
+        if kind in FACES:
+            FACES[kind](stage, rng)
         else:
             (strike if kind in SHAPES else pile)(stage, kind, rng)
     except Wrong as wrong:

@@ -219,6 +219,12 @@ def test_what_the_search_has_found(deck: str) -> None:
         ("needles", 1000, 671),  # two contacts on an arc, deeper than its circle is wide
         ("bends", 15100, 919),  # a corner that has come to have an arc, between two updates
         ("bends", 13100, 290),  # a blunt arc in a notch, deep in both edges
+        ("grazes", 19000, 51),  # the end of a blunt arc comes to the arc of a corner
+        ("grazes", 19000, 52),  # it passes a straight corner
+        ("grazes", 19001, 31),  # a corner that hardly turns, between long edges
+        ("grazes", 19001, 308),  # out of a notch under force
+        ("grazes", 19001, 343),
+        ("grazes", 19002, 565),  # a point comes to stand beside a blunt arc
         ("acute", 12100, 979),  # the corner of a deformable block that turns from convex to concave in a step
     ],
 )
@@ -303,7 +309,7 @@ def test_a_way_that_cannot_be_followed_is_no_way_round() -> None:
     assert time.process_time() - start < 20 + compile_seconds()
 
 
-@pytest.mark.parametrize("kind", [*SHAPES, "bends"])
+@pytest.mark.parametrize("kind", [*SHAPES, *impacts.FACES])
 def test_random_impacts(kind: str) -> None:
     """Nothing is missed, and no error 15 comes without an overlap."""
     found = [impacts.play(kind, SEED, number, "i32r64") for number in range(BATCH)]

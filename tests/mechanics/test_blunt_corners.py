@@ -129,3 +129,28 @@ def test_an_arc_passes_a_point_of_an_edge_without_a_jolt() -> None:
         assert m.table("contact")["KCFN"].max() == 0
         assert m.check() == []
     assert (m.table("contact")["KXC"] > px + 0.05).any()
+
+
+@pytest.mark.parametrize("turn", [8e-4, 2e-4])
+def test_a_corner_that_hardly_turns_is_touched_if_it_stands_out(turn: float) -> None:
+    """Over edges of 400 D it stands out by 80 or 20 hundredths of D: what comes from below finds it first."""
+    d, slope = 0.005, turn / 2
+    m, gap = Model(), 0.1 * d
+    m.property(1, density=2000, kn=1e6, ks=1e6)
+    upper = [(2, 3), (2, 2 * slope + gap), (0, gap), (-2, 2 * slope + gap), (-2, 1), (-3.25, 1)]
+    m.block(*np.ravel([(-3.5, -1), (-3.5, 3), *upper, (-3.25, 0), (3, 0), (3, -1)]))
+    m.split(-2, -2, -2, 4)
+    m.delete(-4, -2.5, -2, 4)
+    m.round(d)
+    m.fix(-2, 3, -1, 0)
+    m.cycle(0)
+    speed = 0.02 * d / float(m.h.cr[g.TDEL])
+    m.boundary(-1, 1, 1, 2, xvel=0.0, yvel=-speed)
+    for _ in range(16):
+        m.cycle(1)
+        assert m.check() == []
+        corners, contacts = m.table("corner"), m.table("contact")
+        (apex,) = corners[(abs(corners["KXP"]) < 1e-9) & (abs(corners["KYP"]) < d)]
+        assert apex["KRAD"] == pytest.approx(d / np.tan(slope), rel=1e-6)
+        assert contacts["KCN"].max() == pytest.approx(-apex["KYP"], abs=1e-3 * d)
+    assert apex["KYP"] < 0

@@ -15,7 +15,8 @@ from shapely.geometry import Polygon
 
 Point = tuple[float, float]
 Outline = list[Point]
-FLAT = 1e-3  # sine of the turn below which a corner is a point of a straight edge
+FLAT = 1e-3  # sine of the turn below which a corner is a point of a straight edge,
+BULGE = 0.02  # of d: if it is not farther than that from the line through its neighbours
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,9 @@ def round_corners(outline: Outline, d: float) -> list[Corner]:
         arrives, leaves = _unit(_minus(point, before)), _unit(_minus(after, point))
         turn = arrives[1] * leaves[0] - arrives[0] * leaves[1]  # sine, positive at a convex corner
         centre, radius = point, 0.0
-        if abs(turn) >= FLAT:
+        base = _minus(after, before)
+        stands_out = abs(base[0] * (point[1] - before[1]) - base[1] * (point[0] - before[0])) / hypot(*base)
+        if abs(turn) >= FLAT or stands_out >= BULGE * d:
             theta = pi - acos(max(-1.0, min(1.0, _dot(arrives, leaves))))
             radius = d * tan(theta / 2)
             bisector = _unit(_minus(leaves, arrives))  # from the corner to the centre, either way it turns

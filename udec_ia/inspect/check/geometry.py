@@ -20,7 +20,7 @@ from udec_ia.inspect.check.codes import allowed
 from udec_ia.inspect.check.groups import TABLE, Numbers, State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
-from udec_ia.kernels.geometry.shape import FLAT
+from udec_ia.kernels.geometry.shape import BULGE, FLAT
 from udec_ia.layout import offsets as g
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
@@ -118,6 +118,11 @@ class Outlines:
         """Angle by which the outline turns clockwise at the corner; negative at a concave corner."""
         t, after = self.t, self.t[self.after]
         return np.asarray(np.arctan2(-cross(t, after), dot(t, after)))
+
+    @cached_property
+    def flat(self) -> Numbers:
+        """Sine of the turn at which the corner stands out by BULGE D from the line between its neighbours."""
+        return np.asarray(BULGE * self.d * (1 / self.z + 1 / self.z[self.after]))
 
     @cached_property
     def fine(self) -> Numbers:
@@ -286,7 +291,8 @@ def circles(o: Outlines) -> tuple[Numbers, Numbers]:
 
     A flat corner and a point of an edge have none: radius 0, and the corner itself.
     """
-    bent = (np.abs(np.sin(o.turn)) >= FLAT) & ~o.pointed
+    sine = np.abs(np.sin(o.turn))
+    bent = ((sine >= FLAT) | (sine >= o.flat)) & ~o.pointed
     radius = np.where(bent, o.d / np.tan(o.turn / 2), 0.0)
     reach = np.where(radius == 0, 0.0, o.d)
     return o.p - reach[:, None] * o.t - radius[:, None] * o.e, radius
@@ -306,7 +312,8 @@ def _check_circles(state: State, o: Outlines) -> None:
     centre, radius = circles(o)
     slack = o.slack * (1 + (radius / o.d) ** 2)
     wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
-    border = (np.abs(np.abs(np.sin(o.turn)) - FLAT) < o.slack / o.d) & ~o.pointed
+    border = np.abs(np.abs(np.sin(o.turn)) - np.minimum(o.flat, FLAT)) < o.slack / o.d
+    border &= ~o.pointed
     for i in np.flatnonzero(wrong & ~border):
         state.report(
             7,

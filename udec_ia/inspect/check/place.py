@@ -65,8 +65,11 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
 
 
 def _past(o: Outlines, k: Numbers, other: Numbers) -> Numbers:
-    """How far the circles of corners `other` have passed the bisectors at corners k, clockwise."""
-    return dot(o.c[other] - o.p[k], o.t[k] + o.t[o.after[k]]) / 2
+    """How far what touches there of corners `other` has passed the bisectors at corners k, clockwise."""
+    mean = (o.t[k] + o.t[o.after[k]]) / 2
+    inward = np.stack([mean[:, 1], -mean[:, 0]], axis=1)
+    touching = o.deepest(other, inward, np.ones(len(k), bool))
+    return dot(touching - o.p[k], mean)
 
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:

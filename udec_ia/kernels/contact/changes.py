@@ -20,9 +20,10 @@ from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.contact.joint_law import is_open
+from udec_ia.kernels.contact.notch import has_no_place, leave_notch
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, ce, faces, has_no_arc
+from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
 from udec_ia.kernels.links.lists import is_contact
 from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.map.reclass import settle
@@ -81,26 +82,6 @@ def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
         return True
     after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
     return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
-
-
-@kernel
-def has_no_place(h: Memory, ic: int) -> bool:
-    """True if the corner of a contact on an edge has no arc any more, or has slid out of a notch.
-
-    Out of a notch, by more than D, it has a contact with the other edge there.
-    """
-    code, arc, edge = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
-    if code == g.CORNER_CORNER:
-        return False
-    if code == g.EDGE_CORNER:
-        arc, edge = edge, arc
-    if has_no_arc(h, arc):
-        return getr(h, ic, g.KCFN) == 0
-    notched, before = getr(h, edge, g.KRAD) < 0, getr(h, iget(h, edge, g.KR), g.KRAD) < 0
-    if not (notched or before):
-        return False
-    _, _, _, along, z = ce(h, arc, edge)
-    return (notched and along > z + h.cr[g.DTOL]) or (before and along < -h.cr[g.DTOL])
 
 
 @inlined
@@ -197,6 +178,8 @@ def is_still(h: Memory, overlap: float) -> bool:
 def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
     """Bring contact `ic` up to date; False if it goes. own: whether it follows a law of the user's."""
     nx, ny, overlap = settle(h, ic)
+    if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
+        nx, ny, overlap = settle(h, ic)
     if own:
         idle = is_open(h, ic, overlap)
     else:

@@ -23,7 +23,8 @@ from udec_ia.kernels.links.lists import idomp, next_corner
 from udec_ia.layout import offsets as g
 
 TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
-FLAT = 1.0e-3  # sine of the turn below which a corner counts as a point of a straight edge
+FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
+BULGE = 0.02  # of D: if it stands out by less, from the line between its neighbours
 
 
 @kernel
@@ -113,9 +114,13 @@ def span(h: Memory, ip: int, z: float) -> float:
 
 
 @inlined
-def bent(h: Memory, c1: float, s1: float, c2: float, s2: float) -> bool:
-    """True if edges along (c1, s1) and (c2, s2) make a corner and not a point of one straight edge."""
-    return abs(c2 * s1 - c1 * s2) >= real(h, FLAT)  # sine of the clockwise turn
+def bent(h: Memory, z1: float, c1: float, s1: float, z2: float, c2: float, s2: float) -> bool:
+    """True if two edges make a corner and not a point of one straight edge.
+
+    Their lengths are z1 and z2, and they lie along (c1, s1) and (c2, s2).
+    """
+    sine = abs(c2 * s1 - c1 * s2)  # of the turn
+    return sine >= real(h, FLAT) or sine * z1 * z2 >= real(h, BULGE) * h.cr[g.DTOL] * (z1 + z2)
 
 
 @inlined
@@ -146,7 +151,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
     while True:
         iq = next_corner(h, ib, ip)
         z, c1, s1 = zcs(h, ip)
-        _, c2, s2 = zcs(h, iq)
+        z2, c2, s2 = zcs(h, iq)
         on_edge = is_edge_point(h, ip)
         if z - d - d < h.cr[g.FTOL]:
             if not (on_edge or is_edge_point(h, iget(h, ip, g.KR))):
@@ -155,7 +160,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
                 tight = ip
         rad = real(h, 0.0)
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        if bent(h, c1, s1, c2, s2) and not on_edge:
+        if bent(h, z, c1, s1, z2, c2, s2) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
         if strained and np.sign(rad) != np.sign(getr(h, ip, g.KRAD)):
             flag(h, idomp(h, ib, ip))
@@ -180,9 +185,9 @@ def keep_circles(h: Memory, ib: int) -> None:
     while True:
         iq = next_corner(h, ib, ip)
         if getr(h, ip, g.KRAD) != 0:
-            _, c1, s1 = zcs(h, ip)
-            _, c2, s2 = zcs(h, iq)
-            if bent(h, c1, s1, c2, s2):
+            z1, c1, s1 = zcs(h, ip)
+            z2, c2, s2 = zcs(h, iq)
+            if bent(h, z1, c1, s1, z2, c2, s2):
                 rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
                 putr(h, ip, g.KRAD, rad)
                 putr(h, ip, g.KXCP, x)

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, over_ends, past
+from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, is_blunt, over_ends, past
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
@@ -208,6 +208,15 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
     return behind > slack and _all_rounding(h, ip) and mvbak(h, ic, ib, code)
 
 
+@inlined
+def _reach(h: Memory, ip: int) -> float:
+    """How far the line of centres moves along the arc of corner `ip`, for an angle by which it turns.
+
+    It is all the same for two small circles. From the centre of a blunt one the angle is small.
+    """
+    return getr(h, ip, g.KRAD) if is_blunt(h, ip) else h.cr[g.DTOL]
+
+
 @kernel
 def _off_the_corner(h: Memory, ic: int) -> bool:
     """A corner/corner contact whose line of centres has left one of the two arcs, or that has lost one."""
@@ -224,9 +233,11 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     dx, dy = getr(h, iq, g.KXCP) - getr(h, ip, g.KXCP), getr(h, iq, g.KYCP) - getr(h, ip, g.KYCP)
     ahead1, behind1 = over_ends(h, ip, dx, dy)
     ahead2, behind2 = over_ends(h, iq, -dx, -dy)
-    furthest = max(max(ahead1, behind1), max(ahead2, behind2))
-    if furthest <= h.cr[g.GTOL]:
+    if max(max(ahead1, behind1), max(ahead2, behind2)) <= h.cr[g.GTOL]:
         return False
+    one, two = _reach(h, ip), _reach(h, iq)
+    ahead1, behind1, ahead2, behind2 = ahead1 * one, behind1 * one, ahead2 * two, behind2 * two
+    furthest = max(max(ahead1, behind1), max(ahead2, behind2))
     if furthest == ahead1:
         return mvfor(h, ic, iget(h, ic, g.KB1), g.EDGE_CORNER)
     if furthest == ahead2:
