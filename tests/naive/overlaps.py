@@ -95,6 +95,8 @@ def parts(one: Polygon, two: Polygon, d: float) -> list[Part]:
     """The connected parts of the overlap of two outlines, the deepest first."""
     found, rings = [], (one.exterior, two.exterior)
     shapely.prepare(rings)
+    if not (one.is_valid and two.is_valid):  # between two steps, what is strained may cross itself
+        one, two = shapely.make_valid(one), shapely.make_valid(two)
     for shape in shapely.get_parts(one.intersection(two)):
         if shape.area == 0.0:
             continue

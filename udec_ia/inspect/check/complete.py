@@ -3,8 +3,9 @@
 Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
 pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
 needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one. A blunt arc that
-touches by one end may come to touch by the other, too, or a point to touch the edge just beyond it; until its
-domain is updated, that is for an overlap of up to ETOL, the contact that there is stands for both.
+touches by one end may come to touch by the other, too; until its domain is updated, that is for an overlap of
+up to ETOL, the contact that there is stands for both. So it does for what comes to touch the edge beside a
+blunt arc, for ETOL along the edge.
 
 Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
 these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
@@ -96,8 +97,8 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
     arc, other, point, depth = found
     near = state.tolerance("DTOL") + state.tolerance("FTOL")
     ones, twos = o.owner[arc], o.owner[other]
-    blunt = o.r > BLUNT * o.d
-    late = (blunt[arc] | blunt[other] | blunt[o.before[other]]) & (depth <= state.tolerance("ETOL"))
+    late = (o.r[arc] > BLUNT * o.d) & (depth <= state.tolerance("ETOL"))
+    late |= _beside_blunt_arc(o, other, point) <= state.tolerance("ETOL")
     for k in np.flatnonzero(~joined.near(ones, twos, point, near + depth + np.where(late, o.d, 0.0))):
         one, two = int(ones[k]), int(twos[k])
         (x, y), overlap = point[k].tolist(), float(depth[k])
@@ -115,6 +116,15 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, found: Meetings, 
                 f"a contact where the arc of corner@{o.corner[arc[k]]} meets the {what} of "
                 f"corner@{o.corner[other[k]]}",
             )
+
+
+def _beside_blunt_arc(o: Outlines, j: Numbers, point: Numbers) -> Numbers:
+    """Distance of each point, along the edge of corner j, from a blunt arc at one end; inf without one."""
+    found = np.full(len(j), np.inf)
+    for corner, end in ((j, -1), (o.before[j], 1)):
+        away = np.abs(dot(o.p[corner] + end * o.d * o.t[j] - point, o.t[j]))
+        found = np.where(o.r[corner] > BLUNT * o.d, np.minimum(found, away), found)
+    return found
 
 
 def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tuple[int, int]) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.inspect.check.map import neighbours
+from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 
 
@@ -24,13 +25,16 @@ class Place:
 
     corner: index of the first corner after the contact. on_edge: True on the edge, False on the arc.
     under, over: distances by which it is outside its segment, before the start and after the end; negative
-    inside. along: position, clockwise from the start of the edge.
+    inside. On an arc they are those of the other circle's centre; lever: what they are along the arc, as a
+    part of that, where the other circle is a large one, or else 1. along: position, clockwise from the start
+    of the edge.
     """
 
     corner: Numbers
     on_edge: Numbers
     under: Numbers
     over: Numbers
+    lever: Numbers
     along: Numbers
 
 
@@ -50,6 +54,7 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     to_other = o.c[other] - o.c[k]
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
     over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
+    far = two_arcs & (o.r[other] > BLUNT * o.d)
     facing = np.where(two_arcs[:, None], to_other, -o.e[other])
     turn = np.maximum(o.turn[k], 0.0)
     angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
@@ -60,6 +65,7 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
         on_edge=on_edge,
         under=np.select([on_edge, two_arcs], [under, -dot(to_other, o.t[k])], -np.inf),
         over=np.select([on_edge, two_arcs], [over, dot(to_other, o.t[o.after[k]])], -np.inf),
+        lever=np.where(far, np.maximum(o.r[k], o.d) / np.hypot(*to_other.T), 1.0),
         along=np.where(on_edge, np.clip(from_start, o.start[k], np.maximum(o.end[k], o.start[k])), arc),
     )
 
@@ -99,7 +105,7 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
         for k in np.flatnonzero(beyond > slack):
             concave = here.on_edge[k] and o.r[corner[k]] < 0
             waits = concave or _waits(state, int(touch.row[k]), side, step)
-            far = slack[k] + (o.d if waits else 0.0)
+            far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
             if beyond[k] > far and not (concave and force[k] != 0):
                 segment = "edge" if here.on_edge[k] else "arc"
                 state.report(
