@@ -18,7 +18,7 @@ DECK = "".join(
     f"{line[4:]}\n" for line in re.findall(r"^    START\n(?:    .*\n)+", TEXT, re.M)[0].splitlines()
 )
 SHOWN = re.findall(r"^    \$ udec (.*)\n((?:    .*\n)*)", TEXT, re.M)
-BAD = re.compile(r"violation|\d numbers? differ|\d words differ")  # what ends with the status 1
+BAD = re.compile(r"violation|\d numbers? differ|\d words differ|they differ")  # what ends with the status 1
 
 
 @pytest.fixture
