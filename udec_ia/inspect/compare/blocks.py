@@ -4,7 +4,7 @@ If both lists have equally many blocks, and each one in turn the corners and the
 it: the blocks may have moved anywhere. Else those are matched first that nothing else can be: the only blocks
 of their size, and those that have hardly moved, as long as they come in the same order in both lists. Between
 two of these, blocks match from the front and from the back as far as corners and size agree; all, where
-there are equally many. Who is left over was made or deleted.
+there are equally many, and else those that have hardly moved. Who is left over was made or deleted.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from udec_ia.inspect.compare.side import Side
 
 ALIKE = 0.01  # share of its size by which a block may have changed its shape
 SIZES = 1e5  # steps of size, to a factor of e, by which blocks are told apart
-CELLS = (1e-3, 0.03, 0.5)  # of cells that blocks are looked for in, as shares of the median size
+CELLS = (1e-3, 0.03, 0.5, 1.0)  # of cells that blocks are looked for in, as shares of the median size
 SHIFTS = (
     (0.0, 0.0),
     (0.5, 0.0),
@@ -86,8 +86,8 @@ def alike(one: Blocks, two: Blocks) -> Any:
     return (one.corners == two.corners) & near
 
 
-def _anchors(one: Blocks, two: Blocks) -> Pairs:
-    """Rows that are matched whatever lies between them."""
+def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
+    """Rows that are matched whatever lies between them. cut: of blocks that may have another shape."""
     rows = np.arange(len(one.at)), np.arange(len(two.at))
     found: list[Pairs] = [(rows[0][:0], rows[1][:0])]
     for keys in _keys(one, two):
@@ -95,7 +95,7 @@ def _anchors(one: Blocks, two: Blocks) -> Pairs:
             break
         a, b = only_ones(keys[0][rows[0]], keys[1][rows[1]])
         a, b = rows[0][a], rows[1][b]
-        good = alike(one.some(a), two.some(b))
+        good = alike(one.some(a), two.some(b)) | cut
         found.append((a[good], b[good]))
         rows = np.setdiff1d(rows[0], a[good], True), np.setdiff1d(rows[1], b[good], True)
     a, b = (np.concatenate(parts) for parts in zip(*found, strict=True))
@@ -133,5 +133,10 @@ def _between(one: Blocks, two: Blocks, a: Any, b: Any) -> Pairs:
     front = int(np.append(alike(one.some(a[:few]), two.some(b[:few])), False).argmin())
     back = alike(one.some(a[len(a) - few :]), two.some(b[len(b) - few :]))[::-1]
     last = min(int(np.append(back, False).argmin()), few - front)
-    ends = [np.concatenate((rows[:front], rows[len(rows) - last :])) for rows in (a, b)]
-    return ends[0], ends[1]
+    rest = a[front : len(a) - last], b[front : len(b) - last]
+    cut = _anchors(one.some(rest[0]), two.some(rest[1]), cut=True)
+    found = [
+        np.concatenate((rows[:front], left[some], rows[len(rows) - last :]))
+        for rows, left, some in zip((a, b), rest, cut, strict=True)
+    ]
+    return found[0], found[1]
