@@ -10,7 +10,7 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "udec_ia"
 FOLDERS = {  # of a layer, each of which imports from those before it and from files beside them only
-    "inspect": ("check", "look", "change"),
+    "inspect": ("check", "look", "change", "compare"),
     "kernels": ("links", "geometry", "map", "body", "detect", "energy", "contact", "split", "drive"),
     "ops": ("common", "laws", "mesh", "commands", "run"),
 }
@@ -24,8 +24,10 @@ BELOW = {  # layers that a layer imports
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
     "view": {"files", "heap", "inspect", "layout", "printable"},
     "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
+    "diverge": {"debug", "deck", "errors", "heap", "inspect", "layout", "ops"},
     "workshop": {
         "debug",
+        "diverge",
         "errors",
         "heap",
         "inspect",

@@ -111,9 +111,13 @@ class Debugger:
         for last in self.timeline.stretches:
             lines += [line.shown for line in self._commands[last.number].lines]
         following, number = None, last.number + 1 if last else 0
-        if last is not None and last.runs and (left := _cycles(self._commands[last.number]) - last.done) > 0:
+        if (
+            last is not None
+            and last.runs
+            and (left := cycles_of(self._commands[last.number]) - last.done) > 0
+        ):
             lines[-1] = f"CYCLE {last.done}"
-            number, following = last.number, _cycle(self._commands[last.number], left)
+            number, following = last.number, cycle_statement(self._commands[last.number], left)
         self.model.take_up(array, lines)
         self.monitor.ended = False
         self.goal, self.goal_cycle, self.goal_line = event, None, None
@@ -339,13 +343,13 @@ class _Pieces(Watch):
         return self.inner.hand_on()
 
 
-def _cycles(statement: Statement) -> int:
+def cycles_of(statement: Statement) -> int:
     """How many cycles a CYCLE asks for; 0 if it is another command."""
     call = parse(statement)
     return int(call.positional[0]) if call.command.name == "cycle" else 0
 
 
-def _cycle(statement: Statement, n: int) -> Statement:
+def cycle_statement(statement: Statement, n: int) -> Statement:
     """A CYCLE in the place of `statement`."""
     first = statement.tokens[0].line
     line = Line(first.file, first.number, f"CYCLE {n}")

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from udec_ia.inspect.look.listing import Listing
+    from udec_ia.inspect.look.listing import Listing, Tables
 
 MISUSE = 2
-Look = Callable[[argparse.Namespace], "Listing"]
+Look = Callable[[argparse.Namespace], "Listing | Tables"]
 Script = Callable[[argparse.Namespace], str]
 
 
@@ -48,7 +48,7 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
     return found.status
 
 
-def _print(found: Listing, as_json: bool) -> None:
+def _print(found: Listing | Tables, as_json: bool) -> None:
     """In colours to a terminal, as plain text elsewhere; line by line, however long it is."""
     if as_json:
         sys.stdout.writelines(found.json())

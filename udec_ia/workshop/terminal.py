@@ -20,7 +20,7 @@ from udec_ia.inspect.look.atlas import JUNK, KINDS, NOTHING, UNUSED
 from udec_ia.inspect.look.cover import PICTURE
 from udec_ia.inspect.look.fields import NOT_ALLOWED
 from udec_ia.inspect.look.kinds import COLOURS, LETTERS
-from udec_ia.inspect.look.listing import Line, Listing
+from udec_ia.inspect.look.listing import Line, Listing, Tables
 from udec_ia.inspect.look.names import ASTRAY
 
 ROOM = 20  # characters that the last column must have, to be folded within itself
@@ -32,7 +32,7 @@ BOLD, RED = Style(bold=True), Style(color=COLOURS[NOTHING], bold=True)
 LETTER_STYLES = {c: STYLES[kind] for kind, letter in LETTERS.items() for c in (letter, letter.upper())}
 
 
-def show(listing: Listing, stream: TextIO) -> None:
+def show(listing: Listing | Tables, stream: TextIO) -> None:
     """Print a listing to a terminal."""
     console = Console(file=stream, highlight=False, markup=False, emoji=False)
     coloured = console.color_system is not None and not console.no_color

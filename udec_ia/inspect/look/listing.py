@@ -87,6 +87,10 @@ class Listing(NamedTuple):
                 yield Line(heading, heading)
             yield Line((form(tuple(map(type, row))) % row).rstrip(), heading, last)
 
+    def with_said(self, said: list[str]) -> Listing:
+        """The same with more sentences."""
+        return self._replace(said=self.said + said)
+
     def _form(self, widths: tuple[int, ...]) -> tuple[Callable[[tuple[type, ...]], str], int]:
         """Gives how rows of some types are printed, as for %; and where the last column begins."""
         skip = int(self.headed)
@@ -108,6 +112,41 @@ class Listing(NamedTuple):
         ]
         words = [any(isinstance(cell, str) and cell for cell in column) for column in columns]
         return tuple(-w if left else w for w, left in zip(wide, words, strict=True))
+
+
+class Tables(NamedTuple):
+    """Listings by name, one below the other. status: exit status of a command that prints them."""
+
+    parts: dict[str, Listing]
+    status: int = 0
+    columns: tuple[str, ...] = ()  # none that all of them have
+
+    def as_text(self) -> str:
+        """As of a Listing."""
+        return "".join(f"{line.text}\n" for line in self.lines())
+
+    def lines(self) -> Iterator[Line]:
+        """The same line by line."""
+        for listing in self.parts.values():
+            yield from listing.lines()
+
+    def with_said(self, said: list[str]) -> Tables:
+        """The same with more sentences in the first of them."""
+        first, *_ = self.parts
+        return self._replace(parts=self.parts | {first: self.parts[first].with_said(said)})
+
+    def as_json(self) -> str:
+        """One object: each listing by its name."""
+        return "".join(self.json())
+
+    def json(self) -> Iterator[str]:
+        """The same in pieces."""
+        before = "{"
+        for name, listing in self.parts.items():
+            yield f"{before}{json.dumps(name)}:\n"
+            yield from listing.json()
+            before = ",\n"
+        yield "}"
 
 
 def _plain(value: Any) -> Any:

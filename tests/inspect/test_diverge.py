@@ -1,0 +1,123 @@
+"""Two runs side by side: a difference that is planted is found in its cycle and pass."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from udec_ia import Model
+from udec_ia.cli import main
+from udec_ia.diverge import Divergence, Judge, diverge, of_deck, of_state
+from udec_ia.errors import UdecError
+from udec_ia.inspect.table import table
+
+DECK = """\
+START
+PROPERTY MAT=1 DENSITY=2000 KN=1.E8 KS=1.E8 FRICTION=0.5
+BLOCK 0,0 0,3 4,3 4,0
+SPLIT -1,1 5,1
+SPLIT 2,0 2,4
+FIX 0,4 0,1.2
+GRAVITY 3 -10
+CYCLE 30
+{command}
+CYCLE 200
+"""
+PLAIN = DECK.format(command="")
+
+
+def decks(tmp_path: Path, command: str, share: float = 0.0) -> Divergence | int:
+    """Where the deck with a command after 30 cycles parts from that without."""
+    runs = [of_deck(Model(out=tmp_path), text) for text in (PLAIN, DECK.format(command=command))]
+    return diverge(runs[0], runs[1], Judge(share))
+
+
+def first_cycle_by_hand(tmp_path: Path, command: str) -> int:
+    """The first cycle after which any bit of a contact or a block is another, one by one."""
+    models = [Model(out=tmp_path), Model(out=tmp_path)]
+    for model, line in zip(models, ("", command), strict=True):
+        model.run(DECK.format(command=line).replace("CYCLE 200\n", ""))
+    for cycle in range(31, 231):
+        for model in models:
+            model.cycle(1)
+        for kind in ("block", "contact"):
+            one, two = (table(model.array, kind) for model in models)
+            if any(one[name].tobytes() != two[name].tobytes() for name in one.dtype.names):
+                return cycle
+    return 0
+
+
+def test_nothing_differs(tmp_path: Path) -> None:
+    assert decks(tmp_path, "* nothing") == 230
+
+
+def test_what_a_command_does_at_once(tmp_path: Path) -> None:
+    """It is no cycle's doing."""
+    found = decks(tmp_path, "PATCH block@349.KXD = 0.5", 1e-9)
+    assert isinstance(found, Divergence)
+    assert (found.cycle, found.in_pass) == (30, "")
+    assert (found.off.group, found.off.field, found.off.second) == ("block@349", "KXD", 0.5)
+
+
+def test_another_gravity(tmp_path: Path) -> None:
+    """The motion of the next cycle feels it."""
+    found = decks(tmp_path, "GRAVITY 3 -11")
+    assert isinstance(found, Divergence)
+    assert (found.cycle, found.in_pass) == (31, "move_all")
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.29, 0.2])
+def test_another_friction(friction: float, tmp_path: Path) -> None:
+    """Nothing differs until a contact slips: then a force does, and what follows from it."""
+    command = f"PROPERTY MAT=1 FRICTION={friction}"
+    expected = first_cycle_by_hand(tmp_path, command)
+    found = decks(tmp_path, command)
+    assert isinstance(found, Divergence)
+    assert 30 < expected == found.cycle
+    assert found.in_pass == "ford_all"
+    states = [state.array() for state in found.states]
+    forces = [table(state, "contact")["KCFS"] for state in states]
+    assert not np.array_equal(*forces)
+
+
+def test_states_that_go_on(tmp_path: Path) -> None:
+    """From the middle of a run: the one that has slipped from the start of that on."""
+    models = [Model(out=tmp_path), Model(out=tmp_path)]
+    for model in models:
+        model.run(PLAIN.replace("CYCLE 200\n", ""))
+    models[1].property(1, friction=0.2)
+    found = diverge(of_state(models[0], 200), of_state(models[1], 200), Judge(0.0))
+    assert isinstance(found, Divergence)
+    expected = first_cycle_by_hand(tmp_path, "PROPERTY MAT=1 FRICTION=0.2")
+    assert (found.cycle, found.in_pass) == (expected, "ford_all")
+
+
+def test_decks_that_cannot_be_in_step(tmp_path: Path) -> None:
+    texts = PLAIN, PLAIN.replace("CYCLE 30", "CYCLE 31")
+    one, two = (of_deck(Model(out=tmp_path), text) for text in texts)
+    with pytest.raises(UdecError, match="30 cycles"):
+        diverge(one, two, Judge())
+    one, two = (of_deck(Model(out=tmp_path), text) for text in (PLAIN, PLAIN.replace("CYCLE 200", "SOLVE")))
+    with pytest.raises(UdecError, match="SOLVE"):
+        diverge(one, two, Judge())
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    one, two = tmp_path / "one.dat", tmp_path / "two.dat"
+    one.write_text(PLAIN)
+    two.write_text(DECK.format(command="GRAVITY 3 -11"))
+    kept = [str(tmp_path / name) for name in ("a.h5", "b.h5")]
+    assert main(["diverge", str(one), str(two), "--tolerance", "0", "--keep", *kept, "--json"]) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_all" in said["said"][0]
+    assert main(["diff", *kept, "--only", "block.KYD"]) == 1
+    assert main(["diverge", *kept, "--cycles", "3", "--tolerance", "1"]) == 0
+    assert capsys.readouterr().out.endswith("no difference in 34 cycles\n")
+    assert main(["diverge", str(one), "--builds", "i32r64,i64r64"]) == 0
+    for wrong in ([str(one)], [str(one), "--builds", "i8"], [*kept, "--cycles", "-1"], [str(one), "no.dat"]):
+        assert main(["diverge", *wrong]) == 2
+    assert main(["diverge", str(one), str(two), "--python"]) == 0
+    assert "of_deck" in capsys.readouterr().out
