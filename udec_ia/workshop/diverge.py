@@ -31,6 +31,13 @@ def add_commands(commands: Any) -> None:
         "other", type=Path, nargs="?", metavar="OTHER", help="the other; left off, the same deck"
     )
     parser.add_argument("--builds", metavar="A,B", help="word schemes of the two decks (default: i32r64)")
+    parser.add_argument("--constitutive", action="append", metavar="LAW", help="as for udec run")
+    parser.add_argument(
+        "--other-constitutive",
+        action="append",
+        metavar="LAW",
+        help="of the other run, if it has not the same",
+    )
     parser.add_argument("--cycles", type=int, metavar="N", help="go on from two restart files so many cycles")
     parser.add_argument(
         "--tolerance",
@@ -49,8 +56,8 @@ def _builds(args: argparse.Namespace) -> list[str]:
 
     if args.cycles is not None and (args.builds or args.other is None or args.cycles < 0):
         raise ValueError("--cycles N goes with two restart files, each of which has its word scheme")
-    if args.cycles is None and args.other is None and not args.builds:
-        raise ValueError("give a second deck, or --builds A,B")
+    if args.cycles is None and args.other is None and not (args.builds or args.other_constitutive):
+        raise ValueError("give a second deck, --builds A,B or --other-constitutive LAW")
     builds = args.builds.split(",") if args.builds else [DEFAULT_SCHEME] * 2
     if len(builds) != 2 or not {*builds} <= {*ALL_SCHEMES}:
         raise ValueError(f"--builds {args.builds}: give two of {', '.join(ALL_SCHEMES)}, as i32r64,i32r32")
@@ -59,13 +66,18 @@ def _builds(args: argparse.Namespace) -> list[str]:
     return builds
 
 
-def _run(args: argparse.Namespace, path: Path, build: str, out: str) -> Run:
+def _laws(args: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]:
+    """Files of laws of the first and the second."""
+    return args.constitutive, args.other_constitutive or args.constitutive
+
+
+def _run(args: argparse.Namespace, path: Path, build: str, laws: list[str] | None, out: str) -> Run:
     from udec_ia.diverge import of_deck, of_state
     from udec_ia.model import Model
 
     if args.cycles is not None:
-        return of_state(Model.restore(path, out=out), args.cycles)
-    return of_deck(Model(build=build, out=out, name=path.stem), _text(path), path.name)
+        return of_state(Model.restore(path, out=out, constitutive=laws), args.cycles)
+    return of_deck(Model(build=build, out=out, name=path.stem, constitutive=laws), _text(path), path.name)
 
 
 def _text(path: Path) -> str:
@@ -80,7 +92,9 @@ def _diverge(args: argparse.Namespace) -> Listing:
     builds, paths = _builds(args), (args.file, args.other or args.file)
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         try:
-            runs = [_run(args, *each) for each in zip(paths, builds, (first, second), strict=True)]
+            runs = [
+                _run(args, *each) for each in zip(paths, builds, _laws(args), (first, second), strict=True)
+            ]
             found = diverge(runs[0], runs[1], Judge(args.tolerance))
         except (UdecError, OSError) as error:
             raise ValueError(str(error)) from error
@@ -113,12 +127,12 @@ def _keep(args: argparse.Namespace, runs: list[Run], found: Divergence) -> list[
 def _script(args: argparse.Namespace) -> str:
     builds, paths = _builds(args), [str(args.file), str(args.other or args.file)]
     if args.cycles is None:
-        made = "of_deck(Model(build=build), Path(path).read_text(), path)"
+        made = "of_deck(Model(build=build, constitutive=laws), Path(path).read_text(), path)"
     else:
-        made = f"of_state(Model.restore(path), {args.cycles})"
+        made = f"of_state(Model.restore(path, constitutive=laws), {args.cycles})"
     return (
         "from pathlib import Path\n\nfrom udec_ia import Model\n"
         "from udec_ia.diverge import Judge, diverge, of_deck, of_state\n\n"
-        f"runs = [{made} for path, build in zip({paths}, {builds})]\n"
+        f"runs = [{made} for path, build, laws in zip({paths}, {builds}, {_laws(args)})]\n"
         f"print(diverge(*runs, Judge({args.tolerance})))"
     )
