@@ -19,7 +19,9 @@ from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, show
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
 from udec_ia.deck.reader import statements
+from udec_ia.errors import UdecError
 from udec_ia.inspect import look
+from udec_ia.inspect.change import patch
 from udec_ia.inspect.check import check
 from udec_ia.inspect.look.atlas import TABLE
 from udec_ia.layout import offsets as g
@@ -206,6 +208,19 @@ class Console(cmd.Cmd):
         if self.debugger.trace is not None:
             raise ValueError("a run goes on between two cycles: step or reverse-step first")
         raise Resume(self.debugger.event)
+
+    def do_patch(self, text: str) -> bool:
+        """patch NAME = VALUE, ...: give words other values, as PATCH does in a deck."""
+        debugger = self.debugger
+        if debugger.in_past:
+            raise ValueError("what has been stays as it was: goto now first, or resume from here")
+        if not debugger.timeline.stretches:
+            raise ValueError("the deck has not begun: step first")
+        try:
+            patch(debugger.timeline.at(debugger.event), text)  # of what is wrong with it nothing is to happen
+        except UdecError as error:
+            raise ValueError(str(error)) from None
+        raise Resume(debugger.event, f"PATCH {text}")
 
     def do_quit(self, _: str) -> bool:
         """quit: leave the run where it is."""

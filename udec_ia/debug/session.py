@@ -28,6 +28,9 @@ from udec_ia.signals import poll
 PIECE_SECONDS = 0.02
 FIRST_PIECE = 16  # cycles
 Stopped = Callable[[Sequence[str]], None]
+Placed = tuple[
+    int, Statement
+]  # a command, and which one of the deck it is, or is a part of, or stands behind
 
 
 class Leave(BaseException):
@@ -35,10 +38,10 @@ class Leave(BaseException):
 
 
 class Resume(BaseException):
-    """The run is to go on from an event that was. event: that."""
+    """The run is to go on from an event that was. event: that; command: what is to be obeyed first, or ""."""
 
-    def __init__(self, event: int) -> None:
-        self.event = event
+    def __init__(self, event: int, command: str = "") -> None:
+        self.event, self.command = event, command
 
 
 class Traced(Protocol):
@@ -79,50 +82,72 @@ class Debugger:
     def run(self, statements: Sequence[Statement]) -> None:
         """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
         self.model.around = self._around
-        self._commands = [statement for statement in statements if statement.tokens]
+        self._deck = [statement for statement in statements if statement.tokens]
+        self._commands = [*enumerate(self._deck)]
         self._before = list(self.model.deck_log)
-        number, following = 0, None
+        number = 0
         try:
             while True:
                 try:
-                    self._obey_all(number, following)
+                    self._obey_all(number)
                     return
                 except Resume as back:
-                    number, following = self._resume(back.event)
+                    number = self._resume(back.event, back.command)
         finally:
             del self.model.around
 
-    def _obey_all(self, number: int, following: Statement | None) -> None:
-        """The commands from `number` on, the first of them as `following` has it if that is not None."""
+    def _obey_all(self, number: int) -> None:
+        """The commands from `number` on."""
         self.ended = False
-        for k, statement in enumerate(self._commands[number:], number):
-            self._obey(following or statement, k)
-            following = None
+        for k, (_, statement) in enumerate(self._commands[number:], number):
+            self._obey(statement, k)
             if self.monitor.ended:
                 break
         self.ended = True
         self.stop(["the deck has ended"])
 
-    def _resume(self, event: int) -> tuple[int, Statement | None]:
-        """Make `event` the present; the number of the command that comes next, and it if it is less now."""
+    def _resume(self, event: int, command: str) -> int:
+        """Make `event` the present, and let `command`, "" for none, be next; the number of what is next."""
         array = self.timeline.at(event)
         self.timeline.forget(event)
-        lines, last = list(self._before), None
-        for last in self.timeline.stretches:
-            lines += [line.shown for line in self._commands[last.number].lines]
-        following, number = None, last.number + 1 if last else 0
-        if (
-            last is not None
-            and last.runs
-            and (left := cycles_of(self._commands[last.number]) - last.done) > 0
-        ):
-            lines[-1] = f"CYCLE {last.done}"
-            number, following = last.number, cycle_statement(self._commands[last.number], left)
-        self.model.take_up(array, lines)
+        done, rest = self._parted()
+        place = done[-1][0] if done else 0
+        inserted = [(place, self._worded(command))] if command else []
+        self._commands = [*done, *inserted, *rest]
+        lines = [line.shown for _, statement in done for line in statement.lines]
+        self.model.take_up(array, [*self._before, *lines])
         self.monitor.ended = False
-        self.goal, self.goal_cycle, self.goal_line = event, None, None
+        self.goal, self.goal_cycle, self.goal_line = event + len(inserted), None, None
         self.show(event)
-        return number, following
+        return len(done)
+
+    def _parted(self) -> tuple[list[Placed], list[Placed]]:
+        """What has been obeyed, and what of the deck is to come. A run that is not over is in both."""
+        stretches = self.timeline.stretches
+        if not stretches:
+            return [], [*enumerate(self._deck)]
+        last = stretches[-1]
+        done = self._commands[: last.number + 1]
+        place = done[-1][0]
+        whole, rest = self._deck[place], [*enumerate(self._deck)][place + 1 :]
+        runs = [one for one in stretches if one.runs and self._commands[one.number][0] == place]
+        left = cycles_of(whole) - sum(one.done for one in runs)
+        if runs and left > 0:
+            rest.insert(0, (place, cycle_statement(whole, left)))
+        elif (
+            runs and cycles_of(whole) == 0 and not runs[-1].ended
+        ):  # SOLVE, which tells by itself when it is done
+            rest.insert(0, (place, whole))
+        if last.runs and rest and rest[0][0] == place:
+            done[-1] = place, cycle_statement(whole, last.done)
+        return done, rest
+
+    def _worded(self, command: str) -> Statement:
+        """A command that is typed while another one is the last."""
+        stretches = self.timeline.stretches
+        first = self._commands[stretches[-1].number if stretches else 0][1].tokens[0].line
+        line = Line(first.file, first.number, command)
+        return Statement([line], tokens(line))
 
     def _obey(self, statement: Statement, number: int) -> None:
         line, timeline = statement.tokens[0].line, self.timeline

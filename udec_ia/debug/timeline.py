@@ -63,7 +63,8 @@ def copied(array: MainArray) -> Copy:
 class Stretch:
     """What one command did. first: the event before it; last: its own last one, so far. line: of the deck.
 
-    cycle: MCTOT before. runs: it is CYCLE or SOLVE, and has been prepared. number: of the command.
+    cycle: MCTOT before. runs: it is CYCLE or SOLVE, and has been prepared. ended: it is over. number: of the
+    command.
     """
 
     text: str
@@ -73,6 +74,7 @@ class Stretch:
     cycle: int
     number: int
     runs: bool = False
+    ended: bool = False
 
     @property
     def done(self) -> int:
@@ -122,6 +124,7 @@ class Timeline:
 
     def end(self, array: MainArray) -> None:
         """The command has ended."""
+        self.stretches[-1].ended = True
         if self.stretches[-1].runs:
             self._keep(array)
         else:
@@ -131,7 +134,8 @@ class Timeline:
         """What came after `event` has not happened."""
         self.stretches = [one for one in self.stretches if one.first < event]
         if self.stretches:
-            self.stretches[-1].last = event
+            last = self.stretches[-1]
+            last.last, last.ended = event, last.ended and last.last == event
         self.copies = {one: copy for one, copy in self.copies.items() if one <= event}
         self._size = sum(copy.size for copy in self.copies.values())
         self.now = event
