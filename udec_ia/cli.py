@@ -145,6 +145,14 @@ def _saved(interrupt: BaseException | None) -> str:
     return ""
 
 
+def _last_of_output() -> None:
+    """Write what has been printed; if it cannot be, drop it, or Python would try once more at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def _main(argv: Sequence[str]) -> int:
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -154,17 +162,17 @@ def _main(argv: Sequence[str]) -> int:
         status: int = args.action(args)
         sys.stdout.flush()
     except UdecError as error:
-        sys.stdout.flush()
+        _last_of_output()
         print(error, file=sys.stderr)
         return ERROR
     except StaleLayout as error:
         print(f"udec: {error}", file=sys.stderr)
         return ERROR
     except BrokenPipeError:  # the reader of our output has gone: nobody is left to tell
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _last_of_output()
         return ERROR
     except OSError as error:
-        sys.stdout.flush()
+        _last_of_output()
         where = "standard output" if error.filename is None else printable(str(error.filename))
         print(f"udec: {where}: {error.strerror or error}", file=sys.stderr)
         return ERROR

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from udec_ia import Model
-from udec_ia.heap.accessors import putr
+from udec_ia.heap.accessors import getr, putr
 from udec_ia.kernels.geometry.contact_geometry import BLUNT, meet
+from udec_ia.kernels.geometry.shape import crad
 from udec_ia.layout import offsets as g
 
 D = 0.05
@@ -154,3 +155,31 @@ def test_a_corner_that_hardly_turns_is_touched_if_it_stands_out(turn: float) -> 
         assert apex["KRAD"] == pytest.approx(d / np.tan(slope), rel=1e-6)
         assert contacts["KCN"].max() == pytest.approx(-apex["KYP"], abs=1e-3 * d)
     assert apex["KYP"] < 0
+
+
+def test_a_strained_corner_does_not_come_and_go() -> None:
+    """It has an arc from a turn of 0.001 on, and keeps it until it turns by 0.0009."""
+    m = Model()
+    m.block(0, 0, 0, 1, 1, 1.1, 2, 1, 2, 0)
+    m.round(D)
+    corners = m.table("corner")
+    (top,) = corners[corners["KYP"] > 1.05]
+    h, block = m.array.h, int(top["KNB"])
+    found = []
+    for turn in (
+        1.1e-3,
+        1.01e-3,
+        0.95e-3,
+        0.91e-3,
+        0.89e-3,
+        0.95e-3,
+        0.99e-3,
+        1.01e-3,
+        0.95e-3,
+        -0.95e-3,
+        -0.8e-3,
+    ):
+        putr(h, int(top["address"]), g.KYP, 1 + turn / 2)
+        crad(h, block, True)
+        found.append(float(np.sign(getr(h, int(top["address"]), g.KRAD))))
+    assert found == [1, 1, 1, 1, 0, 0, 0, 1, 1, -1, 0]

@@ -20,7 +20,7 @@ from udec_ia.inspect.check.codes import allowed
 from udec_ia.inspect.check.groups import TABLE, Numbers, State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
-from udec_ia.kernels.geometry.shape import BULGE, FLAT
+from udec_ia.kernels.geometry.shape import BULGE, FLAT, KEPT
 from udec_ia.layout import offsets as g
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
@@ -121,8 +121,9 @@ class Outlines:
 
     @cached_property
     def flat(self) -> Numbers:
-        """Sine of the turn at which the corner stands out by BULGE D from the line between its neighbours."""
-        return np.asarray(BULGE * self.d * (1 / self.z + 1 / self.z[self.after]))
+        """Sine of the turn below which the corner is a point of a straight edge."""
+        bulge = BULGE * self.d * (1 / self.z + 1 / self.z[self.after])
+        return np.minimum(bulge, FLAT) * np.where(self.r != 0, KEPT, 1.0)
 
     @cached_property
     def fine(self) -> Numbers:
@@ -291,8 +292,7 @@ def circles(o: Outlines) -> tuple[Numbers, Numbers]:
 
     A flat corner and a point of an edge have none: radius 0, and the corner itself.
     """
-    sine = np.abs(np.sin(o.turn))
-    bent = ((sine >= FLAT) | (sine >= o.flat)) & ~o.pointed
+    bent = (np.abs(np.sin(o.turn)) >= o.flat) & ~o.pointed
     radius = np.where(bent, o.d / np.tan(o.turn / 2), 0.0)
     reach = np.where(radius == 0, 0.0, o.d)
     return o.p - reach[:, None] * o.t - radius[:, None] * o.e, radius
@@ -312,8 +312,7 @@ def _check_circles(state: State, o: Outlines) -> None:
     centre, radius = circles(o)
     slack = o.slack * (1 + (radius / o.d) ** 2)
     wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
-    border = np.abs(np.abs(np.sin(o.turn)) - np.minimum(o.flat, FLAT)) < o.slack / o.d
-    border &= ~o.pointed
+    border = (np.abs(np.abs(np.sin(o.turn)) - o.flat) < o.slack / o.d) & ~o.pointed
     for i in np.flatnonzero(wrong & ~border):
         state.report(
             7,

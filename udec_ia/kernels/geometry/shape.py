@@ -25,6 +25,7 @@ from udec_ia.layout import offsets as g
 TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
 FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
 BULGE = 0.02  # of D: if it stands out by less, from the line between its neighbours
+KEPT = 0.9  # of both: below it a strained corner loses its radius, or it would come and go with every breath
 
 
 @kernel
@@ -114,13 +115,18 @@ def span(h: Memory, ip: int, z: float) -> float:
 
 
 @inlined
-def bent(h: Memory, z1: float, c1: float, s1: float, z2: float, c2: float, s2: float) -> bool:
+def bent(
+    h: Memory, z1: float, c1: float, s1: float, z2: float, c2: float, s2: float, had_radius: bool
+) -> bool:
     """True if two edges make a corner and not a point of one straight edge.
 
-    Their lengths are z1 and z2, and they lie along (c1, s1) and (c2, s2).
+    Their lengths are z1 and z2, and they lie along (c1, s1) and (c2, s2). had_radius: it has been one.
     """
+    share = real(h, KEPT) if had_radius else real(h, 1.0)
     sine = abs(c2 * s1 - c1 * s2)  # of the turn
-    return sine >= real(h, FLAT) or sine * z1 * z2 >= real(h, BULGE) * h.cr[g.DTOL] * (z1 + z2)
+    return sine >= share * real(h, FLAT) or (
+        sine * z1 * z2 >= share * real(h, BULGE) * h.cr[g.DTOL] * (z1 + z2)
+    )
 
 
 @inlined
@@ -160,7 +166,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
                 tight = ip
         rad = real(h, 0.0)
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        if bent(h, z, c1, s1, z2, c2, s2) and not on_edge:
+        if bent(h, z, c1, s1, z2, c2, s2, strained and getr(h, ip, g.KRAD) != 0) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
         if strained and np.sign(rad) != np.sign(getr(h, ip, g.KRAD)):
             flag(h, idomp(h, ib, ip))
@@ -187,7 +193,7 @@ def keep_circles(h: Memory, ib: int) -> None:
         if getr(h, ip, g.KRAD) != 0:
             z1, c1, s1 = zcs(h, ip)
             z2, c2, s2 = zcs(h, iq)
-            if bent(h, z1, c1, s1, z2, c2, s2):
+            if bent(h, z1, c1, s1, z2, c2, s2, True):
                 rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
                 putr(h, ip, g.KRAD, rad)
                 putr(h, ip, g.KXCP, x)
