@@ -30,7 +30,9 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.guarding import Astray
 from udec_ia.heap.interpreting import mode
+from udec_ia.heap.kinds import forget
 from udec_ia.heap.lent import Writes
 from udec_ia.layout import offsets as g
 from udec_ia.log import Step
@@ -290,8 +292,9 @@ class Undo:
         before = self.before
         if before is None:
             return
+        refused = isinstance(error, UdecError) and not isinstance(error, Astray)
         changed = self.covered and not (
-            len(self.doing) == 1 and isinstance(error, UdecError) and before.same_groups(model.array.h)
+            len(self.doing) == 1 and refused and before.same_groups(model.array.h)
         )
         before.put_back(model)
         if changed and not self._repeat(model, before):
@@ -316,5 +319,6 @@ class Undo:
         """Put the copy back, into an array that may have grown since."""
         size, used = int(h.ci[g.MTOP]), int(self.numbers[0][g.MFREE]) - 1
         h.ia[:used] = self.words[:used]
+        forget(h.ia)
         put_common(h, self.numbers)
         h.ci[g.MTOP] = size
