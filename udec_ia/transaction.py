@@ -15,7 +15,7 @@ of the commands before it where several are obeyed as one.
 CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). What follows
 them is taken back as far as to their end (`afresh`). Compiled
 passes stop by themselves for want of memory only, at a place from which the next CYCLE goes on (JPHASE).
-Interpreted ones stop at any place: there the words are copied between the pieces of a run, too.
+Interpreted and checked ones stop at any place: there the words are copied between the pieces of a run, too.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.checked import CHECKED
 from udec_ia.heap.guarding import Astray
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.kinds import forget
@@ -236,7 +237,7 @@ class Undo:
     def settle(self, model: Undoable) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
-        if mode.python:
+        if mode.python or CHECKED:
             self._copy(model.array)
             self.covered, self.before = True, Before(model)
         else:

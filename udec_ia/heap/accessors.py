@@ -21,6 +21,7 @@ import numpy as np
 from numba.extending import overload
 
 from udec_ia.heap.checked import WITH_HEAD, offset
+from udec_ia.heap.checked import at_offset as at_offset
 from udec_ia.heap.guarding import guarded
 from udec_ia.heap.views import Memory as Memory
 

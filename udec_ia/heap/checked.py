@@ -14,6 +14,8 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
+from numba.extending import register_jitable
+
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
@@ -25,7 +27,8 @@ KINDS = ("", *(group.name for group in TABLE.groups), "junk group")  # by their 
 SPARE = len(KINDS) - 1  # a group that was given back
 HEADED = sum(1 << KINDS.index(name) for name in {head.group for head in TABLE.heads})
 KIND, COUNT, FIELD, ROUTINE = 3, 4, 5, 6  # places in a longer tuple
-NAMES: list[str] = []  # of fields and sizes, by their number
+NAMES = ["a field"]  # of fields and sizes, by their number
+UNNAMED = 0
 ROUTINES = ["a routine"]  # by their number; 0 is what Python hands over
 
 
@@ -35,6 +38,18 @@ def offset(name: str, words: tuple[int, ...], kind: int, count: int = 1) -> Any:
         return words
     NAMES.append(name)
     return (*words, kind, count, len(NAMES) - 1, 0)
+
+
+def _at_offset(k: int, kind: int) -> Any:
+    """Field `k` of a group of the kind that comes as number `kind` in the table; its name is not at hand."""
+    return k, k, k
+
+
+def _checked_at_offset(k: int, kind: int) -> Any:
+    return k, k, k, kind, 1, UNNAMED, 0
+
+
+at_offset = register_jitable(_checked_at_offset if CHECKED else _at_offset)
 
 
 def _lengthen() -> None:
