@@ -1,9 +1,10 @@
 """The checked build: kernels that look at what stands at an address before they read or write there.
 
-It is chosen by UDEC_CHECKED=1 in the environment, or `udec --checked`, before the kernels are loaded. An offset
-is then a longer tuple. After the three offsets come the kind of the group that has the field, how many words or
-reals the field has, the number of its name, and the number of the kernel in whose source it stands: what the
-accessors need to look (guarding.py), and to say what is wrong. In an ordinary build nothing of this is there.
+It is chosen by UDEC_CHECKED=1 in the environment, or `udec --checked`, before the kernels are loaded. An
+offset is then a longer tuple. After the three offsets come the kind of the group that has the field, how many
+words or reals the field has, the number of its name, and the number of the kernel in whose source it stands:
+what the accessors need to look (guarding.py), and to say what is wrong. In an ordinary build nothing of this
+is there.
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ def offset(name: str, words: tuple[int, ...], kind: int, count: int = 1) -> Any:
     return (*words, kind, count, len(NAMES) - 1, 0)
 
 
-def _at_offset(k: int, kind: int) -> Any:
-    """Field `k` of a group of the kind that comes as number `kind` in the table; its name is not at hand."""
+def _at_offset(k: int, kind: int, own: Any) -> Any:
+    """The field at `k` in groups of kind `kind`, counted from 1, for the routine that has the offset `own`."""
     return k, k, k
 
 
-def _checked_at_offset(k: int, kind: int) -> Any:
-    return k, k, k, kind, 1, UNNAMED, 0
+def _checked_at_offset(k: int, kind: int, own: Any) -> Any:
+    return k, k, k, kind, 1, UNNAMED, own[ROUTINE]
 
 
 at_offset = register_jitable(_checked_at_offset if CHECKED else _at_offset)
@@ -62,7 +63,7 @@ def _lengthen() -> None:
 
 
 class _Names(dict[str, Any]):
-    """The names that a kernel knows: those of its module, which may still be growing, and a few of its own."""
+    """The names that a kernel knows: those of its module, which may still grow, and a few of its own."""
 
     def __init__(self, module: dict[str, Any], own: dict[str, Any]) -> None:
         super().__init__(own, __builtins__=module["__builtins__"], __name__=module["__name__"])
@@ -72,30 +73,30 @@ class _Names(dict[str, Any]):
         return self.module[name]
 
 
-def _of_routine(value: Any, number: int) -> Any:
+def of_routine(value: Any, number: int) -> Any:
     """An offset as routine `number` has it, or tuples of them; all else as it is."""
     if not isinstance(value, tuple) or not value:
         return value
     if len(value) == ROUTINE + 1 and all(isinstance(word, int) for word in value):
-        return (*value[:ROUTINE], number)
-    return tuple(_of_routine(one, number) for one in value) if type(value) is tuple else value
+        return (*value[:ROUTINE], number) if 0 <= value[FIELD] < len(NAMES) else value
+    return tuple(of_routine(one, number) for one in value) if type(value) is tuple else value
 
 
-def named(function: Callable[..., Any]) -> Any:
-    """`function`, with offsets that say that they are its own."""
+def named(function: Callable[..., Any]) -> tuple[Any, int]:
+    """`function`, with offsets that say that they are its own, and its number."""
     code = function.__code__
     path = Path(code.co_filename)
     ROUTINES.append(f"{function.__name__} ({path.parent.name}/{path.name})")
     number, module = len(ROUTINES) - 1, function.__globals__
-    own = {name: _of_routine(module[name], number) for name in code.co_names if name in module}
+    own = {name: of_routine(module[name], number) for name in code.co_names if name in module}
     if own.get("g") is g:
         own["g"] = ModuleType(g.__name__)
-        own["g"].__dict__.update({name: _of_routine(value, number) for name, value in vars(g).items()})
+        own["g"].__dict__.update({name: of_routine(value, number) for name, value in vars(g).items()})
     changed = {name: value for name, value in own.items() if value is not module[name]}
     same = FunctionType(code, _Names(module, changed), function.__name__, function.__defaults__)
     for name in ("__module__", "__qualname__", "__doc__", "__kwdefaults__", "__annotations__"):
         setattr(same, name, getattr(function, name))
-    return same
+    return same, number
 
 
 if CHECKED:

@@ -28,6 +28,7 @@ from udec_ia.heap.checked import (
     ROUTINES,
     SPARE,
     WITH_HEAD,
+    of_routine,
 )
 from udec_ia.heap.kinds import enter, leave, shadow
 from udec_ia.heap.views import Memory
@@ -42,7 +43,7 @@ class Refused(Exception):
 
 
 class Astray(UdecError):
-    """Error 20: a kernel has gone to where it has nothing to do. What it had changed is not taken back yet."""
+    """Error 20: a kernel has gone to where it has nothing to do, and may have changed words before."""
 
 
 class _Inside:
@@ -51,10 +52,11 @@ class _Inside:
     kernel = False
 
 
-@register_jitable  # type: ignore[untyped-decorator]
+@register_jitable
 def _look(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
     """Refused unless a group that has the field `k` begins at `iad`, and `i` is one of its elements."""
-    top, good = h.ci[g.MFREE], False
+    top: Any = h.ci[g.MFREE]
+    good: Any = False
     if 1 <= iad < top:
         kind = np.int64(h.kinds[iad - 1])
         if k[KIND] > 0:
@@ -89,22 +91,22 @@ def guarded(*plain: Any) -> tuple[Any, ...]:
         return plain
     plain_iget, plain_puti, plain_getr, plain_putr = plain
 
-    @register_jitable  # type: ignore[untyped-decorator]
+    @register_jitable
     def iget(h: Memory, iad: int, k: Any, i: int = 0) -> Any:
         look(h, iad, k, i, 0)
         return plain_iget(h, iad, k, i)
 
-    @register_jitable  # type: ignore[untyped-decorator]
+    @register_jitable
     def puti(h: Memory, iad: int, k: Any, n: int, i: int = 0) -> None:
         look(h, iad, k, i, 1)
         plain_puti(h, iad, k, n, i)
 
-    @register_jitable  # type: ignore[untyped-decorator]
+    @register_jitable
     def getr(h: Memory, iad: int, k: Any) -> Any:
         look(h, iad, k, 0, 0)
         return plain_getr(h, iad, k)
 
-    @register_jitable  # type: ignore[untyped-decorator]
+    @register_jitable
     def putr(h: Memory, iad: int, k: Any, v: Any) -> None:
         look(h, iad, k, 0, 1)
         plain_putr(h, iad, k, v)
@@ -115,14 +117,14 @@ def guarded(*plain: Any) -> tuple[Any, ...]:
 def begins(h: Memory, iad: int, nv: Any) -> None:
     """FIND hands out the words at `iad` for a group of the size `nv`. Nothing in an ordinary build."""
     if CHECKED:
-        h.kinds[iad - 1] = nv[KIND]  # type: ignore[attr-defined]
+        h.kinds[iad - 1] = nv[KIND]
 
 
 def ends(h: Memory, iad: int, nv: Any) -> None:
     """LOSE takes them back. Refused if there is no such group. Nothing in an ordinary build."""
     if CHECKED:
         look(h, iad, nv, 0, 1)
-        h.kinds[iad - 1] = SPARE  # type: ignore[attr-defined]
+        h.kinds[iad - 1] = SPARE
 
 
 @overload(begins)
@@ -151,14 +153,16 @@ def _ends(h: Any, iad: Any, nv: Any) -> Callable[..., None]:
 class Guarded:
     """A kernel of the checked build. Called from Python it ends in Astray where an access is refused."""
 
-    def __init__(self, made: Any, function: Callable[..., Any]) -> None:
+    def __init__(self, made: Any, function: Callable[..., Any], number: int) -> None:
         update_wrapper(self, function)
+        self.number = number
         self.made, self.whole = made, getattr(made, "whole", made)
 
     def __call__(self, *args: Any) -> Any:
         h = next((one for one in args if isinstance(one, Memory)), None)
         if h is None or _Inside.kernel:
             return self.made(*args)
+        args = tuple(of_routine(one, self.number) for one in args)
         enter(h)
         _Inside.kernel = True
         try:

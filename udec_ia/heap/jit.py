@@ -53,8 +53,8 @@ def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
     follows IEEE 754 instead of raising.
     """
     if CHECKED:
-        own = named(function)
-        return cast(F, Guarded(_compiled(own, inline, apart), own))
+        own, number = named(function)
+        return cast(F, Guarded(_compiled(own, inline, apart), own, number))
     return cast(F, _compiled(function, inline, apart))
 
 

@@ -116,7 +116,7 @@ class _Walk:
         while 1 <= first < self.top - 2:
             size, iad = self.words[first], first
             first = self.words[first + 1]
-            while 0 < size and self._take(KINDS[SPARE], iad, size):
+            while size > 0 and self._take(KINDS[SPARE], iad, size):
                 iad = self.words[iad - 1]
 
     def _ahead(self, target: str, iad: int, code: int) -> None:

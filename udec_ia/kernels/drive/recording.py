@@ -42,7 +42,7 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
         return float(h.cr[offset]) if type_code == REAL else float(h.ci[offset])
     if group == 0:
         return np.nan
-    k = at_offset(offset, kind)
+    k = at_offset(offset, kind, g.KHG)
     return float(getr(h, group, k)) if type_code == REAL else float(iget(h, group, k))
 
 
