@@ -189,6 +189,7 @@ class Undo:
     words, ci, cr: those of `array` at some time. since: the commands obeyed since then, which took `seconds`;
     `cost` is how long the copy took. left: the common block at the end of the last of them.
     before: all but the words at the beginning of what is being done; None if that is to stay.
+    settled: a part of it is to stay, of a run that passes may end at any place.
     doing: the commands of which that consists, None for one that cannot be repeated. covered: the words can
     be had again as they were then.
     """
@@ -198,7 +199,7 @@ class Undo:
         self.words: Any = np.zeros(0, np.int64)
         self.since: list[Step] = []
         self.seconds = self.cost = 0.0
-        self.busy = self.covered = False
+        self.busy = self.covered = self.settled = False
         self.before: Before | None = None
         self.doing: list[Step | None] = []
 
@@ -239,14 +240,14 @@ class Undo:
         self.before = None
         if mode.python or CHECKED:
             self._copy(model.array)
-            self.covered, self.before = True, Before(model)
+            self.covered, self.settled, self.before = True, True, Before(model)
         else:
             self.release()
 
     def afresh(self, model: Undoable) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
-        self.covered, self.doing, self.before = False, [], Before(model)
+        self.covered, self.settled, self.doing, self.before = False, False, [], Before(model)
 
     def release(self) -> None:
         """Let go of the copy, and of its memory."""
@@ -256,7 +257,7 @@ class Undo:
         if model.writes.made:
             model.note_writes()
             model.writes.made = False
-        self.doing, self.covered, self._start = [], False, perf_counter()
+        self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
         self.before = Before(model)
         self.busy = True
 
@@ -294,6 +295,8 @@ class Undo:
         if before is None:
             return
         refused = isinstance(error, UdecError) and not isinstance(error, Astray)
+        if refused and self.settled and not mode.python:  # compiled passes have stopped where they may
+            return
         changed = self.covered and not (
             len(self.doing) == 1 and refused and before.same_groups(model.array.h)
         )

@@ -36,6 +36,7 @@ one, two = {}, {}
 for name, words in zip(sys.argv[1:], (one, two)):
     keep = lambda key, value: words.update({key: value[...].tobytes()} if hasattr(value, "dtype") else {})
     h5py.File(name).visititems(keep)
+del one["volatile/date"], two["volatile/date"]
 print(one == two, sum(map(len, one.values())))
 """
 

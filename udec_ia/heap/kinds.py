@@ -18,6 +18,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, layouts
 
 NOTES = 5  # what an access that was refused leaves behind: routine, address, field, element, 1 if it writes
+MARKS = g.MFREE, g.JUNK, g.IBPNT, g.ICPNT, g.IDPNT  # what only kernels change
 HEADS = {(head.group, head.value) for head in TABLE.heads}
 HEADED = {kind for kind, _ in HEADS}
 SOFT = {g.MSDEF: ("sdef",), g.MFDEF: ("fdef",)}
@@ -27,14 +28,14 @@ CHOICES = {"item": ("corner", "contact"), "any": ()}  # what is of any kind is r
 class Shadow:
     """Beside an array of `size` words. kinds: by address - 1; known: False if they have to be found anew.
 
-    left: MFREE and JUNK when kernels were last left. Others in their place were put there by somebody else.
+    left: MARKS when kernels were last left. Others in their place were put there by somebody else.
     """
 
     def __init__(self, size: int) -> None:
         self.kinds = np.zeros(size, np.int8)
         self.notes = np.zeros(NOTES, np.int64)
         self.known = False
-        self.left = 0, 0
+        self.left: tuple[int, ...] = ()
 
 
 _SHADOWS: dict[tuple[int, int], Shadow] = {}
@@ -81,8 +82,8 @@ def leave(h: Any) -> None:
     shadow(h.ia).left = _marks(h)
 
 
-def _marks(h: Any) -> tuple[int, int]:
-    return int(h.ci[g.MFREE]), int(h.ci[g.JUNK])
+def _marks(h: Any) -> tuple[int, ...]:
+    return tuple(int(h.ci[mark]) for mark in MARKS)
 
 
 class _Walk:
