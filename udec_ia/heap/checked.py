@@ -42,7 +42,7 @@ def offset(name: str, words: tuple[int, ...], kind: int, count: int = 1) -> Any:
 
 
 def _at_offset(k: int, kind: int, own: Any) -> Any:
-    """The field at `k` in groups of kind `kind`, counted from 1, for the routine that has the offset `own`."""
+    """Field `k` of groups of kind `kind`, counted from 1, for the routine that has the offset `own`."""
     return k, k, k
 
 
