@@ -39,6 +39,11 @@ def arguments() -> argparse.ArgumentParser:
         description="The distinct element program UDEC. Alone, it takes commands from the terminal; with the "
         "name of a deck it runs it.",
     )
+    parser.add_argument(
+        "--checked",
+        action="store_true",
+        help="compiled routines look at what stands at an address before they read or write there (slower)",
+    )
     parser.add_argument("--version", action="version", version=f"udec_ia {udec_ia.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     run = commands.add_parser("run", help="run a deck")
@@ -106,6 +111,8 @@ def _info(args: argparse.Namespace) -> int:
 def completed(given: Sequence[str]) -> list[str]:
     """The command line with the `run` that may be left out before the name of a deck."""
     first = given[0] if given else ""
+    if first == "--checked":
+        return [first, *completed(given[1:])]
     if first in VERBS or first in ("-h", "--help", "--version"):
         return list(given)
     if first and not first.startswith("-") and not os.path.exists(first):
@@ -153,11 +160,22 @@ def _last_of_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _checked() -> bool:
+    """Choose the checked build; False if it is too late for that."""
+    loaded = sys.modules.get("udec_ia.heap.checked")
+    if loaded is None:
+        os.environ["UDEC_CHECKED"] = "1"
+    return loaded is None or bool(loaded.CHECKED)
+
+
 def _main(argv: Sequence[str]) -> int:
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     args = arguments().parse_args(completed(argv))
+    if args.checked and not _checked():
+        print("udec: --checked: kernels are loaded already: set UDEC_CHECKED=1 before that", file=sys.stderr)
+        return MISUSE
     try:
         status: int = args.action(args)
         sys.stdout.flush()

@@ -15,7 +15,7 @@ of the commands before it where several are obeyed as one.
 CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). What follows
 them is taken back as far as to their end (`afresh`). Compiled
 passes stop by themselves for want of memory only, at a place from which the next CYCLE goes on (JPHASE).
-Interpreted ones stop at any place: there the words are copied between the pieces of a run, too.
+Interpreted and checked ones stop at any place: there the words are copied between the pieces of a run, too.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.checked import CHECKED
+from udec_ia.heap.guarding import Astray
 from udec_ia.heap.interpreting import mode
+from udec_ia.heap.kinds import forget
 from udec_ia.heap.lent import Writes
 from udec_ia.layout import offsets as g
 from udec_ia.log import Step
@@ -186,6 +189,7 @@ class Undo:
     words, ci, cr: those of `array` at some time. since: the commands obeyed since then, which took `seconds`;
     `cost` is how long the copy took. left: the common block at the end of the last of them.
     before: all but the words at the beginning of what is being done; None if that is to stay.
+    settled: a part of it is to stay, of a run that passes may end at any place.
     doing: the commands of which that consists, None for one that cannot be repeated. covered: the words can
     be had again as they were then.
     """
@@ -195,7 +199,7 @@ class Undo:
         self.words: Any = np.zeros(0, np.int64)
         self.since: list[Step] = []
         self.seconds = self.cost = 0.0
-        self.busy = self.covered = False
+        self.busy = self.covered = self.settled = False
         self.before: Before | None = None
         self.doing: list[Step | None] = []
 
@@ -234,16 +238,16 @@ class Undo:
     def settle(self, model: Undoable) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
-        if mode.python:
+        if mode.python or CHECKED:
             self._copy(model.array)
-            self.covered, self.before = True, Before(model)
+            self.covered, self.settled, self.before = True, True, Before(model)
         else:
             self.release()
 
     def afresh(self, model: Undoable) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
-        self.covered, self.doing, self.before = False, [], Before(model)
+        self.covered, self.settled, self.doing, self.before = False, False, [], Before(model)
 
     def release(self) -> None:
         """Let go of the copy, and of its memory."""
@@ -253,7 +257,7 @@ class Undo:
         if model.writes.made:
             model.note_writes()
             model.writes.made = False
-        self.doing, self.covered, self._start = [], False, perf_counter()
+        self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
         self.before = Before(model)
         self.busy = True
 
@@ -290,8 +294,11 @@ class Undo:
         before = self.before
         if before is None:
             return
+        refused = isinstance(error, UdecError) and not isinstance(error, Astray)
+        if refused and self.settled and not mode.python:  # compiled passes have stopped where they may
+            return
         changed = self.covered and not (
-            len(self.doing) == 1 and isinstance(error, UdecError) and before.same_groups(model.array.h)
+            len(self.doing) == 1 and refused and before.same_groups(model.array.h)
         )
         before.put_back(model)
         if changed and not self._repeat(model, before):
@@ -316,5 +323,6 @@ class Undo:
         """Put the copy back, into an array that may have grown since."""
         size, used = int(h.ci[g.MTOP]), int(self.numbers[0][g.MFREE]) - 1
         h.ia[:used] = self.words[:used]
+        forget(h.ia)
         put_common(h, self.numbers)
         h.ci[g.MTOP] = size

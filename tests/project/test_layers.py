@@ -16,7 +16,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
-    "heap": {"layout", "signals"},
+    "heap": {"errors", "layout", "signals"},
     "kernels": {"heap", "layout"},
     "ops": {"errors", "heap", "kernels", "layout", "printable", "signals"},
     "inspect": {"errors", "heap", "kernels", "layout", "ops"},

@@ -20,11 +20,14 @@ from typing import Any, cast
 import numpy as np
 from numba.extending import overload
 
+from udec_ia.heap.checked import WITH_HEAD, offset
+from udec_ia.heap.checked import at_offset as at_offset
+from udec_ia.heap.guarding import guarded
 from udec_ia.heap.views import Memory as Memory
 
-Offset = tuple[int, int, int]
+Offset = tuple[int, int, int]  # and more in the checked build: checked.py
 Address = int
-HEAD: Offset = (0, 0, 0)  # head code of a group
+HEAD: Offset = offset("HEAD", (0, 0, 0), WITH_HEAD)  # head code of a group
 
 # The integer that kernels calculate with. numba sees the 64-bit type; to a type checker it is an int.
 int64 = cast(Callable[[Any], int], np.int64)
@@ -136,3 +139,6 @@ def _real(h, value):
         return kind(value)
 
     return impl
+
+
+iget, puti, getr, putr = guarded(iget, puti, getr, putr)

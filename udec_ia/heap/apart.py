@@ -17,6 +17,7 @@ from numba import typeof, types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
+from udec_ia.heap.checked import CHECKED
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.views import Memory
 
@@ -28,7 +29,8 @@ def _kinds(*given: Any) -> tuple[Any, ...]:
 
 def _address(made: Any) -> int:
     """Where the machine code of a compiled kernel is."""
-    return int(made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name))
+    name = made.fndesc.llvm_func_name if CHECKED else made.fndesc.llvm_cfunc_wrapper_name
+    return int(made.library.get_pointer_to_function(name))
 
 
 def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
@@ -66,9 +68,28 @@ def _jump(typing: Any, where: Any, given: Any) -> Any:
     return types.boolean(types.int64, given), generate
 
 
+@intrinsic
+def _jump_and_look(typing: Any, where: Any, given: Any) -> Any:
+    """The same in the checked build: what the kernel raises goes on to whoever calls it."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kinds, way = tuple(signature.args[1]), context.call_conv
+        function = way.get_function_type(types.boolean, kinds)
+        address = builder.inttoptr(args[0], function.as_pointer())
+        taken = cgutils.unpack_tuple(builder, args[1])
+        status, result = way.call_function(builder, address, types.boolean, kinds, taken)
+        with cgutils.if_unlikely(builder, status.is_error):
+            way.return_status_propagate(builder, status)
+        return result
+
+    return types.boolean(types.int64, given), generate
+
+
 @overload(call_entry)
 def _call_entry(where: Any, *args: Any) -> Callable[..., Any]:
+    jump = _jump_and_look if CHECKED else _jump
+
     def impl(where: Any, *args: Any) -> Any:
-        return _jump(where, args)
+        return jump(where, args)
 
     return impl

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.kinds import follow
 from udec_ia.heap.words import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
@@ -62,6 +63,7 @@ class MainArray:
         """`size` words, of which those below MFREE are as they are now and the others zero."""
         ia, used = _words(size, self.scheme.int_type), int(self.h.ci[g.MFREE]) - 1
         ia[:used] = self.h.ia[:used]
+        follow(self.h.ia, ia)
         return ia
 
     def _whole_reals(self, words: int) -> int:

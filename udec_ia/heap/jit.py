@@ -17,6 +17,8 @@ import numba
 from numba.core import config
 from platformdirs import user_cache_dir
 
+from udec_ia.heap.checked import CHECKED, named
+from udec_ia.heap.guarding import Guarded
 from udec_ia.heap.plain import plain_kernel, wanted
 from udec_ia.layout import offsets as g
 
@@ -40,7 +42,8 @@ def source_digest() -> str:
     return digest.hexdigest()
 
 
-CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{'-plain' if wanted() else ''}"
+BUILD = ("-plain" if wanted() else "") + ("-checked" if CHECKED else "")
+CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{BUILD}"
 
 
 def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
@@ -49,6 +52,13 @@ def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
     No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
     follows IEEE 754 instead of raising.
     """
+    if CHECKED:
+        own, number = named(function)
+        return cast(F, Guarded(_compiled(own, inline, apart), own, number))
+    return cast(F, _compiled(function, inline, apart))
+
+
+def _compiled(function: Callable[..., Any], inline: bool, apart: bool) -> Any:
     if config.DISABLE_JIT:
         return function
     layer = Path(function.__code__.co_filename).parent.name  # two of them may have a file of the same name
@@ -56,8 +66,8 @@ def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
     config.CACHE_DIR = str(CACHE)
     try:
         if wanted():
-            return cast(F, plain_kernel(function, CACHE / layer, error_model="numpy", forceinline=inline))
-        return cast(F, Kernel(function, CACHE / layer, apart, error_model="numpy", forceinline=inline))
+            return plain_kernel(function, CACHE / layer, error_model="numpy", forceinline=inline)
+        return Kernel(function, CACHE / layer, apart, error_model="numpy", forceinline=inline)
     finally:
         config.CACHE_DIR = kept
 

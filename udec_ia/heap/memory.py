@@ -21,14 +21,17 @@ does, is told when the group is given back.
 
 from __future__ import annotations
 
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
+from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.array import OVERFLOW
+from udec_ia.heap.checked import SPARE, WHATEVER, offset
+from udec_ia.heap.guarding import begins, ends
 from udec_ia.heap.jit import kernel
 from udec_ia.layout import offsets as g
 
-JNEXT: Offset = HEAD
-JSIZE: Offset = (1, 1, 1)
-JSIZES: Offset = (2, 2, 2)
+JNEXT: Offset = offset("JNEXT", (0, 0, 0), SPARE)
+JSIZE: Offset = offset("JSIZE", (1, 1, 1), SPARE)
+JSIZES: Offset = offset("JSIZES", (2, 2, 2), SPARE)
+WORD: Offset = offset("WORD", (0, 0, 0), WHATEVER)  # the first one of any group
 
 
 @kernel
@@ -79,8 +82,9 @@ def find(h: Memory, nv: Offset) -> int:
             want(h, n)
             return int64(0)
         h.ci[g.MFREE] = group + n
+    begins(h, group, nv)
     for i in range(n):
-        puti(h, group, HEAD, 0, i)
+        puti(h, group, WORD, 0, i)
     return group
 
 
@@ -98,6 +102,7 @@ def unwatch(h: Memory, group: int) -> None:
 def lose(h: Memory, group: int, nv: Offset) -> None:
     """Give the group of the size `nv` at `group` back to the junk list."""
     unwatch(h, group)
+    ends(h, group, nv)
     n = int64(size_of(h, nv))
     first, before = _chain(h, n)
     if first == 0:

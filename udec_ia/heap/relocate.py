@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.kinds import forget
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, Layout, layouts, read_table
 
@@ -46,6 +47,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
         if group.list_head is not None:
             h.ci[getattr(g, group.list_head)] = moved[order[kind][0]]
     h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
+    forget(h.ia)
     return moved
 
 

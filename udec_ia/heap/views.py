@@ -25,6 +25,9 @@ from numba.extending import (
 )
 from numba.np.numpy_support import from_dtype
 
+from udec_ia.heap.checked import CHECKED
+from udec_ia.heap.kinds import shadow
+
 
 class Memory(NamedTuple):
     """All that a kernel sees.
@@ -39,6 +42,19 @@ class Memory(NamedTuple):
     cr: Any
     cd: Any
 
+    @property
+    def kinds(self) -> Any:
+        """In the checked build: the kind of the group that begins at each address, counted from 0."""
+        return shadow(self.ia).kinds
+
+    @property
+    def notes(self) -> Any:
+        """In the checked build: what an access that was refused leaves behind."""
+        return shadow(self.ia).notes
+
+
+BESIDE = [("kinds", types.int8), ("notes", types.int64)] if CHECKED else []  # further arrays, and their types
+
 
 class MemoryType(types.Type):
     """Compiled type of Memory for one word scheme; `dtypes` are those of its five arrays."""
@@ -50,7 +66,8 @@ class MemoryType(types.Type):
 
 def _kept(kind: MemoryType) -> list[tuple[str, Any]]:
     """The arrays whose addresses are kept, and their types."""
-    return [(name, d) for name, d in zip(Memory._fields, kind.dtypes, strict=True) if name != "ra"]
+    kept = [(name, d) for name, d in zip(Memory._fields, kind.dtypes, strict=True) if name != "ra"]
+    return kept + BESIDE
 
 
 @register_model(MemoryType)
@@ -59,7 +76,7 @@ class _FourPointers(models.StructModel):
         super().__init__(manager, kind, [(name, types.CPointer(dtype)) for name, dtype in _kept(kind)])
 
 
-for _name in Memory._fields:
+for _name in (*Memory._fields, *(name for name, _ in BESIDE)):
     if _name != "ra":
         make_attribute_wrapper(MemoryType, _name, _name)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, getr, iget, int64
+from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
 from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.drive.unbalanced import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
@@ -42,7 +42,7 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
         return float(h.cr[offset]) if type_code == REAL else float(h.ci[offset])
     if group == 0:
         return np.nan
-    k = (offset, offset, offset)
+    k = at_offset(offset, kind, g.KHG)
     return float(getr(h, group, k)) if type_code == REAL else float(iget(h, group, k))
 
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import size_of
 from udec_ia.heap.array import OVERFLOW, MainArray
+from udec_ia.heap.kinds import forget
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 
@@ -94,4 +95,5 @@ def all_or_nothing(array: MainArray) -> Iterator[None]:
         for part, kept in zip(parts, before, strict=True):
             part[:] = kept
         array.h = h
+        forget(h.ia)
         raise

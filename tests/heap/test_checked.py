@@ -1,0 +1,118 @@
+"""The checked build: the same words, and error 20 with routine, address and field for a wrong pointer."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from numba.core import config
+
+ROOT = Path(__file__).parents[2]
+TESTS = ROOT / "tests"
+EVERY = 7  # of the wrong pointers where kernels are interpreted
+ASTRAY = re.compile(
+    r"(\w+@\d+\.\w+) (.+): error 20: internal error, the main array is damaged: "
+    r"\w+ \(\w+/\w+\.py\) (?:reads|writes|gives back) .* at (-?\d+): that is (.+)"
+)
+THERE = {"a block": "a block", "junk": "a group that was given back", "in a block": "a word of block@"}
+DECK = """START
+ROUND 0.1
+BLOCK 0,0 0,2 1,2 1,0
+SPLIT -1,1 2,1
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
+FIX 0,1 0,1
+GRAVITY 0,-10
+CYCLE 30
+SAVE end.h5
+STOP
+"""
+COMPARE = """
+import h5py, sys
+one, two = {}, {}
+for name, words in zip(sys.argv[1:], (one, two)):
+    keep = lambda key, value: words.update({key: value[...].tobytes()} if hasattr(value, "dtype") else {})
+    h5py.File(name).visititems(keep)
+del one["volatile/date"], two["volatile/date"]
+print(one == two, sum(map(len, one.values())))
+"""
+
+
+def run(*args: str, cwd: Path = ROOT, **more: str) -> subprocess.CompletedProcess[str]:
+    """Python with `args`, in an environment that chooses no build but by `more`."""
+    env = {key: value for key, value in os.environ.items() if key != "UDEC_CHECKED"}
+    env |= {"PYTHONPATH": os.pathsep.join([str(ROOT), str(TESTS)]), **more}
+    command = [sys.executable, *args]
+    return subprocess.run(command, env=env, cwd=cwd, capture_output=True, text=True, timeout=500, check=False)
+
+
+def planted(every: int, **more: str) -> list[str]:
+    """The lines of tests/planted.py."""
+    done = run(str(TESTS / "planted.py"), str(every), **more)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+@pytest.fixture(scope="module")
+def interpreted() -> list[str]:
+    """Of some wrong pointers, interpreted."""
+    return planted(EVERY, UDEC_CHECKED="1", NUMBA_DISABLE_JIT="1")
+
+
+def proven(lines: list[str]) -> set[str]:
+    """Prove what the checked build says of wrong pointers; the fields of which it says something."""
+    named = set()
+    for line in lines[2:]:
+        assert "it has changed words" not in line
+        if "error 20" in line and ": before: " not in line:
+            said = ASTRAY.fullmatch(line)
+            assert said, line
+            named.add(said[1].partition("@")[0] + "." + said[1].partition(".")[2])
+            if said[2] in THERE:
+                assert said[4].startswith(THERE[said[2]]), line
+    return named
+
+
+def test_the_words_are_those_of_the_ordinary_build(interpreted: list[str]) -> None:
+    """And the kinds of groups that FIND and LOSE have noted are those that a census finds."""
+    assert planted(1, NUMBA_DISABLE_JIT="1") == interpreted[:2]
+    assert interpreted[1] == "True"
+
+
+def test_wrong_pointers_are_named_where_kernels_are_interpreted(interpreted: list[str]) -> None:
+    assert {"block.KB", "corner.KR", "contact.KC"} <= proven(interpreted)
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_compiled_kernels_say_the_same(interpreted: list[str]) -> None:
+    """Of every pointer of every kind of group; none of them ends the process, or goes round in a circle."""
+    lines = planted(1, UDEC_CHECKED="1")
+    assert lines[:2] == interpreted[:2]
+    assert lines[2::EVERY] == interpreted[2:]
+    assert len(lines) > 500
+    assert {"block.KP", "contact.KB1", "contact.KCP1", "zone.KZG", "gridpoint.KG"} <= proven(lines)
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_a_deck_gives_the_same_words(tmp_path: Path) -> None:
+    """Chosen on the command line, where the name of a deck alone is enough."""
+    files = []
+    for given in ([], ["--checked"]):
+        folder = tmp_path / f"run{len(given)}"
+        folder.mkdir()
+        (folder / "a.dat").write_text(DECK)
+        done = run("-m", "udec_ia", *given, "a.dat", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        files.append(str(folder / "end.h5"))
+    same, size = run("-c", COMPARE, *files).stdout.split()
+    assert same == "True"
+    assert int(size) > 1000
+
+
+def test_it_is_too_late_once_kernels_are_loaded() -> None:
+    done = run("-c", "import udec_ia.model, udec_ia.cli; exit(udec_ia.cli.main(['--checked', 'info', 'x']))")
+    assert done.returncode == 2
+    assert "kernels are loaded already: set UDEC_CHECKED=1" in done.stderr
