@@ -187,6 +187,17 @@ COMMANDS = (
         words=(Word("Mass", sets="only"), Word("Stiffness", sets="only"), Word("Internal", sets="only")),
     ),
     Command(
+        "DEFault",
+        "Give variables of the deck their values: names and values by turns. In the lines that follow $F or "
+        "${F} stands for the value of F, in any place but a comment. A value that is given with the deck, by "
+        "--set F=0.4, goes before it. A value is a number or a word.",
+        "DEFAULT F=0.5 N=1000",
+        text="assignments",
+        needs_text=True,
+        opens=True,
+        ours="the command, and variables",
+    ),
+    Command(
         "DElete", "Delete the blocks with centroids in x1<x<x2, y1<y<y2.", "DELETE 20 40 10 20", numbers=RANGE
     ),
     Command(
@@ -425,6 +436,7 @@ ALSO_CALLED = {
     "CONTINUE": "CYCLE RESTART",
     "CRACK": "SPLIT",
     "CUT": "SPLIT",
+    "DEFINE": "DEFAULT",
     "DEFORMABLE": "SDEF FDEF",
     "DRAW": "PLOT",
     "DT": "FRACTION",
@@ -440,6 +452,7 @@ ALSO_CALLED = {
     "JOINT": "SPLIT",
     "JSET": "SPLIT",
     "KILL": "DELETE",
+    "LET": "DEFAULT",
     "LIST": "PRINT",
     "LOAD": "BOUNDARY RESTART",
     "LOG": "HISTORY",
@@ -451,6 +464,7 @@ ALSO_CALLED = {
     "NEW": "START",
     "NU": "BULK G",
     "OPEN": "RESTART",
+    "PARAMETER": "DEFAULT",
     "PHI": "FRICTION",
     "POISSON": "BULK G",
     "POLYGON": "BLOCK",
@@ -467,6 +481,7 @@ ALSO_CALLED = {
     "SXX": "STRESS",
     "TENSION": "BTENSION",
     "TIMESTEP": "FRACTION",
+    "VARIABLE": "DEFAULT",
     "VELOCITY": "BOUNDARY XVEL YVEL KXD KYD",
     "VIEW": "PLOT",
     "WRITE": "SAVE",
