@@ -676,6 +676,10 @@ class Model(Session):
         """All histories, in the order of their numbers."""
         return list(self._recorder.series)
 
+    def solutions(self) -> list[Solution]:
+        """How the SOLVEs have ended until now, in order."""
+        return list(self._recorder.solutions)
+
     def run(
         self, text_or_path: str | Path, stream: TextIO | None = None, values: Values | None = None
     ) -> str | None:

@@ -25,6 +25,7 @@ BELOW = {  # layers that a layer imports
     "view": {"files", "heap", "inspect", "layout", "printable"},
     "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
     "diverge": {"debug", "deck", "errors", "heap", "inspect", "layout", "ops"},
+    "study": {"deck", "errors", "files", "heap", "inspect", "kernels", "layout", "model", "ops", "version"},
     "workshop": {
         "debug",
         "diverge",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from udec_ia.deck.language import ALSO_CALLED
 from udec_ia.deck.reader import Token
+from udec_ia.deck.synonyms import ALSO_CALLED
 from udec_ia.errors import UdecError
 
 SHOWN = 40  # characters of a word that are worth repeating
