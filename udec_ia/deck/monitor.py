@@ -241,7 +241,7 @@ def run_deck(
     monitor = Monitor(model, out, values=values)
     if not isinstance(deck, str | Path):
         _run_whole(monitor, deck, name)
-    elif isinstance(deck, Path) or os.path.isfile(deck) or _names_a_file(deck):
+    elif isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
         with _opened(deck) as lines:
             _run_whole(monitor, lines, str(deck))
     else:
@@ -269,7 +269,7 @@ def _opened(deck: str | Path) -> TextIO:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(deck)) from error
 
 
-def _names_a_file(text: str) -> bool:
+def names_a_file(text: str) -> bool:
     """True if `text` is one line that begins with no command and ends like the name of a file: in `.dat`."""
     if FILE_NAME.fullmatch(text) is None or match(COMMANDS, text.split()[0]):
         return False
