@@ -88,7 +88,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
     wait_until(lambda: whole(runs) >= 2)
     os.kill(first.pid, signal.SIGKILL)
     first.communicate()
-    wait_until(lambda: not of_group(first.pid), 20)
+    wait_until(lambda: not of_group(first.pid))
     done = whole(runs)
     assert 2 <= done < 6
     assert not (tmp_path / "pile-sweep" / "pile.csv").exists()
@@ -110,9 +110,9 @@ def test_ctrl_c_leaves_what_is_done(tmp_path: Path) -> None:
     process = started(*SWEEP[:-1], "1", cwd=tmp_path)
     wait_until(lambda: whole(folder / RUNS) >= 1)
     os.killpg(process.pid, signal.SIGINT)
-    printed, complaints = process.communicate(timeout=60)
+    printed, complaints = process.communicate(timeout=120)
     assert process.returncode == 130
     assert complaints == "\ninterrupted: what was computed is saved in pile-sweep\n"
     table = (folder / "pile.csv").read_text().splitlines()
-    assert len(table) - 1 == printed.count(" ended, ") >= 1
+    assert 6 > len(table) - 1 == whole(folder / RUNS) >= printed.count(" ended, ")
     assert "Traceback" not in printed
