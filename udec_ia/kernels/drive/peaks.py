@@ -16,7 +16,7 @@ from udec_ia.kernels.energy.stored import kinetic
 from udec_ia.layout import offsets as g
 
 FASTER = 1.02  # what ALPHA is multiplied or divided by in a cycle
-FIRST, LEAST, GREATEST = 1e-2, 1e-8, 0.5  # ALPHA times the time-step: at first, and its bounds
+FIRST, LOWEST, HIGHEST = 1e-2, 1e-8, 0.5  # ALPHA times the time-step: at first, and its bounds
 
 
 @kernel
@@ -64,9 +64,9 @@ def adapt(h: Memory, energy: float, change: float) -> None:
     if alpha == 0:
         alpha = FIRST / dt
     elif 2.0 * alpha * energy * dt < np.float64(h.cr[g.RESTF]) * abs(change):
-        alpha = min(alpha * FASTER, GREATEST / dt)
+        alpha = min(alpha * FASTER, HIGHEST / dt)
     else:
-        alpha = max(alpha / FASTER, LEAST / dt)
+        alpha = max(alpha / FASTER, LOWEST / dt)
     h.cr[g.ALPHA] = alpha
     half = alpha * dt * 0.5
     h.cr[g.CON1], h.cr[g.CON2] = 1.0 - half, 1.0 / (1.0 + half)
