@@ -8,7 +8,7 @@ from udec_ia import Model
 from udec_ia.deck.language import COMMANDS
 from udec_ia.errors import UdecError
 
-MONITORS_OWN = {"help", "end"}
+MONITORS_OWN = {"default", "help", "end"}
 METHODS = {command.name for command in COMMANDS} - MONITORS_OWN | {"summary"}
 
 

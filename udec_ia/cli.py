@@ -25,6 +25,7 @@ from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 from udec_ia.workshop import VERBS as LOOKS
 from udec_ia.workshop import add_commands
+from udec_ia.workshop.common import given, variables
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", "info", *LOOKS)
@@ -62,6 +63,7 @@ def arguments() -> argparse.ArgumentParser:
         metavar="LAW",
         help="laws of constitutive numbers 2 to 5: a Python file, joint-dilation or mohr-coulomb; repeatable",
     )
+    variables(run)
     run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
     run.set_defaults(action=_run)
     info = commands.add_parser("info", help="say what is in a restart file")
@@ -76,10 +78,15 @@ def _run(args: argparse.Namespace) -> int:
         print(f"udec: --out {args.out}: no file can be written there", file=sys.stderr)
         return MISUSE
     from udec_ia.deck.interactive import converse, history, history_file
-    from udec_ia.deck.monitor import Monitor, run_deck
+    from udec_ia.deck.monitor import run_deck
     from udec_ia.model import Model
 
     out = args.out or Path()
+    try:
+        values = given(args.set)
+    except ValueError as error:
+        print(f"udec: {error}", file=sys.stderr)
+        return MISUSE
     try:
         model = Model(build=args.build, mtop=args.mtop, out=out, constitutive=args.constitutive)
     except (ValueError, MemoryError) as error:
@@ -90,14 +97,12 @@ def _run(args: argparse.Namespace) -> int:
     if args.deck is not None:
         model.name = args.deck.stem
     if args.deck is not None:
-        run_deck(model, args.deck, sys.stdout).stop()
+        run_deck(model, args.deck, sys.stdout, values).stop()
     elif sys.stdin.isatty():
         with history(history_file()):
-            converse(model, sys.stdout)
+            converse(model, sys.stdout, values=values)
     else:
-        monitor = Monitor(model, sys.stdout)
-        monitor.run(sys.stdin, "stdin")
-        monitor.stop()
+        run_deck(model, sys.stdin, sys.stdout, values, "stdin").stop()
     return 0
 
 

@@ -22,6 +22,7 @@ from typing import Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
 from udec_ia.deck.monitor import run_deck
 from udec_ia.deck.reference import explain, summary
+from udec_ia.deck.variables import Values
 from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -726,26 +727,37 @@ class Model(Session):
         """All histories, in the order of their numbers."""
         return list(self._recorder.series)
 
-    def run(self, text_or_path: str | Path, stream: TextIO | None = None) -> str | None:
+    def solutions(self) -> list[Solution]:
+        """How the SOLVEs have ended until now, in order."""
+        return list(self._recorder.solutions)
+
+    def run(
+        self, text_or_path: str | Path, stream: TextIO | None = None, values: Values | None = None
+    ) -> str | None:
         """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned.
 
+        values: of the variables of the deck, by name, numbers or words; they go before those of DEFAULT.
         FileNotFoundError if there is no file of that name, and it cannot be meant as a command either.
         """
         out = io.StringIO() if stream is None else stream
-        run_deck(self, text_or_path, out)
+        run_deck(self, text_or_path, out, values)
         return out.getvalue() if isinstance(out, io.StringIO) else None
 
     def debug(
-        self, deck: str, script: Sequence[str] | None = None, stream: TextIO | None = None
+        self,
+        deck: str,
+        script: Sequence[str] | None = None,
+        stream: TextIO | None = None,
+        values: Values | None = None,
     ) -> str | None:
         """Run the text of a deck under the debugger, which is talked to at the terminal, or obeys `script`.
 
-        What is printed goes to `stream`; with a script and no stream it is returned.
+        What is printed goes to `stream`; with a script and no stream it is returned. values: as for `run`.
         """
         from udec_ia.debug import debug
 
         out = stream or (sys.stdout if script is None else io.StringIO())
-        debug(self, deck, out, script)
+        debug(self, deck, out, script, values=values)
         return out.getvalue() if isinstance(out, io.StringIO) else None
 
     # ---- looking

@@ -19,6 +19,7 @@ from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, show
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
 from udec_ia.deck.reader import statements
+from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
 from udec_ia.inspect import look
 from udec_ia.inspect.change import patch
@@ -393,21 +394,27 @@ def _count(text: str) -> int:
 
 
 def debug(
-    model: Any, deck: str, out: TextIO, script: Sequence[str] | None = None, name: str = "deck"
+    model: Any,
+    deck: str,
+    out: TextIO,
+    script: Sequence[str] | None = None,
+    name: str = "deck",
+    values: Values | None = None,
 ) -> None:
     """Run the text of a deck on `model` under the debugger, which stops before the first command.
 
-    script: commands of the debugger, after which it ends; None asks for them. Raises the UdecError that ends
-    the deck, after stopping there.
+    script: commands of the debugger, after which it ends; None asks for them. values: of the variables of the
+    deck. Raises the UdecError that ends the deck, after stopping there.
     """
-    lines = deck.splitlines()
+    lines, variables = deck.splitlines(), Variables(values)
+    variables.check(lines, name)
     console = Console(model, out, lines, script or (), ends=script is not None)
     console.debugger.goal = 0
     here = current_thread() is main_thread()
     former = signal.signal(signal.SIGINT, console.interrupt) if here else None
     try:
         with suppress(Leave), hold():
-            console.debugger.run(list(statements(lines, name)))
+            console.debugger.run(list(variables.filled(statements(lines, name))))
     finally:
         if here:
             signal.signal(signal.SIGINT, former)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from udec_ia.deck.language import ALSO_CALLED
 from udec_ia.deck.reader import Token
+from udec_ia.deck.synonyms import ALSO_CALLED
 from udec_ia.errors import UdecError
 
 SHOWN = 40  # characters of a word that are worth repeating
@@ -16,12 +16,12 @@ WIDTH = 200  # longer lines are shown up to the place of the error, and not at a
 
 
 def at(error: UdecError, place: Token) -> UdecError:
-    """`error`, telling that it arose at `place`."""
-    error.file, error.line, error.column = place.line.file, place.line.number, place.column
+    """`error`, telling that it arose at `place`, in the line as it was written."""
+    line, column = place.line.as_written(place.column)
+    error.file, error.line, error.column = line.file, line.number, column
     error.token = place.text
-    if place.column <= WIDTH:
-        shown = place.line.shown
-        error.source = shown if len(shown) <= WIDTH else shown[: place.column + SHOWN] + " ..."
+    if column <= WIDTH:
+        error.source = line.shown if len(line.shown) <= WIDTH else line.shown[: column + SHOWN] + " ..."
     return error
 
 

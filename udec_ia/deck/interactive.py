@@ -18,6 +18,7 @@ from udec_ia.deck.language import COMMANDS, Command, match
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.reader import CONTINUATION, WORD, Reader, Statement, obeyed
+from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.signals import Terminated
 
@@ -28,19 +29,23 @@ NUMERIC = "+-.0123456789"  # what a number begins with
 HISTORY_LENGTH = 1000
 
 
-def converse(model: Obeying, out: TextIO, ask: Callable[[str], str] = input) -> None:
+def converse(
+    model: Obeying, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
+) -> None:
     """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
+
+    values: of variables.
 
     Raises UdecError if STOP itself fails, and Terminated, after the state has been saved as in a run.
     """
-    monitor, typed = Monitor(model, out, echo=False), Typed()
+    monitor, typed = Monitor(model, out, echo=False, values=values), Typed()
     complete: list[Statement] = []
     over = False
     print(GREETING, file=out)
     while not monitor.ended and (complete or not over):
         try:
             if complete:
-                monitor.obey(complete.pop(0))
+                monitor.obey(monitor.variables.fill(complete.pop(0)))
             else:
                 complete = typed.read(ask(typed.prompt))
         except UdecError as error:

@@ -199,6 +199,17 @@ COMMANDS = (
         ours="LOCAL, COMBINED, KINETIC, ADAPTIVE",
     ),
     Command(
+        "DEFault",
+        "Give variables of the deck their values: names and values by turns. In the lines that follow $F or "
+        "${F} stands for the value of F, in any place but a comment. A value that is given with the deck, by "
+        "--set F=0.4, goes before it. A value is a number or a word.",
+        "DEFAULT F=0.5 N=1000",
+        text="assignments",
+        needs_text=True,
+        opens=True,
+        ours="the command, and variables",
+    ),
+    Command(
         "DElete", "Delete the blocks with centroids in x1<x<x2, y1<y<y2.", "DELETE 20 40 10 20", numbers=RANGE
     ),
     Command(
@@ -428,69 +439,6 @@ COMMANDS = (
     Command("STArt", "Start from nothing.", "START", opens=True),
     Command("Stop", "End the run.", "STOP", opens=True),
 )
-
-# What other programs and other people call these things. The parser does not take the words, but an error
-# that one of them raises names ours.
-ALSO_CALLED = {
-    "?": "HELP",
-    "ANGLE": "FRICTION",
-    "BEGIN": "START",
-    "BYE": "STOP",
-    "CONTINUE": "CYCLE RESTART",
-    "CRACK": "SPLIT",
-    "CUT": "SPLIT",
-    "DEFORMABLE": "SDEF FDEF",
-    "DRAW": "PLOT",
-    "DT": "FRACTION",
-    "E": "BULK G",
-    "ERASE": "DELETE",
-    "EXIT": "STOP",
-    "FORCE": "BOUNDARY CONTACTS KCFN KBFX",
-    "GO": "CYCLE",
-    "INFO": "PRINT HELP",
-    "JFRICTION": "FRICTION",
-    "JKN": "KN",
-    "JKS": "KS",
-    "JOINT": "SPLIT",
-    "JSET": "SPLIT",
-    "KILL": "DELETE",
-    "LIST": "PRINT",
-    "LOAD": "BOUNDARY RESTART",
-    "LOG": "HISTORY",
-    "MAN": "HELP",
-    "MAT": "PROPERTY",
-    "MATERIAL": "PROPERTY",
-    "MESH": "GENERATE",
-    "MU": "FRICTION",
-    "NEW": "START",
-    "NU": "BULK G",
-    "OPEN": "RESTART",
-    "PHI": "FRICTION",
-    "POISSON": "BULK G",
-    "POLYGON": "BLOCK",
-    "QUIT": "STOP",
-    "RECORD": "HISTORY",
-    "REMOVE": "DELETE",
-    "RHO": "DENSITY",
-    "RUN": "CYCLE",
-    "SET": "GRAVITY DAMPING FRACTION",
-    "SHEAR": "G",
-    "SHOW": "PRINT",
-    "STEP": "CYCLE",
-    "STRESS": "BOUNDARY INSITU KZS11 KS111",
-    "SXX": "STRESS",
-    "TENSION": "BTENSION",
-    "TIMESTEP": "FRACTION",
-    "VELOCITY": "BOUNDARY XVEL YVEL KXD KYD",
-    "VIEW": "PLOT",
-    "WRITE": "SAVE",
-    "X": "KX KXG",
-    "XVEL": "KXD KXDG",
-    "Y": "KY KYG",
-    "YOUNG": "BULK G",
-    "YVEL": "KYD KYDG",
-    "ZONE": "GENERATE",
-}
 
 
 def required(keyword: str) -> str:

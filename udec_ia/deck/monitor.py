@@ -21,6 +21,7 @@ from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.obeying import Obeying
 from udec_ia.deck.parser import NUMBER, Call, parse
 from udec_ia.deck.reader import WORD, Statement, statements
+from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
@@ -44,13 +45,16 @@ RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder 
 class Monitor:
     """Obeys statements on `model` and writes to `out`.
 
-    echo: False where the user sees what he types. ended: True after STOP or END.
+    echo: False where the user sees what he types. ended: True after STOP or END. values: of variables.
     """
 
-    def __init__(self, model: Obeying, out: TextIO, *, echo: bool = True) -> None:
+    def __init__(
+        self, model: Obeying, out: TextIO, *, echo: bool = True, values: Values | None = None
+    ) -> None:
         self.model = model
         self.out = out
         self.echo = echo
+        self.variables = Variables(values)
         self.ended = False
         self._stopped = False
 
@@ -62,7 +66,7 @@ class Monitor:
         """
         with hold():  # around all of it: no signal comes between what ends the run and its rescue
             try:
-                for statement in statements(_awaited(lines), file):
+                for statement in self.variables.filled(statements(_awaited(lines), file)):
                     self.obey(statement)
                     if self.ended:
                         return
@@ -79,7 +83,7 @@ class Monitor:
                 raise
 
     def obey(self, statement: Statement) -> None:
-        """Echo and obey one statement. Raises UdecError with its place."""
+        """Echo and obey one statement, with its values put in. Raises UdecError with its place."""
         if self.echo:
             for line in statement.lines:
                 self._write(f"> {line.shown}".rstrip())
@@ -126,11 +130,14 @@ class Monitor:
         """Obey `call` and log its lines; what is returned is to be shown."""
         result = self._call(call)
         lines = dict.fromkeys(token.line for token in statement.tokens)
-        self.model.log_lines([line.shown for line in lines])
+        if call.command.name != "default":  # the lines that are logged have their values
+            self.model.log_lines([line.shown for line in lines])
         return result
 
     def _call(self, call: Call) -> object:
         name = call.command.name
+        if name == "default":  # obeyed when its line was read
+            return None
         if name in ("stop", "end"):
             self.ended = True
             if name == "stop":
@@ -222,19 +229,36 @@ def _awaited(lines: Iterable[str]) -> Iterator[str]:
         yield line
 
 
-def run_deck(model: Obeying, deck: str | Path, out: TextIO) -> Monitor:
+def run_deck(
+    model: Obeying, deck: str | Path | TextIO, out: TextIO, values: Values | None = None, name: str = "text"
+) -> Monitor:
     """Obey a whole deck on `model` and return the monitor that did.
 
-    deck: the path of a deck, or its text; a str is a path if there is a file of that name, or if it looks
-    like one. Raises UdecError, and OSError if the file cannot be read.
+    deck: the path of a deck, its text, or a stream; a str is a path if there is a file of that name, or if it
+    looks like one. values: of its variables, by name. name: what errors call a text or a stream. Raises
+    UdecError, and OSError if the file cannot be read.
     """
-    monitor = Monitor(model, out)
-    if isinstance(deck, Path) or os.path.isfile(deck) or _names_a_file(deck):
+    monitor = Monitor(model, out, values=values)
+    if not isinstance(deck, str | Path):
+        _run_whole(monitor, deck, name)
+    elif isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
         with _opened(deck) as lines:
-            monitor.run(lines, str(deck))
+            _run_whole(monitor, lines, str(deck))
     else:
-        monitor.run(io.StringIO(deck, newline=None), "text")
+        _run_whole(monitor, io.StringIO(deck, newline=None), name)
     return monitor
+
+
+def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
+    """Have the monitor obey a deck, after a look at all its variables.
+
+    What comes out of a pipe is obeyed as it comes, but for one to which values are given.
+    """
+    if lines.seekable() or monitor.variables.given:
+        lines = io.StringIO(lines.read())
+        monitor.variables.check(lines, file)
+        lines.seek(0)
+    monitor.run(lines, file)
 
 
 def _opened(deck: str | Path) -> TextIO:
@@ -245,7 +269,7 @@ def _opened(deck: str | Path) -> TextIO:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(deck)) from error
 
 
-def _names_a_file(text: str) -> bool:
+def names_a_file(text: str) -> bool:
     """True if `text` is one line that begins with no command and ends like the name of a file: in `.dat`."""
     if FILE_NAME.fullmatch(text) is None or match(COMMANDS, text.split()[0]):
         return False

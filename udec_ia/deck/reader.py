@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
@@ -18,13 +19,27 @@ REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, b
 CONTINUATION = "+"
 
 
+class Put(NamedTuple):
+    """A value that was put into a line: its columns first to end - 1 stand for those from at to after - 1."""
+
+    first: int
+    end: int
+    at: int
+    after: int
+
+
 @dataclass(frozen=True)
 class Line:
-    """One line of a deck. number counts from 1."""
+    """One line of a deck. number counts from 1.
+
+    written: the line as it was written, if values were put in for its variables; put_in: these, in order.
+    """
 
     file: str
     number: int
     text: str
+    written: Line | None = None
+    put_in: tuple[Put, ...] = ()
 
     @property
     def shown(self) -> str:
@@ -32,6 +47,17 @@ class Line:
         if self.text.isprintable():
             return self.text
         return "".join(c if c.isprintable() else " " if c.isspace() else "?" for c in self.text)
+
+    def as_written(self, column: int) -> tuple[Line, int]:
+        """The line as it was written, and the column there of what stands in `column` here."""
+        shift = 0
+        for put in self.put_in:
+            if column < put.first:
+                break
+            if column < put.end:
+                return self.written or self, put.at
+            shift = put.after - put.end
+        return self.written or self, column + shift
 
 
 @dataclass(frozen=True)
@@ -66,6 +92,15 @@ def tokens(line: Line, start: int = 0) -> list[Token]:
     return [
         Token(found.group(), line, found.start() + 1) for found in WORD.finditer(obeyed(line.text), start)
     ]
+
+
+def tokens_of(lines: Iterable[Line]) -> list[Token]:
+    """The words and numbers of a command that has these lines, comments among them."""
+    found: list[Token] = []
+    for line in lines:
+        if WORD.search(obeyed(line.text)):
+            found += tokens(line, line.text.index(CONTINUATION) + 1 if found else 0)
+    return found
 
 
 class Reader:

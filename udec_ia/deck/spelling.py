@@ -20,7 +20,7 @@ from udec_ia.deck.reader import CONTINUATION
 WIDTH = 79  # of a line
 WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
 # Of files and of the session: no part of what has made a state.
-UNSAID = ("save", "restart", "stop", "end", "help")
+UNSAID = ("save", "restart", "stop", "end", "help", "default")
 BY_NAME = {command.name: command for command in COMMANDS if command.name not in UNSAID}
 
 

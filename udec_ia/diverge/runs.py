@@ -14,6 +14,7 @@ from udec_ia.debug.session import cycle_statement, cycles_of
 from udec_ia.debug.timeline import Copy, copied
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
+from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 
@@ -40,9 +41,9 @@ def of_state(model: Any, cycles: int) -> Run:
     return Run(model, _cycles(model, cycles))
 
 
-def of_deck(model: Any, text: str, name: str = "deck") -> Run:
-    """The deck `text`, on a new model."""
-    return Run(model, _deck(model, text, name))
+def of_deck(model: Any, text: str, name: str = "deck", values: Values | None = None) -> Run:
+    """The deck `text`, on a new model. values: of its variables, by name."""
+    return Run(model, _deck(model, text, name, values))
 
 
 def _cycles(model: Any, cycles: int) -> Iterator[Step]:
@@ -53,9 +54,10 @@ def _cycles(model: Any, cycles: int) -> Iterator[Step]:
         yield _step(model)
 
 
-def _deck(model: Any, text: str, name: str) -> Iterator[Step]:
-    monitor = Monitor(model, StringIO())
-    for statement in statements(text.splitlines(), name):
+def _deck(model: Any, text: str, name: str, values: Values | None) -> Iterator[Step]:
+    monitor = Monitor(model, StringIO(), values=values)
+    monitor.variables.check(text.splitlines(), name)
+    for statement in monitor.variables.filled(statements(text.splitlines(), name)):
         if not statement.tokens or monitor.ended:
             continue
         line = f"{name}:{statement.tokens[0].line.number}: {statement.tokens[0].line.shown.strip()}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +33,30 @@ def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
 def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
     """The argument FILE."""
     parser.add_argument(name, type=Path, metavar=name.upper(), help="a restart file, sound or damaged")
+
+
+def variables(parser: argparse.ArgumentParser) -> None:
+    """The argument --set NAME=VALUE."""
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="what a variable of the deck stands for ($NAME), whatever its DEFAULT is; repeatable",
+    )
+
+
+def given(texts: Sequence[str]) -> dict[str, str]:
+    """The values of --set, by name. ValueError for what is none."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equal, value = (part.strip() for part in text.partition("="))
+        if not equal:
+            raise ValueError(f"--set {text}: give a name and a value, as in --set F=0.4")
+        if name.upper() in found:
+            raise ValueError(f"--set {text}: {name} has a value already")
+        found[name.upper()] = value
+    return found
 
 
 def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:

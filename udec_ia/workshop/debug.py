@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from udec_ia.workshop.common import MISUSE, given, variables
+
 VERBS = ("debug",)
 
 
@@ -31,6 +33,7 @@ def add_commands(commands: Any) -> None:
         metavar="FILE",
         help="take the debugger's commands from a file, and end after them",
     )
+    variables(parser)
     parser.set_defaults(action=_debug)
 
 
@@ -38,9 +41,13 @@ def _debug(args: argparse.Namespace) -> int:
     from udec_ia.debug import debug
     from udec_ia.model import Model
 
+    try:
+        values = given(args.set)
+    except ValueError as error:
+        print(f"udec debug: {error}", file=sys.stderr)
+        return MISUSE
     script = None if args.commands is None else args.commands.read_text().splitlines()
     model = Model(build=args.build, out=args.out, constitutive=args.constitutive, name=args.deck.stem)
-    debug(
-        model, args.deck.read_text(encoding="utf-8-sig", errors="replace"), sys.stdout, script, str(args.deck)
-    )
+    text = args.deck.read_text(encoding="utf-8-sig", errors="replace")
+    debug(model, text, sys.stdout, script, str(args.deck), values)
     return 0

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
-from udec_ia.workshop.common import command
+from udec_ia.workshop.common import command, given, variables
 
 if TYPE_CHECKING:
     from udec_ia.diverge import Divergence, Run
@@ -38,6 +38,10 @@ def add_commands(commands: Any) -> None:
         metavar="LAW",
         help="of the other run, if it has not the same",
     )
+    variables(parser)
+    parser.add_argument(
+        "--other-set", action="append", metavar="NAME=VALUE", help="of the other run, if it has not the same"
+    )
     parser.add_argument("--cycles", type=int, metavar="N", help="go on from two restart files so many cycles")
     parser.add_argument(
         "--tolerance",
@@ -54,10 +58,15 @@ def _builds(args: argparse.Namespace) -> list[str]:
     """The word schemes of the first and the second. ValueError for what is none."""
     from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 
-    if args.cycles is not None and (args.builds or args.other is None or args.cycles < 0):
+    if args.cycles is not None and (
+        args.builds or args.other is None or args.cycles < 0 or args.set or args.other_set
+    ):
         raise ValueError("--cycles N goes with two restart files, each of which has its word scheme")
-    if args.cycles is None and args.other is None and not (args.builds or args.other_constitutive):
-        raise ValueError("give a second deck, --builds A,B or --other-constitutive LAW")
+    others = args.builds or args.other_constitutive or args.other_set
+    if args.cycles is None and args.other is None and not others:
+        raise ValueError(
+            "give a second deck, --builds A,B, --other-set NAME=VALUE or --other-constitutive LAW"
+        )
     builds = args.builds.split(",") if args.builds else [DEFAULT_SCHEME] * 2
     if len(builds) != 2 or not {*builds} <= {*ALL_SCHEMES}:
         raise ValueError(f"--builds {args.builds}: give two of {', '.join(ALL_SCHEMES)}, as i32r64,i32r32")
@@ -71,13 +80,27 @@ def _laws(args: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]
     return args.constitutive, args.other_constitutive or args.constitutive
 
 
-def _run(args: argparse.Namespace, path: Path, build: str, laws: list[str] | None, out: str) -> Run:
+def _values(args: argparse.Namespace) -> tuple[dict[str, str], dict[str, str]]:
+    """Values of the variables of the first and the second."""
+    values = given(args.set)
+    return values, values | given(args.other_set or [])
+
+
+def _run(
+    args: argparse.Namespace,
+    path: Path,
+    build: str,
+    laws: list[str] | None,
+    values: dict[str, str],
+    out: str,
+) -> Run:
     from udec_ia.diverge import of_deck, of_state
     from udec_ia.model import Model
 
     if args.cycles is not None:
         return of_state(Model.restore(path, out=out, constitutive=laws), args.cycles)
-    return of_deck(Model(build=build, out=out, name=path.stem, constitutive=laws), _text(path), path.name)
+    model = Model(build=build, out=out, name=path.stem, constitutive=laws)
+    return of_deck(model, _text(path), path.name, values)
 
 
 def _text(path: Path) -> str:
@@ -92,9 +115,8 @@ def _diverge(args: argparse.Namespace) -> Listing:
     builds, paths = _builds(args), (args.file, args.other or args.file)
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         try:
-            runs = [
-                _run(args, *each) for each in zip(paths, builds, _laws(args), (first, second), strict=True)
-            ]
+            each = zip(paths, builds, _laws(args), _values(args), (first, second), strict=True)
+            runs = [_run(args, *one) for one in each]
             found = diverge(runs[0], runs[1], Judge(args.tolerance))
         except (UdecError, OSError) as error:
             raise ValueError(str(error)) from error
@@ -127,12 +149,13 @@ def _keep(args: argparse.Namespace, runs: list[Run], found: Divergence) -> list[
 def _script(args: argparse.Namespace) -> str:
     builds, paths = _builds(args), [str(args.file), str(args.other or args.file)]
     if args.cycles is None:
-        made = "of_deck(Model(build=build, constitutive=laws), Path(path).read_text(), path)"
+        made = "of_deck(Model(build=build, constitutive=laws), Path(path).read_text(), path, values)"
     else:
         made = f"of_state(Model.restore(path, constitutive=laws), {args.cycles})"
     return (
         "from pathlib import Path\n\nfrom udec_ia import Model\n"
         "from udec_ia.diverge import Judge, diverge, of_deck, of_state\n\n"
-        f"runs = [{made} for path, build, laws in zip({paths}, {builds}, {_laws(args)})]\n"
+        f"given = zip({paths}, {builds}, {_laws(args)}, {_values(args)})\n"
+        f"runs = [{made} for path, build, laws, values in given]\n"
         f"print(diverge(*runs, Judge({args.tolerance})))"
     )

@@ -1,0 +1,159 @@
+"""One run of a study: what goes into it, and what comes out.
+
+What comes out depends on nothing but what has gone in, and on the program. So a result that was kept stands
+for the run, as long as it says of itself that it was made of the same things (`Run.made_of`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from udec_ia.deck.variables import Values
+from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.study.reading import DEFAULTS, read, read_rule
+from udec_ia.version import __version__
+
+RESULT = "result.json"  # in the folder of a run
+EVERY = 100  # cycles between two looks whether to stop
+ENDED, ERROR, STOPPED, LATE, DIED = "ended", "error", "stopped", "timed out", "died"
+PACKAGE = Path(__file__).parent.parent
+
+
+@dataclass(frozen=True)
+class Run:
+    """What goes into a run. It can be sent to another process.
+
+    name: of its folder, and no other's in its study. deck: the text. file: what errors call the deck; without
+    it they name deck.dat in the folder of the run. values: of variables. quantities: as they are written
+    (reading.py). build, constitutive: as for Model; laws are files or names. stop: rules, looked at
+    every `every` cycles: the run ends with the first that holds. limit: processor seconds without compiling,
+    after which the run is ended. Raises ValueError for quantities and rules that cannot be understood.
+    """
+
+    name: str
+    deck: str
+    file: str = ""
+    values: Values = field(default_factory=dict)
+    quantities: tuple[str, ...] = DEFAULTS
+    build: str = DEFAULT_SCHEME
+    constitutive: tuple[str, ...] = ()
+    stop: tuple[str, ...] = ()
+    every: int = EVERY
+    limit: float | None = None
+
+    def __post_init__(self) -> None:
+        read(self.quantities)
+        for rule in self.stop:
+            read_rule(rule)
+        if self.every < 1:
+            raise ValueError(f"every {self.every} cycles: give 1 or more")
+        if self.limit is not None and not self.limit > 0:
+            raise ValueError(f"a limit of {self.limit} s: give more than 0")
+        laws = tuple(str(Path(law).absolute()) if Path(law).is_file() else law for law in self.constitutive)
+        object.__setattr__(self, "constitutive", laws)
+
+    @property
+    def made_of(self) -> dict[str, str]:
+        """All that its result depends on, by what it is called; what is long as its SHA-256."""
+        looks = f" every {self.every} cycles" if self.stop else ""
+        return {
+            "deck": _digest(self.deck.encode()),
+            "values": json.dumps({name: str(value) for name, value in sorted(self.values.items())}),
+            "build": self.build,
+            "laws": json.dumps([_law(law) for law in self.constitutive]),
+            "quantities": json.dumps(self.quantities),
+            "rule to stop": json.dumps(self.stop) + looks,
+            "program": f"{__version__} {_program()}",
+        }
+
+
+@dataclass(frozen=True)
+class Result:
+    """What has come of a run.
+
+    status: "ended", "error", "stopped" by a rule, "timed out" at the limit, or "died" if the process did.
+    error: number of the error, 0 for none or one without a number. message: of the error, or the rule; "" for
+    a run that ended. quantities: in the order of the run's, NaN for those without a value. remarks: why they
+    have none. cycles, time (s): done until then. words: of IA() in use. seconds: of processor time without
+    compiling; wall_seconds: of the clock, with it. peak_memory: bytes that the process had at most, 0 where
+    that is not known. made_of: see Run. limit: of the run.
+    """
+
+    name: str
+    values: dict[str, Any]
+    status: str
+    error: int = 0
+    message: str = ""
+    quantities: dict[str, float] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+    cycles: int = 0
+    time: float = 0.0
+    words: int = 0
+    seconds: float = 0.0
+    wall_seconds: float = 0.0
+    peak_memory: int = 0
+    made_of: dict[str, str] = field(default_factory=dict)
+    limit: float | None = None
+
+    @property
+    def outcome(self) -> dict[str, Any]:
+        """All of it that does not depend on the machine, with numbers as they are written."""
+        machine = ("seconds", "wall_seconds", "peak_memory", "limit")
+        return {name: value for name, value in _plain(asdict(self)).items() if name not in machine}
+
+
+def write(result: Result, folder: Path) -> None:
+    """Leave the result in the folder of its run, which is there."""
+    (folder / RESULT).write_text(json.dumps(_plain(asdict(result)), indent=1) + "\n", encoding="utf-8")
+
+
+def kept(run: Run, folder: Path) -> tuple[Result | None, str]:
+    """The result of `run` in its folder in `folder`, or None and why it is not taken, "" if there is none."""
+    try:
+        found = json.loads((folder / run.name / RESULT).read_text(encoding="utf-8"))
+        found["quantities"] = {name: float(value) for name, value in found["quantities"].items()}
+        result = Result(**found)
+    except FileNotFoundError:
+        return None, ""
+    except (OSError, ValueError, TypeError, KeyError):
+        return None, "the result cannot be read"
+    made_of = run.made_of
+    changed = [name for name in made_of if result.made_of.get(name) != made_of[name]]
+    if result.status == LATE and (run.limit is None or run.limit > (result.limit or 0)):
+        changed.append("limit")
+    if changed:
+        return None, f"another {' and '.join(changed)}"
+    return replace(result, remarks=tuple(result.remarks)), ""
+
+
+def _plain(value: Any) -> Any:
+    """What JSON has: a number that is none, or infinite, as text."""
+    if isinstance(value, Mapping):
+        return {name: _plain(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _law(law: str) -> str:
+    return _digest(Path(law).read_bytes()) if Path(law).is_file() else law
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+@cache
+def _program() -> str:
+    """Hash of the program."""
+    digest = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

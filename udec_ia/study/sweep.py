@@ -1,0 +1,116 @@
+"""A sweep: one deck, run for all combinations of values of its variables."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from udec_ia.deck.monitor import names_a_file
+from udec_ia.deck.variables import Value, Variables
+from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.study.many import run_all
+from udec_ia.study.pictures import draw
+from udec_ia.study.progress import Told
+from udec_ia.study.ranges import Given, grid
+from udec_ia.study.reading import DEFAULTS, read
+from udec_ia.study.runs import EVERY, Result, Run
+from udec_ia.study.table import BEFORE, BEHIND, Table
+
+LONGEST = 120  # characters of the name of a folder
+
+
+class Sweep(NamedTuple):
+    """What a sweep gives. results: of all runs, in the order of the grid. table: a line for each.
+
+    files: the table and its picture. said: sentences on what became of the runs.
+    """
+
+    results: list[Result]
+    table: Table
+    files: list[Path]
+    said: list[str]
+
+
+def sweep(
+    deck: str | Path,
+    values: Mapping[str, Given],
+    *,
+    quantities: Iterable[str] = DEFAULTS,
+    stop: Iterable[str] = (),
+    every: int = EVERY,
+    limit: float | None = None,
+    build: str = DEFAULT_SCHEME,
+    constitutive: Iterable[str] = (),
+    out: str | Path | None = None,
+    jobs: int | None = None,
+    dask: str = "",
+    stream: TextIO | None = None,
+) -> Sweep:
+    """Run `deck`, a path or a text, for all combinations of `values`; each run has a folder and a line of a table.
+
+    values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7"
+    (ranges.py). quantities, stop, every, limit, build, constitutive: of each run (runs.Run). out: folder of it
+    all, by default NAME-sweep beside the working directory's other files; results that are there and made of
+    the same are taken. jobs, dask: who runs it (many.run_all). stream: takes how it is going.
+    A run that fails is a result. Raises ValueError for what is given wrongly, UdecError 7 and 10 for variables
+    of the deck, 31 if something cannot be written. Ctrl-C leaves the table of what is done.
+    """
+    text, file = _read(deck)
+    stem = Path(file).stem if file else "deck"
+    folder = Path(f"{stem}-sweep" if out is None else out)
+    points, asked = grid(values), tuple(quantities)
+    names = [one.name for one in read(asked)]
+    _check_names(points[0], names)
+    Variables(points[0]).check(text.splitlines(), file or "text")
+    runs = [
+        Run(name_of(point), text, file, point, asked, build, tuple(constitutive), tuple(stop), every, limit)
+        for point in points
+    ]
+    told = Told(stream or io.StringIO(), len(runs))
+    changing = [name for name in points[0] if len({str(point[name]) for point in points}) > 1]
+    attributes = {"deck": text, "quantities": "\n".join(asked)}
+
+    def put(results: list[Result]) -> tuple[Table, list[Path]]:
+        table = Table.of(results, points[0], names)
+        files = table.write(folder / stem, attributes)
+        return table, files + draw(table, changing, names, stem, folder / stem)
+
+    try:
+        results = run_all(runs, folder, jobs=jobs, dask=dask, told=told)
+    except KeyboardInterrupt as interrupt:
+        done = {one.name: one for one in told.results}
+        with suppress(Exception):
+            put([done[run.name] for run in runs if run.name in done])
+        raise type(interrupt)(str(folder)) from None
+    finally:
+        told.close()
+    return Sweep(results, *put(results), told.said)
+
+
+def name_of(values: Mapping[str, Value]) -> str:
+    """The name of the folder of a run with these values."""
+    name = ",".join(f"{variable}={value}" for variable, value in values.items())
+    if len(name) <= LONGEST:
+        return name
+    import hashlib
+
+    return f"{name[:LONGEST]}~{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+
+
+def _check_names(point: Mapping[str, Value], quantities: list[str]) -> None:
+    """ValueError if a column of the table would have the name of another."""
+    taken = [*BEFORE, *point, *BEHIND]
+    for name in quantities:
+        if name in taken:
+            raise ValueError(f"the table has another column {name}: give the quantity a name, as in X={name}")
+
+
+def _read(deck: str | Path) -> tuple[str, str]:
+    """The text of a deck and its name, "" if it is given as text."""
+    if isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
+        return Path(deck).read_text(encoding="utf-8-sig", errors="replace"), Path(deck).name
+    return deck, ""

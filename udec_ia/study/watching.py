@@ -1,0 +1,157 @@
+"""A run of a study is watched: where things are at first, whether it is to stop, what it came to.
+
+That changes no digit of the run: how a CYCLE is cut into pieces has no influence on what it does.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from time import thread_time
+from typing import Any, TextIO
+
+from udec_ia.deck.monitor import Monitor
+from udec_ia.deck.reader import Statement
+from udec_ia.errors import UdecError
+from udec_ia.heap.compiling import compile_seconds
+from udec_ia.layout import offsets as g
+from udec_ia.model import Model
+from udec_ia.ops.run.watch import Watch
+from udec_ia.study.observed import NoValue, Start, State
+from udec_ia.study.reading import read, read_rule
+from udec_ia.study.runs import LATE, STOPPED, Run
+
+
+class Observer:
+    """Watches `run`, which is run on `model`.
+
+    rehearsal: a CYCLE or SOLVE has one cycle. over: status with which the run is to end, "" while it is not;
+    why: in words.
+    """
+
+    def __init__(self, run: Run, model: Model, rehearsal: bool = False) -> None:
+        self.run, self.model, self.rehearsal = run, model, rehearsal
+        self.over = self.why = ""
+        self._named, self._rules = read(run.quantities), [read_rule(text) for text in run.stop]
+        asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
+        self._start = Start(frozenset(one.place for one in asked if one.place is not None))
+        self._clock, self._compiled = thread_time(), compile_seconds()
+
+    def obey(self, out: TextIO) -> None:
+        """Obey the deck of the run, whose output goes to `out`."""
+        name, text = self.run.file, self.run.deck
+        monitor = _Monitor(self, out)
+        monitor.variables.check(text.splitlines(), name)
+        self.model.around = lambda watch: _Eye(self, watch or Watch(self.model.array, []))
+        monitor.run(text.splitlines(), name)
+        monitor.stop()
+
+    @property
+    def seconds(self) -> float:
+        """Processor seconds until now, without compiling."""
+        return max(thread_time() - self._clock - (compile_seconds() - self._compiled), 0.0)
+
+    @property
+    def size(self) -> tuple[int, float, int]:
+        """Cycles and time of the model, and words in use."""
+        h = self.model.array.h
+        return int(h.ci[g.MCTOT]), float(h.cd[g.TIME]), int(h.ci[g.MFREE]) - 1
+
+    def quantities(self) -> tuple[dict[str, float], list[str]]:
+        """What is asked for, by name, with NaN for what has no value; and why it has none."""
+        found, remarks, state = dict[str, float](), list[str](), self._state()
+        for name, quantity in self._named:
+            try:
+                found[name] = quantity.value(state)
+            except (NoValue, UdecError) as reason:
+                found[name] = float("nan")
+                remarks.append(f"{name} has no value: {getattr(reason, 'detail', reason)}")
+        return found, remarks
+
+    # ---- what happens on the way
+
+    def obeyed(self) -> None:
+        """A command was obeyed."""
+        self._start.look(self.model.array)
+        self._look_at_clock()
+
+    def begin(self) -> None:
+        """A CYCLE or SOLVE begins."""
+        self._start.begin(self.model.array)
+
+    def piece(self, n: int) -> int:
+        """Cycles until the next look, of `n` to come."""
+        if self.rehearsal:
+            return min(n, 1)
+        every = self.run.every
+        return min(n, every - int(self.model.array.h.ci[g.MCTOT]) % every) if self._rules else n
+
+    def ran(self) -> None:
+        """A piece of a CYCLE or SOLVE is over."""
+        self._look_at_clock()
+        h = self.model.array.h
+        whole = h.ci[g.JPHASE] == g.AT_BLOCKS and h.ci[g.NERR] == 0
+        if self._rules and whole and h.ci[g.MCTOT] % self.run.every == 0:
+            state = self._state()
+            for rule in self._rules:
+                with suppress(NoValue, UdecError):  # not yet
+                    if rule.holds(state):
+                        self.over, self.why = STOPPED, rule.text
+
+    def _look_at_clock(self) -> None:
+        if self.run.limit is not None and self.seconds > self.run.limit and not self.over:
+            self.over, self.why = LATE, f"after {self.run.limit:g} s"
+
+    def _state(self) -> State:
+        return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
+
+
+class _Monitor(Monitor):
+    """Tells the observer of every command, and ends when it says so."""
+
+    def __init__(self, observer: Observer, out: TextIO) -> None:
+        super().__init__(observer.model, out, values=observer.run.values)
+        self._observer = observer
+
+    def obey(self, statement: Statement) -> None:
+        """As Monitor.obey."""
+        super().obey(statement)
+        self._observer.obeyed()
+        if self._observer.over:
+            self.ended = True
+
+
+class _Eye(Watch):
+    """Runs a CYCLE or SOLVE in the pieces that the observer asks for. inner: what watches the run else."""
+
+    def __init__(self, observer: Observer, inner: Watch) -> None:
+        self.observer, self.inner, self.done = observer, inner, 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    @property
+    def reached(self) -> bool:  # type: ignore[override]
+        """True when there are to be no more cycles."""
+        rehearsed = self.observer.rehearsal and self.done > 0
+        return self.inner.reached or bool(self.observer.over) or rehearsed
+
+    def begin(self) -> None:
+        """The run is prepared."""
+        self.inner.begin()
+        self.observer.begin()
+
+    def run(self, n: int, laws: Any) -> int:
+        """One piece of at most `n` cycles."""
+        completed = self.inner.run(self.observer.piece(n), laws)
+        self.done += completed
+        if completed:
+            self.observer.ran()
+        return completed
+
+    def look(self) -> None:
+        """As Watch.look."""
+        self.inner.look()
+
+    def hand_on(self) -> int:
+        """As Watch.hand_on."""
+        return self.inner.hand_on()

@@ -1,0 +1,113 @@
+"""`udec sweep DECK --set F=0.3:0.9:20`: run a deck for many values of its variables."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.workshop.common import command, given
+
+if TYPE_CHECKING:
+    from udec_ia.inspect.look.listing import Listing
+
+VERBS = ("sweep",)
+TEXT = "run a deck for all combinations of values of its variables: a folder and a line of a table each"
+SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
+SHOWN = ("status", "cycles", "seconds", "message")  # columns that are printed, beside values and quantities
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser = command(commands, "sweep", TEXT, _sweep, _script)
+    parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands with variables ($F)")
+    many = {"action": "append", "default": []}
+    parser.add_argument(
+        "--set",
+        **many,
+        metavar="NAME=VALUES",
+        help="values of a variable: 0.3:0.9:20 (first:last:number), 1e6:1e9:4:log, or 0.1,0.2; repeatable",
+    )
+    parser.add_argument(
+        "--quantity",
+        **many,
+        metavar="QUANTITY",
+        help='column of the table: "e = max contact.KCFN"; repeatable',
+    )
+    parser.add_argument(
+        "--stop", **many, metavar="RULE", help='end a run when "max block.KXD > 1"; repeatable'
+    )
+    parser.add_argument("--every", type=int, metavar="N", help="cycles between two looks at the rules (100)")
+    parser.add_argument(
+        "--limit", metavar="TIME", help="processor time after which a run is ended: 60s, 5m, 1h"
+    )
+    parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
+    parser.add_argument("--constitutive", **many, metavar="LAW", help="as for udec run")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-sweep)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
+    parser.add_argument("--dask", default="", metavar="ADDRESS", help="run on the workers of this scheduler")
+
+
+def _sweep(args: argparse.Namespace) -> Listing:
+    from udec_ia.inspect.look import Listing
+    from udec_ia.study.ranges import grid
+    from udec_ia.study.sweep import sweep
+
+    values, options = given(args.set), _options(args)
+    if not values:
+        raise ValueError("give at least one variable its values: --set F=0.3:0.9:7")
+    stream = sys.stderr if args.json else sys.stdout
+    counts = [f"{len(grid({name: text}))} of {name}" for name, text in values.items()]
+    print(f"{len(grid(values))} runs: {', '.join(counts)}", file=stream, flush=True)
+    found = sweep(args.deck, values, stream=stream, **options)
+    columns = [
+        name for name in found.table.columns if name in values or name in SHOWN or name in _asked(found)
+    ]
+    rows = zip(*(found.table.listed(name) for name in columns), strict=True)
+    written = f"written: {', '.join(str(path) for path in found.files)}"
+    return Listing([*found.said, written], tuple(columns), [*rows])
+
+
+def _asked(found: Any) -> set[str]:
+    """Names of the quantities."""
+    return {name for result in found.results for name in result.quantities}
+
+
+def _options(args: argparse.Namespace) -> dict[str, Any]:
+    """What `sweep` is given, but for what it takes by itself."""
+    options: dict[str, Any] = {
+        "quantities": args.quantity,
+        "stop": args.stop,
+        "every": args.every,
+        "limit": None if args.limit is None else _seconds(args.limit),
+        "build": args.build,
+        "constitutive": args.constitutive,
+        "out": args.out,
+        "jobs": args.jobs,
+        "dask": args.dask,
+    }
+    return {name: value for name, value in options.items() if value not in (None, [], "")}
+
+
+def _seconds(text: str) -> float:
+    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
+    found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
+    if found is None:
+        raise ValueError(f"--limit {text}: give a time as in 60s, 5m or 1h")
+    return float(found[1]) * SECONDS[found[2]]
+
+
+def _script(args: argparse.Namespace) -> str:
+    options = "".join(
+        f", {name}={str(value) if isinstance(value, Path) else value!r}"
+        for name, value in _options(args).items()
+    )
+    return (
+        "from udec_ia import sweep\n\n"
+        f"found = sweep({str(args.deck)!r}, {given(args.set)!r}{options})\n"
+        "print(found.table.columns)"
+    )
