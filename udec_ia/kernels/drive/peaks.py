@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, iget, int64, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import kernel
+from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.energy.inertial import energy_of_motion
 from udec_ia.kernels.energy.stored import kinetic
 from udec_ia.layout import offsets as g
@@ -40,7 +41,13 @@ def halt_block(h: Memory, ib: int) -> None:
             putr(h, ig, g.KXDG, zero)
         if iget(h, ig, g.KGFIX) & g.ALONG_Y == 0:
             putr(h, ig, g.KYDG, zero)
+        ip = iget(h, ig, g.KCOR)
+        if ip != 0:
+            putr(h, ip, g.KXDP, getr(h, ig, g.KXDG))
+            putr(h, ip, g.KYDP, getr(h, ig, g.KYDG))
         ig = iget(h, ig, g.KG)
+    if iget(h, ib, HEAD) != g.MFDEF:
+        carry_corners(h, ib)
 
 
 @kernel

@@ -127,7 +127,7 @@ def on_rest(array: MainArray) -> Iterator[str]:
     h = array.h
     bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
     viscous = any(np.any(getr(h, bounds, k)) for k in (g.KUCXX, g.KUCYY)) if len(bounds) else False
-    if not (h.cr[g.ALPHA] or h.cr[g.BETA] or h.cr[g.ALPB] or viscous):
+    if not (h.cr[g.ALPHA] or h.cr[g.BETA] or h.cr[g.ALPB] or h.ci[g.LREST] or viscous):
         yield (
             "there is no damping, and nothing but friction brings blocks to rest: "
             "DAMPING 0.5 f MASS, with f near the frequency (Hz) at which they would swing"
