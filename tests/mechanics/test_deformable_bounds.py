@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan, generate, rectangle
+from udec_ia.verify.grids import fan, generate, rectangle
 from mechanics import at, block, box, model, push, sound
 from naive.bodies import area_and_moments, by_address, momentum, outlines, points_of
 from naive.relocate import differences, essence

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
+from udec_ia.verify.grids import fan
 from mechanics import at, block, box, model, push, sound
 from naive.bodies import (
     applied_stress,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from continua import energies, pulsed
-from grids import generate, rectangle
+from udec_ia.verify.grids import generate, rectangle
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
+from udec_ia.verify.grids import fan
 from mechanics import block, box, model, push, sound
 from naive.bodies import contact_forces, momentum, outlines
 from naive.contacts import contacts

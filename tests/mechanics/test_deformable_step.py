@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
+from udec_ia.verify.grids import fan
 from mechanics import box, model, sound
 from naive.bodies import points_of
 from naive.stiffness import Scene

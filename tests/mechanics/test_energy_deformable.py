@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import generate, rectangle
+from udec_ia.verify.grids import generate, rectangle
 from kinds import every_kind
 from mechanics import box, model
 from naive.relocate import differences, essence

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import generate, rectangle
+from udec_ia.verify.grids import generate, rectangle
 from matplotlib import colormaps
 
 from udec_ia import Model, UdecError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from grids import fan
+from udec_ia.verify.grids import fan
 from handmade import two_blocks
 from mechanics import box, model
 

@@ -36,8 +36,10 @@ BELOW = {  # layers that a layer imports
         "output",
         "printable",
         "restart",
+        "verify",
         "view",
     },
+    "verify": {"errors", "files", "heap", "layout", "model", "output", "printable"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from figure import RHO, Figure, cycle_for, deform
-from grids import generate, outline, quarter_ring, rectangle
+from udec_ia.verify.grids import generate, outline, quarter_ring, rectangle
 
 from udec_ia import Model
 from udec_ia.heap.accessors import putr

@@ -1,4 +1,4 @@
-"""Meshes of fully-deformable blocks for the tests: structured grids of quadrilaterals, each cut in two."""
+"""Meshes of fully-deformable blocks: structured grids of quadrilaterals, each cut in two."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia import Model
+from udec_ia.model import Model
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
