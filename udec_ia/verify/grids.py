@@ -65,3 +65,15 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
     zones = [(1, k + 2, (k + 1) % n + 2) for k in range(n)]  # the centroid, given last, is number 1
     at = cx - 1e-6, cx + 1e-6, cy - 1e-6, cy + 1e-6
     return model.generate(*at, "manual", [*reversed(outer), (cx, cy)], zones)
+
+
+def polar(model: Model) -> tuple[Any, Any, Any, Any]:
+    """Of all zones: distance of the middle from the origin, radial and hoop stress, and the angle (rad)."""
+    points, zones = model.table("gridpoint"), model.table("zone")
+    at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}
+    middle = np.array([np.mean([at[i] for i in row], axis=0) for row in zones["KZG"].tolist()])
+    (x, y), s11, s12, s22 = middle.T, zones["KZS11"], zones["KZS12"], zones["KZS22"]
+    r2 = x * x + y * y
+    radial = (s11 * x * x + s22 * y * y + 2 * s12 * x * y) / r2
+    hoop = (s11 * y * y + s22 * x * x - 2 * s12 * x * y) / r2
+    return np.sqrt(r2), radial, hoop, np.arctan2(y, x)

@@ -1,0 +1,80 @@
+"""A round hole under equal pressure from all sides
+
+A hole of the radius a is cut in elastic rock under the pressure p:
+
+           p            wall moves in by   u = p a/(2G)
+        \  |  /         radial stress      p (1 - a^2/r^2)
+     p -- ( ) -- p      hoop stress        p (1 + a^2/r^2)
+        /  |  \
+
+A quarter of it, with rollers, is a ring of zones from a to b = 12 a. The rock begins with its stress, then the wall is set free.
+
+Tolerance. Zones have one stress, that of their middle to the second order: (h/a)^2, with the longest side h of a zone at the wall.
+The ring ends at b, where the pressure is given: u is larger by (a/b)^2 (K + G/3)/G + ... at most 2 (a/b)^2. The force ratio
+at which the run was ended.
+
+Source: G. Kirsch, Die Theorie der Elasticitaet und die Beduerfnisse der Festigkeitslehre, VDI-Zeitschrift 42 (1898).
+"""
+
+from math import sqrt
+
+import numpy as np
+
+from udec_ia.verify import Answer
+from udec_ia.verify.grids import generate, outline, polar, quarter_ring
+
+BLOCKS = ("fdef",)
+A, B, P, BULK, SHEAR, DENSITY, AROUND, ACROSS = 1.0, 12.0, 1e6, 1e9, 6e8, 2000.0, 16, 24
+
+
+def solve(case):
+    nodes = quarter_ring(A, B, AROUND, ACROSS)
+    m = case.model()
+    m.property(1, density=DENSITY, kn=1e9, ks=1e9, bulk=BULK, g=SHEAR)
+    m.round(0.02)
+    m.block(*outline(nodes))
+    generate(m, nodes)
+    m.insitu(0, B, 0, B, -P, 0, -P)
+    m.boundary(-0.001, 0.001, -1, B + 1, xvel=0)
+    m.boundary(-1, B + 1, -0.001, 0.001, yvel=0)
+    m.boundary(-0.001, B + 0.001, -0.001, B + 0.001, stress=(-P, 0, -P))
+    m.boundary(-0.001, A + 0.001, -0.001, A + 0.001, stress=(P, 0, P))  # the wall is free
+    m.fraction(0.6)
+    m.damping(0.6, sqrt(1.8e9 / DENSITY) / B / 4, "mass")
+    points = m.table("gridpoint")
+    wall = np.hypot(points["KXG"], points["KYG"]) < A + 1e-3
+    m.solve(1e-5)
+    points = m.table("gridpoint")
+    moved = A - float(np.hypot(points["KXG"], points["KYG"])[wall].mean())
+    side = max(A * np.pi / 2 / AROUND, A * ((B / A) ** (1 / ACROSS) - 1))
+    within = {"zones, (h/a)^2": (side / A) ** 2, "force ratio of rest": 1e-4}
+    exact = P * A / (2 * SHEAR)
+    yield Answer(
+        "the wall moves in by",
+        "m",
+        moved,
+        exact,
+        {name: part * exact for name, part in within.items()} | {"end of the ring": 2 * exact * (A / B) ** 2},
+    )
+    r, radial, hoop, _ = polar(m)
+    near = r < A * (B / A) ** (1 / ACROSS)
+    for what, got, wanted in (
+        ("hoop stress in the zones at the wall", hoop, 1 + A**2 / r**2),
+        ("radial stress there", radial, 1 - A**2 / r**2),
+    ):
+        value = -P * float(wanted[near].mean())
+        yield Answer(
+            what,
+            "Pa",
+            float(got[near].mean()),
+            value,
+            {name: part * 2 * P for name, part in within.items()} | {"end of the ring": P * (A / B) ** 2},
+        )
+    line = np.geomspace(A, 6 * A, 100)
+    few = (r < 6 * A) & (np.arange(len(r)) % 3 == 0)
+    case.graph(
+        "r/a",
+        "stress/p",
+        {"hoop": (line, 1 + (A / line) ** 2), "radial": (line, 1 - (A / line) ** 2)},
+        {"zones, hoop": (r[few], -hoop[few] / P), "zones, radial": (r[few], -radial[few] / P)},
+    )
