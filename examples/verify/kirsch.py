@@ -11,12 +11,15 @@ and in the rock around, with the angle t from x and q = a^2/r^2:
     hoop stress    p/2 (1 + q) - p/2 (1 + 3 q^2) cos 2t
     radial stress  p/2 (1 - q) + p/2 (1 - 4 q + 3 q^2) cos 2t
 
-A quarter of it, with rollers, is a ring of zones from a to b = 15 a. The rock begins with its stress, then the wall is set free.
+A quarter of it, with rollers, is a ring of zones from a to b = 15 a, and the stress is given at b: the formulas get terms of
+(a/b)^2, which follow from J. Michell's functions of stress for a ring. The rock begins with its stress, then the
+wall is set free.
 
-Tolerance. Zones have one stress, that of their middle to the second order: (h/a)^2, with the longest side h of a zone at the
-wall, for a stress that is up to 3 p. The ring ends at b: p (a/b)^2. The force ratio at which the run was ended.
+Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2, with the longest side h of
+a zone at the wall, of a stress that is up to 3 p. The force ratio at which the run was ended.
 
-Source: G. Kirsch, Die Theorie der Elasticitaet und die Beduerfnisse der Festigkeitslehre, VDI-Zeitschrift 42 (1898).
+Source: G. Kirsch, Die Theorie der Elasticitaet und die Beduerfnisse der Festigkeitslehre, VDI-Zeitschrift 42 (1898);
+S. Timoshenko and J. Goodier, Theory of Elasticity (1934), for the ring.
 """
 
 from math import sqrt
@@ -28,6 +31,17 @@ from udec_ia.verify.grids import generate, outline, polar, quarter_ring
 
 BLOCKS = ("fdef",)
 A, B, P, BULK, SHEAR, DENSITY, AROUND, ACROSS = 1.0, 15.0, 1e6, 1e9, 6e8, 2000.0, 24, 34
+
+
+def ring(r, t):
+    """Radial and hoop stress, Pa, at the distance r and the angle t."""
+    even = -P / 2 * B**2 / (B**2 - A**2)
+    # the part with cos 2t: stress function (f r^2 + g r^4 + h/r^2 + k) cos 2t; no stress at a, that of -p at b
+    rows = [[-2, 0, -6 / x**4, -4 / x**2] for x in (A, B)] + [[2, 6 * x**2, -6 / x**4, -2 / x**2] for x in (A, B)]
+    f, g, h, k = np.linalg.solve(rows, [0, -P / 2, 0, P / 2])
+    radial = even * (1 - (A / r) ** 2) - (2 * f + 6 * h / r**4 + 4 * k / r**2) * np.cos(2 * t)
+    hoop = even * (1 + (A / r) ** 2) + (2 * f + 12 * g * r**2 + 6 * h / r**4) * np.cos(2 * t)
+    return radial, hoop
 
 
 def solve(case):
@@ -46,13 +60,10 @@ def solve(case):
     m.damping(0.6, sqrt(1.8e9 / DENSITY) / B / 4, "mass")
     m.solve(1e-4)
     r, radial, hoop, t = polar(m)
-    q, c = (A / r) ** 2, np.cos(2 * t)
-    hoop_exact = -P / 2 * ((1 + q) - (1 + 3 * q**2) * c)
-    radial_exact = -P / 2 * ((1 - q) + (1 - 4 * q + 3 * q**2) * c)
-    side = max(A * np.pi / 2 / AROUND, A * ((B / A) ** (1 / ACROSS) - 1))
+    radial_exact, hoop_exact = ring(r, t)
+    side = A * np.hypot(np.pi / 2 / AROUND, (B / A) ** (1 / ACROSS) - 1)
     within = {
         "zones, (h/a)^2 of 3 p": 3 * P * (side / A) ** 2,
-        "end of the ring": P * (A / B) ** 2,
         "force ratio of rest": 1e-3 * P,
     }
     near = r < A + side
@@ -65,14 +76,11 @@ def solve(case):
     for what, got, exact in (("hoop", hoop, hoop_exact), ("radial", radial, radial_exact)):
         off = float(np.sqrt(((got - exact)[inside] ** 2).mean()))
         yield Answer(f"{what} stress for r < 3 a, root of the mean square of errors", "Pa", off, 0.0, within)
-    line = np.linspace(0, 90, 91)
-    ring = near & (np.arange(len(r)) % 2 == 0)
-    mean = float(r[ring].mean())
+    line, mean = np.linspace(0, 90, 91), float(r[near].mean())
     q = (A / mean) ** 2
-    curve = 0.5 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * np.radians(line)))
     case.graph(
         "angle from the direction of the stress (degrees)",
         "hoop stress/p in the zones at the wall",
-        {f"Kirsch, r = {mean:.3f} a": (line, curve)},
-        {"zones": (np.degrees(t[ring]), -hoop[ring] / P)},
+        {f"Kirsch, r = {mean:.3f} a": (line, 0.5 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * np.radians(line))))},
+        {"zones": (np.degrees(t[near]), -hoop[near] / P)},
     )

@@ -10,7 +10,8 @@ A tube of the radii a and b is pressed apart by p. It is the one problem of a ho
 
 (tension positive; plane strain). A quarter of it is a ring of zones with rollers.
 
-Tolerance. Zones have one stress, that of their middle to the second order: (h/a)^2, with the longest side h of a zone.
+Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2, with its
+longest side h at the wall.
 The polygon of the wall has sides, not an arc: the pressure acts on cos(h/2a) of it, (h/a)^2/8 less. Strain, and the
 force ratio at which the run was ended.
 
@@ -48,7 +49,7 @@ def solve(case):
     moved = np.hypot(points["KXG"], points["KYG"]) - before
     one = P * A**2 / (B**2 - A**2)
     two = one * B**2
-    side = A * np.pi / 2 / AROUND / A
+    side = np.hypot(np.pi / 2 / AROUND, (B / A) ** (1 / ACROSS) - 1)
     within = {"zones, (h/a)^2": side**2, "polygon, (h/a)^2/8": side**2 / 8, "force ratio of rest": 1e-4, "strain": 4e-4}
     for what, radius in (("inner wall", A), ("outer wall", B)):
         exact = one * radius / (2 * (BULK + SHEAR / 3)) + two / (2 * SHEAR * radius)

@@ -68,11 +68,17 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
 
 
 def polar(model: Model) -> tuple[Any, Any, Any, Any]:
-    """Of all zones: distance of the middle from the origin, radial and hoop stress, and the angle (rad)."""
+    """Of all quadrilaterals: distance of the middle from the origin, radial and hoop stress, angle (rad).
+
+    The stress of one zone is exact to the first order of its size only: it is that of its middle and a saw-tooth,
+    which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the second order.
+    """
     points, zones = model.table("gridpoint"), model.table("zone")
     at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}
     middle = np.array([np.mean([at[i] for i in row], axis=0) for row in zones["KZG"].tolist()])
-    (x, y), s11, s12, s22 = middle.T, zones["KZS11"], zones["KZS12"], zones["KZS22"]
+    x, y, s11, s12, s22 = (
+        (one[0::2] + one[1::2]) / 2 for one in (*middle.T, zones["KZS11"], zones["KZS12"], zones["KZS22"])
+    )
     r2 = x * x + y * y
     radial = (s11 * x * x + s22 * y * y + 2 * s12 * x * y) / r2
     hoop = (s11 * y * y + s22 * x * x - 2 * s12 * x * y) / r2
