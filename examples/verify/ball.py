@@ -1,24 +1,26 @@
 """A ball rests, and rolls down a slope
 
-The first example of the report: a square block, rounded until it is nearly a circle of the radius R, lies on
-a slope of the angle b, tan b = 1/2. First gravity is at right angles to the slope, and the ball sinks in until
-its one contact carries its weight. Then gravity points downwards and it rolls:
+The first example of the report: a square block, rounded until it is nearly a circle of the radius R,
+lies on a slope of the angle b, tan b = 1/2. First gravity is at right angles to the slope, and the ball
+sinks in until its one contact carries its weight. Then gravity points downwards and it rolls:
 
                  ( )             F = m g cos b,  u = F/KN
               .-'                a = g sin b/(1 + I/(m R^2))
            .-'                   travelled s = a t^2/2
         .-'  b
 
-I is the square's moment of inertia, m L^2/6: blocks are rounded for their contacts only, not for their mass.
+I is the square's moment of inertia, m L^2/6: blocks are rounded for their contacts only, not for their
+mass.
 
-Tolerance. The swing on the contact has died down by exp(-ALPHA t/2) when the ball rests. R is a little less than
-half the edge L: the ball stands on one of four arcs, whose centre is beside the centroid by d = L/2 - R. So it
-rolls even then, held by mass damping, which takes a share d^2/(I/m + R^2) of the weight. As it rolls down, the
-centroid rises and sinks by c = sqrt(2) d, which by the law of energy is a shift of s by c/sin b. And the contact gives way in shear by
-T/KS, with the friction T that makes the ball turn; it may swing to twice that.
+Tolerance. The swing on the contact has died down by exp(-ALPHA t/2) when the ball rests. R is a little
+less than half the edge L: the ball stands on one of four arcs, whose centre is beside the centroid by d
+= L/2 - R. So it rolls even then, held by mass damping, which takes a share d^2/(I/m + R^2) of the
+weight. As it rolls down, the centroid rises and sinks by c = sqrt(2) d, which by the law of energy is a
+shift of s by c/sin b. And the contact gives way in shear by T/KS, with the friction T that makes the
+ball turn; it may swing to twice that.
 
-Source: P. Cundall, UDEC - A Generalised Distinct Element Program for Modelling Jointed Rock (1980), Appendix
-II-1; the formulas are those of any textbook of mechanics.
+Source: P. Cundall, UDEC - A Generalised Distinct Element Program for Modelling Jointed Rock (1980),
+Appendix II-1; the formulas are those of any textbook of mechanics.
 """
 
 from math import atan, cos, exp, hypot, sin, sqrt

@@ -1,6 +1,7 @@
-"""A block bounces on one contact
+r"""A block bounces on one contact
 
-A triangle stands on its corner, a mass on one spring. It is at rest when gravity becomes half as strong again:
+A triangle stands on its corner, a mass on one spring. It is at rest when gravity becomes half as strong
+again:
 
       \ /      m           w = sqrt(KN/m)             without damping
        V   ___ KN          w_d = w sqrt(1 - xi^2)     with a share xi of critical damping
@@ -8,9 +9,9 @@ A triangle stands on its corner, a mass on one spring. It is at rest when gravit
 
 xi = (ALPHA/w + BETA w)/2, with ALPHA and BETA of Rayleigh damping: both, mass alone, stiffness alone.
 
-Tolerance. Central differences shorten a period by (w dt)^2/24. The dashpot is fed with the velocity of half a step
-before, as if the mass were less by xi w dt of itself. A maximum is found by a parabola through three steps: its
-place to 0.016 (w dt)^2 of a step, its height to (w dt)^4/128 of the swing.
+Tolerance. Central differences shorten a period by (w dt)^2/24. The dashpot is fed with the velocity of
+half a step before, as if the mass were less by xi w dt of itself. A maximum is found by a parabola
+through three steps: its place to 0.016 (w dt)^2 of a step, its height to (w dt)^4/128 of the swing.
 
 Source: any textbook of vibrations, as J. P. Den Hartog, Mechanical Vibrations (1934).
 """
@@ -66,12 +67,12 @@ def peaks(u):
 
 
 def solve(case):
-    curves, exacts = {}, {}
+    curves, exacts = [], {}
     for label, fcrit, only in (
         ("no damping", 0.0, None),
         ("mass and stiffness", 0.1, None),
-        ("mass", 0.2, "mass"),
-        ("stiffness", 0.2, "stiffness"),
+        ("mass", 0.1, "mass"),
+        ("stiffness", 0.4, "stiffness"),
     ):
         m = on_its_corner(case)
         m.damping(fcrit, W / (2 * pi), only)
@@ -79,7 +80,10 @@ def solve(case):
         dt, amplitude = step(m), 0.5 * MASS * G / KN
         xi = (float(m.h.cr[ALPHA]) / W + float(m.h.cr[BETA]) * W) / 2
         at, height = peaks(u)
-        lag = {"dashpot, half a step late": xi * W * dt, "central differences": 2 / (W * dt) * asin(W * dt / 2) - 1}
+        lag = {
+            "dashpot, half a step late": xi * W * dt,
+            "central differences": 2 / (W * dt) * asin(W * dt / 2) - 1,
+        }
         lag["places of the maxima"] = 0.032 * (W * dt) ** 3 / (2 * pi)
         digits = 4 * case.last_digit * 2.0 / amplitude
         damped = W * sqrt(1 - xi**2)
@@ -104,11 +108,12 @@ def solve(case):
             },
         )
         t = np.arange(1, len(u) + 1) * dt
-        curves[label] = t[::8] * 1e3, u[::8] * 1e6
+        curves.append((t[::8] * 1e3, u[::8] * 1e6))
         decay, phase = np.exp(-xi * W * t), damped * t
-        exacts[f"{label}, exact"] = t * 1e3, -amplitude * decay * (
-            np.cos(phase) + xi * W / damped * np.sin(phase)
-        ) * 1e6
+        exacts[label] = (
+            t * 1e3,
+            -amplitude * decay * (np.cos(phase) + xi * W / damped * np.sin(phase)) * 1e6,
+        )
     case.graph("time (ms)", "overlap beyond that of rest (micrometres)", exacts, curves)
 
 

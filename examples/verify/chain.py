@@ -1,21 +1,22 @@
 """Natural frequencies of a chain of masses and springs
 
-A column of n rigid blocks on a fixed base is a chain of masses m and springs k = 2 KN, free at its upper end.
-Mode j swings with
+A column of n rigid blocks on a fixed base is a chain of masses m and springs k = 2 KN, free at its
+upper end. Mode j swings with
 
       +--+ n
       +--+ ..      w_j = 2 sqrt(k/m) sin((2j - 1) pi/(2 (2n + 1)))
       +--+ 1
      ------
 
-The blocks rest under their weight. Then each gets the velocity of a mode, too small for a joint to open, and
-the velocity of the uppermost block passes zero twice in every period.
+The blocks rest under their weight. Then each gets the velocity of a mode, too small for a joint to
+open, and the velocity of the uppermost block passes zero twice in every period.
 
-Tolerance. Central differences raise a frequency by (w dt)^2/24. Zeros are found by straight lines between steps, to
-0.016 (w dt)^2 of a step; two of them are 2.5 periods apart. A share of the swing is not of this mode: what the
-force ratio of rest and the last digits of places leave.
+Tolerance. Central differences raise a frequency by (w dt)^2/24. Zeros are found by straight lines
+between steps, to 0.016 (w dt)^2 of a step; two of them are 2.5 periods apart. A share of the swing is
+not of this mode: what the force ratio of rest and the last digits of places leave.
 
-Source: J.-L. Lagrange, Mecanique analytique (1788); S. Timoshenko, Vibration Problems in Engineering (1937).
+Source: J.-L. Lagrange, Mecanique analytique (1788); S. Timoshenko, Vibration Problems in Engineering
+(1937).
 """
 
 from math import asin, pi, sin, sqrt
@@ -36,7 +37,7 @@ def frequency(j):
 
 
 def solve(case):
-    shapes, exact = {}, {}
+    shapes, exact = [], {}
     for j in range(1, N + 1):
         m, w = case.model(), frequency(j)
         m.property(1, density=DENSITY, kn=KN, ks=KN, friction=1.0)
@@ -58,11 +59,12 @@ def solve(case):
             t.append(k * step(m))
             v.append(float(row(m, "block", top)["KYD"]))
         got, dt = 2 * pi / period(t, v), step(m)
-        exact[f"mode {j}, {w:.0f} rad/s"] = np.linspace(0, N, 60), np.sin(
-            (2 * j - 1) * pi * np.linspace(0, N, 60) / (2 * N + 1)
+        exact[f"mode {j}, {w:.0f} rad/s"] = (
+            np.linspace(0, N, 60),
+            np.sin((2 * j - 1) * pi * np.linspace(0, N, 60) / (2 * N + 1)),
         )
         now = np.sort(m.table("block")[m.table("block")["KBFIX"] == 0], order="KY")["KYD"]
-        shapes[f"computed, {got:.0f} rad/s"] = np.arange(1, N + 1), now / now[-1] * mode[-1]
+        shapes.append((np.arange(1, N + 1), now / now[-1] * mode[-1]))
         yield Answer(
             f"frequency of mode {j}",
             "rad/s",

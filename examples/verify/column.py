@@ -7,9 +7,9 @@ Each joint of a column of n blocks has two contacts, which carry the weight W of
       +-----+ ...
       +-----+  n
 
-Tolerance. The force ratio at which the run was ended, and the last digits of the places from which the overlap
-is taken. Deformable blocks bulge by the strain e of the lowest one, and the shear forces that hold them are
-then not quite level: they carry at most e of themselves.
+Tolerance. The force ratio at which the run was ended, and the last digits of the places from which the
+overlap is taken. Deformable blocks bulge by the strain e of the lowest one, and the shear forces that
+hold them are then not quite level: they carry at most e of themselves.
 
 Source: equilibrium, and the definition of KN (report of 1980, 2.6).
 """

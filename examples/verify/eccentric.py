@@ -1,7 +1,7 @@
-"""A block with its weight beside the middle
+r"""A block with its weight beside the middle
 
-A block stands on two contacts, left and right. Its upper right part is cut off, so that its centroid lies beside the
-middle of its base. Moments about one contact give the force on the other:
+A block stands on two contacts, left and right. Its upper right part is cut off, so that its centroid
+lies beside the middle of its base. Moments about one contact give the force on the other:
 
       ______
      |      \          F_right = W (1/2 + c/a)
@@ -9,8 +9,8 @@ middle of its base. Moments about one contact give the force on the other:
      |________\
      ^        ^        a = b - 2D, c: x of the centroid from the middle
 
-Tolerance. The force ratio at which the run was ended; the lean of the block, by the difference of its overlaps over a,
-moves the centroid by that times its height; last digits of the places.
+Tolerance. The force ratio at which the run was ended; the lean of the block, by the difference of its
+overlaps over a, moves the centroid by that times its height; last digits of the places.
 
 Source: Archimedes, On the equilibrium of planes; report of 1980, 2.3, for the place of the contacts.
 """

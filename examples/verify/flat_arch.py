@@ -1,22 +1,22 @@
 """A flat arch of two blocks
 
-Two blocks hang between two abutments, without mortar. They sag until they touch the abutments at the bottom and
-each other at the top, and carry themselves by their thrust:
+Two blocks hang between two abutments, without mortar. They sag until they touch the abutments at the
+bottom and each other at the top, and carry themselves by their thrust:
 
      |=============|=============|           H = W l/(2 z)
      |      W    ->|<-   W       |           W: weight of one block, l: its length
      |->___________|___________<-|           z = (h - 2D) cos th - l sin th
 
-Contacts are where the rounding begins, at D from the corners. Blocks turn by th until the joints have closed by H/KN each:
-th (h - 2D) = 3 H/(2 KN).
+Contacts are where the rounding begins, at D from the corners. Blocks turn by th until the joints have
+closed by H/KN each: th (h - 2D) = 3 H/(2 KN).
 
 Before there is a thrust there is no friction, so the blocks slip down a little; that changes nothing.
 
-Tolerance. That closure and lean are right to the first order: th of H, and as blocks get shorter by l th^2/2 as they lean,
-(l/h) th/2 of th. The force ratio of rest.
+Tolerance. That closure and lean are right to the first order: th of H, and as blocks get shorter by l
+th^2/2 as they lean, (l/h) th/2 of th. The force ratio of rest.
 
-Source: J. Heyman, The Stone Skeleton (1995); W. Evans, The strength of undermined strata, Trans. Instn Min. Metall. 50
-(1941), for the beam of blocks in a roof.
+Source: J. Heyman, The Stone Skeleton (1995); W. Evans, The strength of undermined strata, Trans. Instn
+Min. Metall. 50 (1941), for the beam of blocks in a roof.
 """
 
 from math import cos, pi, sin, sqrt

@@ -1,7 +1,7 @@
 """Two joint blocks of a slope
 
-A square of 20 m is cut by three joints; the foot is fixed and the left part taken away. Two blocks remain, the
-upper one on a joint that dips 2 in 5, the lower one on a joint that dips 3 in 10:
+A square of 20 m is cut by three joints; the foot is fixed and the left part taken away. Two blocks
+remain, the upper one on a joint that dips 2 in 5, the lower one on a joint that dips 3 in 10:
 
         |      .-'|        friction 20 degrees: the upper block slides alone,
         |  .-'  B |          a = g (sin psi - mu cos psi) = 0.3345
@@ -10,12 +10,12 @@ upper one on a joint that dips 2 in 5, the lower one on a joint that dips 3 in 1
          |    .-'
     .-'
 
-Tolerance. The joints give way by the weight on them over KN, and lean by that over the distance of the contacts:
-a lean of d changes an acceleration by g d (cos psi + mu sin psi). A swing on the springs tilts the straight line
-through the velocities by a bounded part.
+Tolerance. The joints give way by the weight on them over KN, and lean by that over the distance of the
+contacts: a lean of d changes an acceleration by g d (cos psi + mu sin psi). A swing on the springs
+tilts the straight line through the velocities by a bounded part.
 
-Source: I. Newton; the slope is the four-block problem of P. Cundall's early reports. R. Goodman, Introduction to Rock
-Mechanics (1989), for blocks on blocks.
+Source: I. Newton; the slope is the four-block problem of P. Cundall's early reports. R. Goodman,
+Introduction to Rock Mechanics (1989), for blocks on blocks.
 """
 
 from math import atan, cos, pi, radians, sin, sqrt, tan
@@ -53,14 +53,10 @@ def both(mu):
 
     Unknown are these two, a and r, and the normal forces of both joints, each with its friction.
     """
-    (t1, n1), (t2, n2) = (
-        (np.array([-cos(s), -sin(s)]), np.array([-sin(s), cos(s)])) for s in (LOWER, UPPER)
-    )
+    (t1, n1), (t2, n2) = ((np.array([-cos(s), -sin(s)]), np.array([-sin(s), cos(s)])) for s in (LOWER, UPPER))
     p1, p2 = n1 - mu * t1, n2 - mu * t2
     (m1, m2), none, weight = MASSES, np.zeros(2), np.array([0, -G])
-    left = np.block(
-        [[np.c_[m2 * t1, m2 * t2, none, -p2]], [np.c_[m1 * t1, none, -p1, p2]]]
-    )
+    left = np.block([[np.c_[m2 * t1, m2 * t2, none, -p2]], [np.c_[m1 * t1, none, -p1, p2]]])
     a, r, _, _ = np.linalg.solve(left, np.r_[m2 * weight, m1 * weight])
     return a, r
 
@@ -84,7 +80,9 @@ def solve(case):
             cycle_for(m, time / 40)
             seen.append((now(m), down(row(m, "block", low), LOWER), down(row(m, "block", up), UPPER)))
         t, lower, upper = np.array(seen).T
-        sink = sum(MASSES) * G / K / 14 + MASSES[1] * G / K / 11  # both joints; their contacts lie 14 and 11 m apart
+        sink = (
+            sum(MASSES) * G / K / 14 + MASSES[1] * G / K / 11
+        )  # both joints; their contacts lie 14 and 11 m apart
         lean = G * (1 + mu) * sink
         a, r = both(mu) if degrees == 11 else (0.0, G * (sin(UPPER) - mu * cos(UPPER)))
         exact = {"lower": (lower, a), "upper": (upper, r + a * cos(UPPER - LOWER))}

@@ -1,20 +1,21 @@
 """A block slides down an incline, or stays
 
-A block lies on a plane that is inclined by psi. Its weight has a part along the plane, and friction with the
-coefficient mu = tan phi acts against it:
+A block lies on a plane that is inclined by psi. Its weight has a part along the plane, and friction
+with the coefficient mu = tan phi acts against it:
 
           ___
       .-'   /            a = g (sin psi - mu cos psi)       if psi > phi
      /___.-'             a = 0                              if psi < phi
     .-' psi              u = W sin psi (1/(2 KS) + (h/2)^2/(2 KN e^2))
 
-The plane is drawn level here, and gravity is turned: it is the same problem. A rigid block that stays gives way
-by u on the springs of its two contacts, which are at the distance e = b/2 - D from its middle: it shifts, and
-as the weight acts at half its height h/2 it also leans.
+The plane is drawn level here, and gravity is turned: it is the same problem. A rigid block that stays
+gives way by u on the springs of its two contacts, which are at the distance e = b/2 - D from its
+middle: it shifts, and as the weight acts at half its height h/2 it also leans.
 
-Tolerance. A constant force is integrated exactly. Around the mean the block swings on its springs: velocities
-that leave the straight line through them by A tilt it by at most 3 A/T in a time T. At rest there is the force
-ratio at which the run was ended, and the lean makes the weight's arm longer by a share of u/h.
+Tolerance. A constant force is integrated exactly. Around the mean the block swings on its springs:
+velocities that leave the straight line through them by A tilt it by at most 3 A/T in a time T. At rest
+there is the force ratio at which the run was ended, and the lean makes the weight's arm longer by a
+share of u/h.
 
 Source: C. A. Coulomb, Theorie des machines simples (1785); any textbook of mechanics.
 """
@@ -53,13 +54,15 @@ def solve(case):
     times, speeds = [], []
     for k in range(50):
         if k % 16 == 0:
-            case.draw(m)
+            case.draw(m, window=(-3, 8, -1.5, 2))
         cycle_for(m, 0.04)
         times.append(now(m))
         speeds.append(row(m, "block", block)["KXD"])
     slope, swing = straight_line(times, speeds)
     exact = G * (sin(PSI) - tan(radians(20)) * cos(PSI))
-    yield Answer("acceleration, phi = 20 degrees", "m/s2", slope, exact, {"swing on the springs, 3 A/T": swing})
+    yield Answer(
+        "acceleration, phi = 20 degrees", "m/s2", slope, exact, {"swing on the springs, 3 A/T": swing}
+    )
 
     m, block = on_plane(case, 50)
     before = row(m, "block", block)["KX"]

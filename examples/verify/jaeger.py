@@ -1,7 +1,7 @@
 """Strength of a specimen with a plane of weakness
 
-A specimen is cut by one joint, inclined by b. It is pressed by s3 from the sides and by s1 from above, until the joint
-slips:
+A specimen is cut by one joint, inclined by b. It is pressed by s3 from the sides and by s1 from above,
+until the joint slips:
 
         s1              s1 = s3 + 2 (c + mu s3)/((1 - mu cot b) sin 2b)
        _v__
@@ -11,9 +11,9 @@ slips:
 
 s1 grows in small parts, with rest between them.
 
-Tolerance. Half of the last part of s1. The contacts give way by their forces over KN, and forces act at places that are
-wrong by that, over w; and there is the force ratio of rest. A part of a force changes s1 by a larger one, as only
-sin b cos b - mu cos^2 b of s1 makes the joint slip.
+Tolerance. Half of the last part of s1. The contacts give way by their forces over KN, and forces act at
+places that are wrong by that, over w; and there is the force ratio of rest. A part of a force changes
+s1 by a larger one, as only sin b cos b - mu cos^2 b of s1 makes the joint slip.
 
 Source: J. Jaeger, Shear failure of anisotropic rocks, Geol. Mag. 97 (1960) 65-72.
 """
@@ -28,7 +28,7 @@ from udec_ia.verify.measure import block
 
 BLOCKS = ("rigid", "sdef", "fdef")
 MU, COHESION, S3, K, DENSITY, W, H = 0.5, 5e4, 2e5, 1e10, 2000.0, 1.0, 4.0
-PART = 4e3  # of s1, Pa
+PART = 8e3  # of s1, Pa
 
 
 def exact(b):
@@ -90,5 +90,8 @@ def solve(case):
     b = np.linspace(36, 76, 80)
     curve = [exact(radians(one)) / 1e6 for one in b]
     case.graph(
-        "inclination of the joint (degrees)", "strength s1 (MPa)", {"Jaeger": (b, curve)}, {"computed": (angles, np.array(found) / 1e6)}
+        "inclination of the joint (degrees)",
+        "strength s1 (MPa)",
+        {"Jaeger": (b, curve)},
+        [(angles, np.array(found) / 1e6)],
     )

@@ -11,15 +11,16 @@ and in the rock around, with the angle t from x and q = a^2/r^2:
     hoop stress    p/2 (1 + q) - p/2 (1 + 3 q^2) cos 2t
     radial stress  p/2 (1 - q) + p/2 (1 - 4 q + 3 q^2) cos 2t
 
-A quarter of it, with rollers, is a ring of zones from a to b = 15 a, and the stress is given at b: the formulas get terms of
-(a/b)^2, which follow from J. Michell's functions of stress for a ring. The rock begins with its stress, then the
-wall is set free.
+A quarter of it, with rollers, is a ring of zones from a to b = 15 a, and the stress is given at b: the
+formulas get terms of (a/b)^2, which follow from J. Michell's functions of stress for a ring. The rock
+begins with its stress, then the wall is set free.
 
-Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2, with the longest side h of
-a zone at the wall, of a stress that is up to 3 p. The force ratio at which the run was ended.
+Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2,
+with the longest side h of a zone at the wall, of a stress that is up to 3 p. The force ratio at which
+the run was ended.
 
-Source: G. Kirsch, Die Theorie der Elasticitaet und die Beduerfnisse der Festigkeitslehre, VDI-Zeitschrift 42 (1898);
-S. Timoshenko and J. Goodier, Theory of Elasticity (1934), for the ring.
+Source: G. Kirsch, Die Theorie der Elasticitaet und die Beduerfnisse der Festigkeitslehre,
+VDI-Zeitschrift 42 (1898); S. Timoshenko and J. Goodier, Theory of Elasticity (1934), for the ring.
 """
 
 from math import sqrt
@@ -36,8 +37,10 @@ A, B, P, BULK, SHEAR, DENSITY, AROUND, ACROSS = 1.0, 15.0, 1e6, 1e9, 6e8, 2000.0
 def ring(r, t):
     """Radial and hoop stress, Pa, at the distance r and the angle t."""
     even = -P / 2 * B**2 / (B**2 - A**2)
-    # the part with cos 2t: stress function (f r^2 + g r^4 + h/r^2 + k) cos 2t; no stress at a, that of -p at b
-    rows = [[-2, 0, -6 / x**4, -4 / x**2] for x in (A, B)] + [[2, 6 * x**2, -6 / x**4, -2 / x**2] for x in (A, B)]
+    # the part with cos 2t: stress function (f r^2 + g r^4 + h/r^2 + k) cos 2t; no stress at a, -p at b
+    rows = [[-2, 0, -6 / x**4, -4 / x**2] for x in (A, B)] + [
+        [2, 6 * x**2, -6 / x**4, -2 / x**2] for x in (A, B)
+    ]
     f, g, h, k = np.linalg.solve(rows, [0, -P / 2, 0, P / 2])
     radial = even * (1 - (A / r) ** 2) - (2 * f + 6 * h / r**4 + 4 * k / r**2) * np.cos(2 * t)
     hoop = even * (1 + (A / r) ** 2) + (2 * f + 12 * g * r**2 + 6 * h / r**4) * np.cos(2 * t)
@@ -69,9 +72,7 @@ def solve(case):
     near = r < A + side
     for what, where in (("above the hole", t > np.radians(86)), ("at its side", t < np.radians(4))):
         k = near & where
-        yield Answer(
-            f"hoop stress {what}", "Pa", float(hoop[k].mean()), float(hoop_exact[k].mean()), within
-        )
+        yield Answer(f"hoop stress {what}", "Pa", float(hoop[k].mean()), float(hoop_exact[k].mean()), within)
     inside = r < 3 * A
     for what, got, exact in (("hoop", hoop, hoop_exact), ("radial", radial, radial_exact)):
         off = float(np.sqrt(((got - exact)[inside] ** 2).mean()))
@@ -81,6 +82,11 @@ def solve(case):
     case.graph(
         "angle from the direction of the stress (degrees)",
         "hoop stress/p in the zones at the wall",
-        {f"Kirsch, r = {mean:.3f} a": (line, 0.5 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * np.radians(line))))},
-        {"zones": (np.degrees(t[near]), -hoop[near] / P)},
+        {
+            f"Kirsch, r = {mean:.3f} a": (
+                line,
+                0.5 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * np.radians(line))),
+            )
+        },
+        [(np.degrees(t[near]), -hoop[near] / P)],
     )

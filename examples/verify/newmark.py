@@ -1,21 +1,22 @@
 """Newmark's sliding block
 
-A block rests on ground that is accelerated by A for a time t0; friction holds the block up to an acceleration
-N = mu g. If A is greater the block is left behind, and slides on until it has the velocity V = A t0 of the ground:
+A block rests on ground that is accelerated by A for a time t0; friction holds the block up to an
+acceleration N = mu g. If A is greater the block is left behind, and slides on until it has the velocity
+V = A t0 of the ground:
 
       A |----.                 d = V^2/(2 N) (1 - N/A)
       N |....|.........
         +----+-------- t       way that the block slides on the ground
             t0
 
-In the model the ground is fixed, and gravity has a part A along it for the time t0: seen from the ground it is the
-same. The way of a second pulse adds to that of the first.
+In the model the ground is fixed, and gravity has a part A along it for the time t0: seen from the
+ground it is the same. The way of a second pulse adds to that of the first.
 
-Tolerance. Both ends of a pulse fall on steps, but velocities are those half a step before: the block slides for
-dt/2 more or less, at the velocity V - N t0 that it then has. Before it slides the joint gives way, a spring in
-shear, as does a deformable block between its foot and its middle. With the frequency w of that the block gains a
-velocity of at most N/w too much; sliding with it until
-the end of the pulse and then until it stops, it comes (N/w) A t0/N farther.
+Tolerance. Both ends of a pulse fall on steps, but velocities are those half a step before: the block
+slides for dt/2 more or less, at the velocity V - N t0 that it then has. Before it slides the joint
+gives way, a spring in shear, as does a deformable block between its foot and its middle. With the
+frequency w of that the block gains a velocity of at most N/w too much; sliding with it until the end of
+the pulse and then until it stops, it comes (N/w) A t0/N farther.
 
 Source: N. Newmark, Effects of earthquakes on dams and embankments, Geotechnique 15 (1965) 139-160.
 """
@@ -74,4 +75,4 @@ def solve(case):
     slides = np.clip(s, 0, lasts), np.clip(s - lasts, 0, (A - yields) * lasts / yields)
     curve = (A - yields) * slides[0] ** 2 / 2 + (A - yields) * lasts * slides[1] - yields * slides[1] ** 2 / 2
     both = np.r_[s, s + 3 * lasts], np.r_[curve, exact + curve]
-    case.graph("time (s)", "way on the ground (m)", {"Newmark": both}, {"computed": (t[::25], way[::25])})
+    case.graph("time (s)", "way on the ground (m)", {"Newmark": both}, [(t[::25], way[::25])])

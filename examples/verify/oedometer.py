@@ -1,17 +1,19 @@
 """Compression between walls
 
-A deformable block stands between two fixed walls, without friction, and is pressed from above by s. It cannot spread, but for the
-give of the contacts with the walls:
+A deformable block stands between two fixed walls, without friction, and is pressed from above by s. It
+cannot spread, but for the give of the contacts with the walls:
 
      ||    s   ||         s22 = -s
-     || +----+ ||         s11 h = -2 KN e11 b/2        two contacts on each wall
-     || |    | ||         s11 = a e11 + l e22,  s22 = l e11 + a e22
-     || +----+ ||         a = K + 4G/3,  l = K - 2G/3
+     || +----+ ||         s11 h = -2 KN e11 w/2        two contacts on each wall
+     || |    | ||         s11 = a e11 + b e22,  s22 = b e11 + a e22
+     || +----+ ||         a = K + 4G/3,  b = K - 2G/3
     --------------
 
-With stiff walls, e11 = 0: the modulus is a, and the stress on the walls is s l/a = s nu/(1 - nu), the pressure at rest.
+With stiff walls, e11 = 0: the modulus is a, and the stress on the walls is s b/a = s nu/(1 - nu), the
+pressure at rest.
 
-Tolerance. The force ratio at which the run was ended; a strain e changes the lengths that forces act on by a share of 2e.
+Tolerance. The force ratio at which the run was ended; a strain e changes the lengths that forces act on
+by a share of 2e.
 
 Source: K. Terzaghi (1925) for the test; R. Hooke's law in plane strain.
 """
@@ -45,20 +47,26 @@ def solve(case):
     m.damping(1.0, frequency, "internal")
     ratio = max(1e-9, 1e4 * case.last_digit)
     m.solve(ratio)
-    a, l = BULK + 4 * SHEAR / 3, BULK - 2 * SHEAR / 3
-    # s11 = -KN b/h e11 = a e11 + l e22  and  l e11 + a e22 = -s
-    e11, e22 = np.linalg.solve([[a + KN * B / H, l], [l, a]], [0, -STRESS])
+    a, b = BULK + 4 * SHEAR / 3, BULK - 2 * SHEAR / 3
+    # s11 = -KN b/h e11 = a e11 + b e22  and  b e11 + a e22 = -s
+    e11, e22 = np.linalg.solve([[a + KN * B / H, b], [b, a]], [0, -STRESS])
     if case.blocks == "sdef":
         own = m.table("sdef")
         s11, s22 = float(own["KS111"][0]), float(own["KS122"][0])
     else:
         s11, s22 = float(m.table("zone")["KZS11"].mean()), float(m.table("zone")["KZS22"].mean())
-    strain = (a * s22 - l * s11) / (a**2 - l**2)
-    inside = {"strain, 2 e": 2 * abs(e22), "force ratio of rest": 10 * ratio, "last digits": 4e3 * case.last_digit * B * KN / STRESS / 1e3}
+    strain = (a * s22 - b * s11) / (a**2 - b**2)
+    inside = {
+        "strain, 2 e": 2 * abs(e22),
+        "force ratio of rest": 10 * ratio,
+        "last digits": 4e3 * case.last_digit * B * KN / STRESS / 1e3,
+    }
     for what, unit, got, exact in (
         ("stress on the walls", "Pa", s11, -KN * B / H * e11),
         ("vertical stress", "Pa", s22, -STRESS),
         ("vertical strain", "", strain, e22),
     ):
-        yield Answer(what, unit, got, float(exact), {name: part * abs(float(exact)) for name, part in inside.items()})
-    case.draw(m, contour="s11", contacts=True)
+        yield Answer(
+            what, unit, got, float(exact), {name: part * abs(float(exact)) for name, part in inside.items()}
+        )
+    case.draw(m, contacts=True)

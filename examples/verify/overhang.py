@@ -1,27 +1,28 @@
 """How far a stack of blocks can overhang
 
-Blocks of the length b lie on each other, each farther out than the one below. The upper k blocks are just in balance
-if their common centroid is above the end of what they lie on:
+Blocks of the length b lie on each other, each farther out than the one below. The upper k blocks are
+just in balance if their common centroid is above the end of what they lie on:
 
           +-------+           overhang of block k over the next one:  b/(2k) - D
         +-------+               sum over n: (b/2)(1 + 1/2 + 1/3 + ... + 1/n) - n D
        +-------+
     ______|
 
-which without the rounding D of corners is the harmonic series. Each offset is multiplied by the same factor; the
-greatest that stands is found by bisection, and is 1.
+which without the rounding D of corners is the harmonic series. Each offset is multiplied by the same
+factor; the greatest that stands is found by bisection, and is 1.
 
-Tolerance. Half of the last interval; a stack whose centroid, at the height h, is beyond the edge by d turns like an
-inverted pendulum, by (d/h)(cosh(p T) - 1), and is not seen to fall if that is too little after T; and it leans by
-the overlap of its contacts over b/2 - D.
+Tolerance. Half of the last interval; a stack whose centroid, at the height h, is beyond the edge by d
+turns like an inverted pendulum, by (d/h)(cosh(p T) - 1), and is not seen to fall if that is too little
+after T; and it leans by the overlap of its contacts over b/2 - D.
 
-Source: R. Sutton, A problem of balancing, Am. J. Phys. 23 (1955) 547; in textbooks since J. G. Coffin (1923).
+Source: R. Sutton, A problem of balancing, Am. J. Phys. 23 (1955) 547; in textbooks since J. G. Coffin
+(1923).
 """
 
 from math import cosh, pi, sqrt
 
 from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for, row
+from udec_ia.verify.measure import cycle_for
 
 BLOCKS = ("rigid",)
 G, DENSITY, K, LONG, HIGH, D, N = 10.0, 2000.0, 1e9, 4.0, 0.5, 0.05, 4
@@ -58,20 +59,20 @@ def falls(case, factor, draw=False):
     m = stack(case, factor)
     if draw:
         m.cycle(0)
-        case.draw(m)
+        case.draw(m, window=(-6.2, 6, -1.2, 2.5))
     m.damping(2.0, sqrt(K / (N * MASS)) / (2 * pi), "mass")  # so that it is not shaken when it is set down
     m.cycle(400)
     m.damping(0.05, sqrt(K / MASS) / (2 * pi), "stiffness")
-    cycle_for(m, WATCHED)
+    cycle_for(m, 0.8 if draw else WATCHED)
     top = max(m.table("block"), key=lambda one: one["KX"])
     if draw:
-        case.draw(m)
+        case.draw(m, window=(-6.2, 6, -1.2, 2.5))
     return float(top["KY"]) < (N - 0.5) * HIGH - SUNK
 
 
 def solve(case):
     low, high = 0.9, 1.13
-    falls(case, high, draw=True)
+    falls(case, 1.2, draw=True)
     while high - low > 0.004:
         middle = (low + high) / 2
         low, high = (low, middle) if falls(case, middle) else (middle, high)

@@ -1,22 +1,24 @@
 """Factor of safety of a block on a plane
 
-Friction and cohesion hold a block on a plane of the inclination psi. How many times weaker could both be?
+Friction and cohesion hold a block on a plane of the inclination psi. How many times weaker could both
+be?
 
            ___
        .-'   /         F = tan phi/tan psi + c L/(W sin psi)
       /___.-'
      .-' psi           c L: the sum of the cohesions of both contacts
 
-Friction and cohesion are divided by a trial factor and the block is watched: it holds or it slides. The factor is
-found by bisection, each time from the same state of rest.
+Friction and cohesion are divided by a trial factor and the block is watched: it holds or it slides. The
+factor is found by bisection, each time from the same state of rest.
 
-Tolerance. Half of the last interval. A block that is too weak by d is not seen to slide if d g sin psi T^2/2
-is less than the way that is looked for; and a block that still swings by a share of its weight slips a little early.
+Tolerance. Half of the last interval. A block that is too weak by d is not seen to slide if d g sin psi
+T^2/2 is less than the way that is looked for; and a block that still swings by a share of its weight
+slips a little early.
 
 Source: E. Hoek and J. Bray, Rock Slope Engineering (1974), plane failure.
 """
 
-from math import cos, pi, radians, sin, sqrt, tan
+from math import pi, radians, sin, sqrt, tan
 
 from udec_ia.verify import Answer
 from udec_ia.verify.measure import cycle_for, row

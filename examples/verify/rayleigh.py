@@ -1,21 +1,22 @@
-"""Rayleigh damping depends on the frequency
+r"""Rayleigh damping depends on the frequency
 
-A mass on one spring swings with w = sqrt(KN/m); by which share xi of critical it is damped depends on w:
+A mass on one spring swings with w = sqrt(KN/m); by which share xi of critical it is damped depends on
+w:
 
                                             xi  |\           /
     xi = (ALPHA/w + BETA w)/2                   | \        .'
                                                 |  '.__..-'
     DAMP fcrit freq: least at freq, fcrit       +------------- w
 
-Here the mass has always the same damping and its spring is made weaker and stiffer. It is
-pressed on its base by gravity, and swings by a thousandth of its overlap.
+Here the mass has always the same damping and its spring is made weaker and stiffer. It is pressed on
+its base by gravity, and swings by a thousandth of its overlap.
 
-Tolerance. The dashpot is late by half a step, as if the mass were less by BETA w^2 dt of itself; central
-differences change w by (w dt)^2/24. The share is taken from the largest velocities of each half swing, which
-fall between two steps: too small by up to (w dt)^2/8.
+Tolerance. The dashpot is late by half a step, as if the mass were less by BETA w^2 dt of itself;
+central differences change w by (w dt)^2/24. The share is taken from the largest velocities of each half
+swing, which fall between two steps: too small by up to (w dt)^2/8.
 
-Source: Lord Rayleigh, The Theory of Sound (1877); K.-J. Bathe and E. Wilson, Numerical Methods in Finite Element
-Analysis (1976).
+Source: Lord Rayleigh, The Theory of Sound (1877); K.-J. Bathe and E. Wilson, Numerical Methods in
+Finite Element Analysis (1976).
 """
 
 from math import log, pi, sqrt
@@ -79,4 +80,4 @@ def solve(case):
     f = np.geomspace(4, 100, 100)
     curve = f, alpha / (4 * pi * f) + beta * pi * f
     points = np.array([0.25, 0.5, 1, 2, 4]) * FREQ, measured
-    case.graph("frequency (Hz)", "share of critical damping", {"(ALPHA/w + BETA w)/2": curve}, {"computed": points})
+    case.graph("frequency (Hz)", "share of critical damping", {"(ALPHA/w + BETA w)/2": curve}, [points])

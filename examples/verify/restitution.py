@@ -6,15 +6,15 @@ A block without weight flies at a floor that has a spring and a dashpot, a share
       +---+  v v           contact lasts for pi/(w sqrt(1 - xi^2)),   w = sqrt(2 KN/m)
     -----------
 
-The contact has ended when the block has come back to where it began; so the dashpot pulls a little at last. e does not
-depend on the velocity.
+The contact has ended when the block has come back to where it began; so the dashpot pulls a little at
+last. e does not depend on the velocity.
 
-Tolerance. The block meets the floor in the middle of a step, and leaves it so: for up to one step at each end the dashpot's
-force, 2 xi w v, and that of the spring, w^2 v dt, act too long or too little. In between the dashpot is late by half
-a step, as if the mass were less by xi w dt of itself.
+Tolerance. The block meets the floor in the middle of a step, and leaves it so: for up to one step at
+each end the dashpot's force, 2 xi w v, and that of the spring, w^2 v dt, act too long or too little. In
+between the dashpot is late by half a step, as if the mass were less by xi w dt of itself.
 
-Source: T. Schwager and T. Poeschel, Coefficient of restitution and
-linear-dashpot model revisited, Granular Matter 9 (2007) 465-469, on how the contact ends.
+Source: T. Schwager and T. Poeschel, Coefficient of restitution and linear-dashpot model revisited,
+Granular Matter 9 (2007) 465-469, on how the contact ends.
 """
 
 from math import exp, pi, sqrt
@@ -31,7 +31,7 @@ W = sqrt(2 * K / MASS)
 
 
 def solve(case):
-    shares, found, curves, exacts = (0.0, 0.05, 0.2, 0.5), [], {}, {}
+    shares, found = (0.0, 0.05, 0.2, 0.5), []
     for xi in shares:
         m = case.model()
         m.property(1, density=DENSITY, kn=K, ks=K)
@@ -75,5 +75,8 @@ def solve(case):
         )
     x = np.linspace(0, 0.6, 100)
     case.graph(
-        "share of critical damping", "e", {"exact": (x, np.exp(-pi * x / np.sqrt(1 - x**2)))}, {"computed": (shares, found)}
+        "share of critical damping",
+        "e",
+        {"exact": (x, np.exp(-pi * x / np.sqrt(1 - x**2)))},
+        [(shares, found)],
     )

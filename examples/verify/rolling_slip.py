@@ -1,17 +1,18 @@
 """A ball rolls down a slope, or slips as it rolls
 
-On a slope of the angle b a ball rolls as long as friction can turn it fast enough; on a steeper one it slips:
+On a slope of the angle b a ball rolls as long as friction can turn it fast enough; on a steeper one it
+slips:
 
           ( )            rolls:  a = g sin b/(1 + I/(m R^2))      if tan b < mu (1 + m R^2/I)
         .-'              slips:  a = g (sin b - mu cos b)         if not,
      .-'  b                      R w' = mu g cos b m R^2/I
 
-The ball is a square that is rounded with the radius R, half its edge L but for a part in 1000; its moment of inertia
-is the square's, m L^2/6. The slope is drawn level, and gravity is turned.
+The ball is a square that is rounded with the radius R, half its edge L but for a part in 1000; its
+moment of inertia is the square's, m L^2/6. The slope is drawn level, and gravity is turned.
 
-Tolerance. The four arcs have their centres c = sqrt(2) (L/2 - R) beside the centroid: by the law of energy that is a
-shift of the way by c/sin b, and of the velocity reached, v, by a c/(v sin b); normal forces change as if g did
-by w^2 c. At the beginning the contact swings with the give of its spring.
+Tolerance. The four arcs have their centres c = sqrt(2) (L/2 - R) beside the centroid: by the law of
+energy that is a shift of the way by c/sin b, and of the velocity reached, v, by a c/(v sin b); normal
+forces change as if g did by w^2 c. At the beginning the contact swings with the give of its spring.
 
 Source: any textbook of mechanics, as E. Routh, Dynamics of a System of Rigid Bodies (1860).
 """
@@ -50,7 +51,7 @@ def solve(case):
         begin = now(m)
         for _ in range(4 if degrees == 50 else 1):
             if degrees == 50:
-                case.draw(m)
+                case.draw(m, window=(-0.2, 9, -1.2, 1.5))
             cycle_for(m, TIME / (4 if degrees == 50 else 1))
         ball, t = row(m, "block", address), now(m) - begin
         slips = degrees == 50
@@ -60,7 +61,10 @@ def solve(case):
         speed = float(ball["KXD"] - first["KXD"])
         arcs = a * c / (a * t * sin(b)) + (a * t / R) ** 2 * c * MU
         swing = G * sqrt(MASS / K) * sin(b) / t
-        for what, got, exact in (("down the slope", speed, a), ("of the rim, R w'", -R * float(ball["KTD"]), turn)):
+        for what, got, exact in (
+            ("down the slope", speed, a),
+            ("of the rim, R w'", -R * float(ball["KTD"]), turn),
+        ):
             yield Answer(
                 f"{degrees} degrees, it {'slips' if slips else 'rolls'}: {what}",
                 "m/s2",
@@ -68,4 +72,4 @@ def solve(case):
                 exact,
                 {"centres of the arcs": arcs / t + c * exact / R, "swing of the contact": swing},
             )
-    case.draw(m)
+    case.draw(m, window=(-0.2, 9, -1.2, 1.5))

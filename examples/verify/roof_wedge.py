@@ -1,7 +1,8 @@
-"""A wedge in the roof of an opening
+r"""A wedge in the roof of an opening
 
-A wedge hangs between two joints in the roof, each inclined by al to the vertical. The rock has pressed on it
-horizontally with the force H; now the rock is held and the wedge is pulled down. How much does it bear?
+A wedge hangs between two joints in the roof, each inclined by al to the vertical. The rock has pressed
+on it horizontally with the force H; now the rock is held and the wedge is pulled down. How much does it
+bear?
 
             ____
      H ->  /    \  <- H      N = H cos al - KN v sin al      S = H sin al + KS v cos al
@@ -10,12 +11,12 @@ horizontally with the force H; now the rock is held and the wedge is pulled down
              P                 = 2 H (KS cos^2 al + KN sin^2 al) sin(phi - al)
                                  / (cos phi (KS cos al + KN sin al tan phi))
 
-N and S are the forces of a joint, v the way of the wedge. The wedge is fixed while the rock moves in, with KS = KN so
-that the forces are horizontal; then the rock stays where it is, KS is given its value, the wedge is set free and
-gravity grows until the wedge comes out.
+N and S are the forces of a joint, v the way of the wedge. The wedge is fixed while the rock moves in,
+with KS = KN so that the forces are horizontal; then the rock stays where it is, KS is given its value,
+the wedge is set free and gravity grows until the wedge comes out.
 
-Tolerance. H: half a step of the rock's way. P: half of the last increment of gravity, and the force ratio at which
-each increment was ended.
+Tolerance. H: half a step of the rock's way. P: half of the last increment of gravity, and the force
+ratio at which each increment was ended.
 
 Source: B. Brady and E. Brown, Rock Mechanics for Underground Mining (1985), 9.5, after J. Bray (1977).
 """
@@ -58,7 +59,10 @@ def solve(case):
     case.draw(m, contacts=True)
     m.damping(2.0, sqrt(4 * KS / mass) / (2 * pi), "mass")
     exact = (
-        2 * h * (KS * cos(AL) ** 2 + KN * sin(AL) ** 2) * sin(PHI - AL)
+        2
+        * h
+        * (KS * cos(AL) ** 2 + KN * sin(AL) ** 2)
+        * sin(PHI - AL)
         / (cos(PHI) * (KS * cos(AL) + KN * sin(AL) * tan(PHI)))
     )
     g, more = 0.4837 * exact / mass, 0.001 * exact / mass
@@ -72,5 +76,9 @@ def solve(case):
     m.cycle(2000)
     case.draw(m)
     yield Answer(
-        "weight that pulls it out, P", "N/m", (g - more / 2) * mass, exact, {"half of an increment": more * mass / 2, "force ratio of rest": 1e-5 * exact}
+        "weight that pulls it out, P",
+        "N/m",
+        (g - more / 2) * mass,
+        exact,
+        {"half of an increment": more * mass / 2, "force ratio of rest": 1e-5 * exact},
     )

@@ -6,17 +6,20 @@ A simply-deformable block has one strain for all of it. It is pulled along its l
          +----------+
               L
 
-That is the balance of its inertia, rho L^3/12, and its stiffness; a bar whose points move freely has w = pi Cp/L,
-9.3 % less. With K = 2G/3 a strain along the block has no stress across it. The two exact numbers are those of the
-two directions.
+That is the balance of its inertia, rho L^3/12, and its stiffness; a bar whose points move freely has w
+= pi Cp/L, 9.3 % less. With K = 2G/3 a strain along the block has no stress across it. The two exact
+numbers are those of the two directions.
 
-Tolerance. Central differences raise a frequency by (w dt)^2/24. Zeros are found by straight lines between steps.
-The block is strained by e, and its arms change by that.
+Tolerance. Central differences raise a frequency by (w dt)^2/24. Zeros are found by straight lines
+between steps. The block is strained by e, and its arms change by that.
 
-Source: Lord Rayleigh, The Theory of Sound (1877), for the approximation by one shape; report of 1980, 2.6.
+Source: Lord Rayleigh, The Theory of Sound (1877), for the approximation by one shape; report of 1980,
+2.6.
 """
 
 from math import asin, pi, sqrt
+
+import numpy as np
 
 from udec_ia.verify import Answer
 from udec_ia.verify.measure import period, step
@@ -58,8 +61,11 @@ def solve(case):
             },
         )
         if size == LENGTH:
-            import numpy as np
-
             t = np.array(times)
             exact = max(stresses) * np.sin(w * (t + 2 * dt))
-            case.graph("time (ms)", "stress (Pa)", {"sqrt(12) Cp/L": (t * 1e3, exact)}, {"computed": (t[::8] * 1e3, stresses[::8])})
+            case.graph(
+                "time (ms)",
+                "stress (Pa)",
+                {"sqrt(12) Cp/L": (t * 1e3, exact)},
+                [(t[::8] * 1e3, stresses[::8])],
+            )

@@ -1,7 +1,7 @@
 """Longest periods of a layer on rock
 
-A layer of the thickness H is fixed below and free above. Its first mode is a quarter of a wave, for compression and for
-shear:
+A layer of the thickness H is fixed below and free above. Its first mode is a quarter of a wave, for
+compression and for shear:
 
      ~~~~~~~~~~     T = 4 H/C       Cp = sqrt((K + 4G/3)/rho), up and down, or
      |      | H                     Cs = sqrt(G/rho), to and fro
@@ -9,8 +9,9 @@ shear:
 
 A column of it, one zone wide and 20 zones high, begins with the velocities of this mode, sin(pi y/2H).
 
-Tolerance. Zones give waves of the wave number k as a chain of masses does, with a frequency lower by (k d)^2/24, d the height
-of a zone; central differences raise it by (w dt)^2/24; the greatest strain e changes arms by itself.
+Tolerance. Zones give waves of the wave number k as a chain of masses does, with a frequency lower by (k
+d)^2/24, d the height of a zone; central differences raise it by (w dt)^2/24; the greatest strain e
+changes arms by itself.
 
 Source: N. Ambraseys (1960); S. Kramer, Geotechnical Earthquake Engineering (1996), 7.2.
 """
@@ -29,7 +30,7 @@ SPEEDS = {"compression": sqrt((BULK + 4 * SHEAR / 3) / DENSITY), "shear": sqrt(S
 
 
 def solve(case):
-    exact, computed = {}, {}
+    exact, computed = {}, []
     for name, speed in SPEEDS.items():
         m = case.model()
         m.property(1, density=DENSITY, kn=1e9, ks=1e9, bulk=BULK, g=SHEAR)
@@ -69,5 +70,5 @@ def solve(case):
             },
         )
         exact[f"{name}, 4H/C"] = t, V * 1e3 * np.cos(w * np.array(t))
-        computed[f"{name}"] = t[::6], 1e3 * np.array(v[::6])
+        computed.append((t[::6], 1e3 * np.array(v[::6])))
     case.graph("time (s)", "velocity of the surface (mm/s)", exact, computed)

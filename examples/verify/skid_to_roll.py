@@ -5,11 +5,13 @@ A ball is thrown along a floor without turning. Friction slows it down and turns
      v0 --> ( )          v = v0 mR^2/(m R^2 + I)        whatever the friction is
     ----------------     t = (v0 - v)/(mu g)            until then
 
-The angular momentum about a point of the floor stays. The ball is a square that is rounded with the radius R,
-half its edge but for a part in 1000; its moment of inertia is the square's, m L^2/6, and not a disc's.
+The angular momentum about a point of the floor stays. The ball is a square that is rounded with the
+radius R, half its edge but for a part in 1000; its moment of inertia is the square's, m L^2/6, and not
+a disc's.
 
-Tolerance. The four arcs have their centres c = sqrt(2) (L/2 - R) beside the centroid: rising by up to 2c, the ball
-loses 2 g c of v^2/2. The contact gives way in shear by mu W/KS and swings with that to and fro when it holds.
+Tolerance. The four arcs have their centres c = sqrt(2) (L/2 - R) beside the centroid: rising by up to
+2c, the ball loses 2 g c of v^2/2. The contact gives way in shear by mu W/KS and swings with that to and
+fro when it holds.
 
 Source: J.-A. Coriolis, Theorie mathematique des effets du jeu de billard (1835).
 """
@@ -19,7 +21,7 @@ from math import pi, sqrt
 import numpy as np
 
 from udec_ia.verify import Answer
-from udec_ia.verify.measure import now, push, row, step
+from udec_ia.verify.measure import now, push, row
 
 BLOCKS = ("rigid",)
 G, MU, L, K, DENSITY, V0 = 10.0, 0.3, 1.0, 1e8, 2000.0, 3.0
@@ -46,11 +48,11 @@ def solve(case):
     begin, seen = now(m), []
     for k in range(150):
         if k % 50 == 0:
-            case.draw(m)
+            case.draw(m, window=(-0.2, 4, -0.7, 1.3))
         m.cycle(10)
         ball = row(m, "block", address)
         seen.append((now(m) - begin, ball["KXD"], -R * ball["KTD"]))
-    case.draw(m)
+    case.draw(m, window=(-0.2, 4, -0.7, 1.3))
     t, v, rim = np.array(seen).T
     rolling = MASS * R**2 / (MASS * R**2 + INERTIA) * V0
     exact = (V0 - rolling) / (MU * G)

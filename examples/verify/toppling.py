@@ -1,6 +1,7 @@
 """A block topples on a slope
 
-A block of the base b and the height h does not slide, but falls over when its weight acts outside its base:
+A block of the base b and the height h does not slide, but falls over when its weight acts outside its
+base:
 
          ____
         /   /            tan psi > b'/h
@@ -8,16 +9,17 @@ A block of the base b and the height h does not slide, but falls over when its w
       /___/.-'           b' = b - 2D   rigid and simply-deformable blocks
       .-'  psi           b' = b        fully-deformable blocks
 
-Rigid blocks stand on the places where the rounding of their corners begins, at the distance D from the corner;
-a block with zones stands on its grid-points. The slope is found by bisection, each time with a new block.
+Rigid blocks stand on the places where the rounding of their corners begins, at the distance D from the
+corner; a block with zones stands on its grid-points. The slope is found by bisection, each time with a
+new block.
 
-Tolerance. Half of the last interval; a slope that is just too steep is not seen to topple the block within T:
-it moves away from its balance by 5 % of b after that time only if tan psi is above the limit by
-0.05 b p^2/(g cosh(p T)), where p is the rate of an inverted pendulum; and the base leans on its contacts by
-their overlap over b'.
+Tolerance. Half of the last interval; a slope that is just too steep is not seen to topple the block
+within T: it moves away from its balance by 5 % of b after that time only if tan psi is above the limit
+by 0.05 b p^2/(g cosh(p T)), where p is the rate of an inverted pendulum; and the base leans on its
+contacts by their overlap over b'.
 
-Source: J. Ashby, Sliding and toppling modes of failure in models and jointed rock slopes, MSc thesis, Imperial
-College (1971); R. Goodman and J. Bray (1976).
+Source: J. Ashby, Sliding and toppling modes of failure in models and jointed rock slopes, MSc thesis,
+Imperial College (1971); R. Goodman and J. Bray (1976).
 """
 
 from math import atan, cos, cosh, hypot, pi, sin, sqrt
@@ -48,14 +50,14 @@ def falls(case, slope, draw):
     cycle_for(m, 0.1)
     m.damping(0.0, 1.0)
     if draw:
-        case.draw(m)
+        case.draw(m, window=(-2.5, 3, -1.2, 2.3))
     for _ in range(10):
         cycle_for(m, WATCHED / 10)
         if row(m, "block", address)["KX"] > 0.05 * B:
             break
     if draw:
         cycle_for(m, 0.5)
-        case.draw(m)
+        case.draw(m, window=(-2.5, 3, -1.2, 2.3))
     return row(m, "block", address)["KX"] > 0.05 * B
 
 

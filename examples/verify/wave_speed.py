@@ -1,21 +1,22 @@
 """A wave runs along a bar and leaves it
 
-A smooth pulse of stress enters a bar, whose sides keep its points in line, and leaves it at the other end through
-dashpots that have the impedance of the bar:
+A smooth pulse of stress enters a bar, whose sides keep its points in line, and leaves it at the other
+end through dashpots that have the impedance of the bar:
 
       |]--->  _.-''-._  ----------[|       Cp = sqrt((K + 4G/3)/rho)    points move along the bar
       viscous              viscous         Cs = sqrt(G/rho)             points move across it
 
-The speed is that between two zones at a quarter and three quarters of the length. What is left of the pulse's energy
-when it should have gone is what the viscous end sends back.
+The speed is that between two zones at a quarter and three quarters of the length. What is left of the
+pulse's energy when it should have gone is what the viscous end sends back.
 
-Tolerance. In a chain of zones of the length d groups of waves of the wave number k are slower by (k d)^2/8; k is that of the
-pulse, 2 pi over its length. A dashpot at the end of such a chain sends back a share (k d)^2/16 of the amplitude,
-and w dt/4 as it is half a step late: of the energy the squares of these, for the highest frequency in the pulse,
-which is twice as high. The peak's time is found by a parabola through samples.
+Tolerance. In a chain of zones of the length d groups of waves of the wave number k are slower by (k
+d)^2/8; k is that of the pulse, 2 pi over its length. A dashpot at the end of such a chain sends back a
+share (k d)^2/16 of the amplitude, and w dt/4 as it is half a step late: of the energy the squares of
+these, for the highest frequency in the pulse, which is twice as high. The peak's time is found by a
+parabola through samples.
 
-Source: J. Lysmer and R. Kuhlemeyer, Finite dynamic model for infinite media, J. Eng. Mech. Div. ASCE 95 (1969)
-859-877.
+Source: J. Lysmer and R. Kuhlemeyer, Finite dynamic model for infinite media, J. Eng. Mech. Div. ASCE 95
+(1969) 859-877.
 """
 
 from math import pi, sqrt
@@ -65,7 +66,7 @@ def energy(m):
 
 
 def solve(case):
-    exact, computed = {}, {}
+    exact, computed = {}, []
     for name, (speed, field, held, stress) in KINDS.items():
         m = bar(case, speed, held, stress)
         points = m.table("gridpoint")
@@ -109,5 +110,5 @@ def solve(case):
         for label, at, history in zip(("1/4", "3/4"), place[two], s.T, strict=True):
             phase = np.clip((t - at / speed) * speed / (0.4 * LENGTH), 0, 1)
             exact[f"{name} at {label}"] = t, STRESS * 0.5 * (1 - np.cos(2 * pi * phase)) / 1e3
-            computed[f"computed, {name} at {label}"] = t[::3], history[::3] / 1e3
+            computed.append((t[::3], history[::3] / 1e3))
     case.graph("time (s)", "stress (kPa)", exact, computed)

@@ -38,9 +38,11 @@ class Answer:
 
     @property
     def why(self) -> str:
-        """The parts of the tolerance, the largest first; parts that add less than a thousandth are left out."""
+        """The parts of the tolerance, the largest first, without those below a thousandth of it."""
         parts = sorted(self.within.items(), key=lambda part: -part[1])
-        return "; ".join(f"{self.share(part)} {name}" for name, part in parts if part >= 1e-3 * self.tolerance)
+        return "; ".join(
+            f"{self.share(part)} {name}" for name, part in parts if part >= 1e-3 * self.tolerance
+        )
 
     def share(self, part: float) -> str:
         """A difference as a share of the exact number, or with its unit where that is 0."""

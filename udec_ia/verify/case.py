@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 BLOCKS = ("rigid", "sdef", "fdef")
 CROSS = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]  # four zones about grid-point 5
-Curves = Mapping[str, tuple[Any, Any]]  # x and y by what they are
 
 
 class Case:
@@ -57,8 +56,11 @@ class Case:
             self._frame = Frame(self.name)
         self._frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
 
-    def graph(self, x: str, y: str, exact: Curves, computed: Curves) -> None:
-        """Draw curves: exact ones as lines, computed ones as points. x, y: what the axes show."""
+    def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
+        """Draw curves, each x and y: exact ones as lines, by their names, computed ones as points.
+
+        x, y: what the axes show.
+        """
         from udec_ia.verify.picture import graph
 
         self._graph = graph(self.name, x, y, exact, computed)

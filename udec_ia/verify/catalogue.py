@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from inspect import cleandoc
 from pathlib import Path
 
-from udec_ia.printable import printable
+from udec_ia.printable import MESSAGE, printable
 from udec_ia.verify.answer import Answer
 from udec_ia.verify.case import BLOCKS, Case
 
@@ -59,8 +59,12 @@ def find(name: str) -> Problem:
 
 
 def load(path: Path) -> Problem:
-    """The problem in the file `path`. ValueError if it is none; whatever its own statements raise."""
-    space = runpy.run_path(str(path))
+    """The problem in the file `path`. ValueError if it is none, or cannot be read as Python."""
+    try:
+        space = runpy.run_path(str(path))
+    except Exception as error:
+        text = f"{type(error).__name__}: {error}"
+        raise ValueError(f"{printable(str(path))} is no problem: {printable(text, MESSAGE)}") from error
     text, blocks, solve = space["__doc__"], space.get("BLOCKS", ()), space.get("solve")
     if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
         raise ValueError(f"{printable(str(path))} is no problem: it needs {PARTS}")

@@ -70,8 +70,9 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
 def polar(model: Model) -> tuple[Any, Any, Any, Any]:
     """Of all quadrilaterals: distance of the middle from the origin, radial and hoop stress, angle (rad).
 
-    The stress of one zone is exact to the first order of its size only: it is that of its middle and a saw-tooth,
-    which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the second order.
+    The stress of one zone is exact to the first order of its size only: it is that of its middle and a
+    saw-tooth, which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the
+    second order.
     """
     points, zones = model.table("gridpoint"), model.table("zone")
     at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}

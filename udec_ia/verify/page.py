@@ -32,13 +32,16 @@ HEAD = """# Verification
 
     {command}
 
-{many} problems that have an exact or a published answer, each a short Python file to read, to run and to change:
-[examples/verify](../examples/verify). `udec verify` runs them all, `udec verify {name}` one of them, and
-`udec verify mine.py` one of your own. `--blocks rigid,sdef,fdef` and `--build i32r64,i32r32` choose types of blocks and word
-schemes. The exit status is 1 if an error is above its tolerance.
+{many} problems that have an exact or a published answer, each a short Python file to read, to run and to
+change: [examples/verify](../examples/verify). `udec verify` runs them all, `udec verify {name}` one of them,
+and `udec verify mine.py` one of your own. `--blocks rigid,sdef,fdef` and `--build i32r64,i32r32` choose types
+of blocks and word schemes. The exit status is 1 if an error is above its tolerance.
 
-A tolerance is the sum of what is known to make a difference: a time-step, a rounding length, the size of zones, an
-overlap, the last digit. The last column says what, and how much each adds. None is tuned.
+A tolerance is the sum of what is known to make a difference: a time-step, a rounding length, the size of
+zones, an overlap, the last digit. The last column says what, and how much each adds. None is tuned.
+
+| problem | what is asked | cases | answers | largest share of a tolerance |
+|---|---|---|---|---|
 """
 
 
@@ -80,7 +83,6 @@ def write(results: Sequence[Result], folder: Path, command: str) -> Path:
         if picture is not None:
             put_in_place(folder / IMAGES / f"{part[0].problem.name}.png", picture, force=False)
     text = HEAD.format(command=command, many=len(parts), name=parts[0][0].problem.name)
-    text += "\n| problem | what is asked | cases | answers | largest share of a tolerance |\n|---|---|---|---|---|\n"
     text += "".join(_line(part) for part in parts) + "".join(_section(part) for part in parts)
     put_in_place(folder / PAGE, text.encode(), force=False)
     return folder / PAGE
@@ -104,7 +106,12 @@ def _section(part: list[Result]) -> str:
     """Text, picture and table of a problem."""
     problem = part[0].problem
     body = problem.text.partition("\n")[2].strip("\n")
-    lines = [f"\n## {problem.title}\n", f"[{problem.name}.py](../examples/verify/{problem.name}.py)\n", body, ""]
+    lines = [
+        f"\n## {problem.title}\n",
+        f"[{problem.name}.py](../examples/verify/{problem.name}.py)\n",
+        body,
+        "",
+    ]
     if _picture(part) is not None:
         lines += [f"![{problem.title}]({IMAGES}/{problem.name}.png)", ""]
     builds = len({one.build for one in part}) > 1

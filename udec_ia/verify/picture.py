@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.output.draw import INK, title
@@ -17,7 +17,7 @@ DPI = 90
 SHADES = 64  # colours of a file
 
 
-def graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Mapping[str, Any]) -> Figure:
+def graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> Figure:
     """Curves over one pair of axes: `exact` as lines, `computed` as points in the same order of colours."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -28,9 +28,10 @@ def graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Mapping
     title(axes, name)
     for colour, (label, points) in zip(COLOURS, exact.items(), strict=False):
         axes.plot(*points, color=colour, linewidth=1.2, label=label)
-    for colour, (label, points) in zip(COLOURS, computed.items(), strict=False):
+    for k, points in enumerate(computed):
         style = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
-        axes.plot(*points, "o", color=colour, label=label, **style)
+        label = "computed" if k == 0 else "_"  # said once
+        axes.plot(*points, "o", color=COLOURS[k % len(COLOURS)], label=label, **style)
     axes.set_xlabel(x, fontsize=9, color=INK)
     axes.set_ylabel(y, fontsize=9, color=INK)
     axes.grid(color="#e4e0d8", linewidth=0.6)

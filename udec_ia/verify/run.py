@@ -16,7 +16,7 @@ from udec_ia.verify.catalogue import Problem
 
 @dataclass
 class Result:
-    """What came of one case. failure: what ended it, or "". picture: PNG, if one was drawn. seconds: it took."""
+    """What came of one case. failure: what ended it, or "". picture: PNG, if one was drawn."""
 
     problem: Problem
     build: str

@@ -25,7 +25,10 @@ def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
     parser = command(commands, "verify", TEXT, _verify, _script)
     parser.add_argument(
-        "names", nargs="*", metavar="NAME", help="a problem, or a Python file with one; left off, all problems"
+        "names",
+        nargs="*",
+        metavar="NAME",
+        help="a problem, or a Python file with one; left off, all problems",
     )
     parser.add_argument("--build", metavar="A,B", help="word schemes (default: i32r64)")
     parser.add_argument("--blocks", metavar="A,B", help="types of blocks (default: rigid,sdef,fdef)")
@@ -72,9 +75,10 @@ def _verify(args: argparse.Namespace) -> Listing:
         print(result.said(), file=sys.stderr, flush=True)
         results.append(result)
     if not results:
-        raise ValueError(f"--blocks {args.blocks}: none of these problems makes sense for them")
+        raise ValueError(f"none of these problems makes sense for --blocks {args.blocks}")
     wrong = sum(not one.holds for one in results)
-    said = [f"{len(results)} cases, " + (f"{wrong} above their tolerances" if wrong else "all within tolerance")]
+    many = "1 case" if len(results) == 1 else f"{len(results)} cases"
+    said = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
     if args.out is not None:
         said.append(f"written: {write(results, args.out, _command(args))}")
     return Listing(said, COLUMNS, list((rows if args.json else brief)(results)), int(wrong > 0))
