@@ -24,6 +24,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.grids import generate, rectangle
 
 BLOCKS = ("fdef",)
+REALS = 64  # strains are some 1e-5
 LENGTH, HIGH, SHEAR, DENSITY, STRESS = 5.0, 1.0, 1e9, 2000.0, 1e4
 EXACT = 4 * STRESS * LENGTH**3 / (2 * SHEAR * HIGH**2) + 1.2 * STRESS * LENGTH / SHEAR
 

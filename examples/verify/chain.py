@@ -28,6 +28,7 @@ from udec_ia.verify.measure import period, push, row, step
 from udec_ia.verify.scenes import on_base, settle
 
 BLOCKS = ("rigid",)
+REALS = 64  # a swing is 2.5 micrometres, the last digit of a height of 5 m 0.5
 G, DENSITY, KN, SIDE, N = 10.0, 2000.0, 1e8, 1.0, 5
 MASS, K = DENSITY * SIDE**2, 2 * KN
 

@@ -25,6 +25,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.measure import block
 
 BLOCKS = ("rigid",)
+REALS = 64  # the blocks wait at rest until they have fallen by more than a last digit
 G, DENSITY, KN, L, H, D = 10.0, 2000.0, 1e9, 5.0, 1.0, 0.05
 WEIGHT = L * H * DENSITY * G
 

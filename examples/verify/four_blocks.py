@@ -26,6 +26,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.measure import block, cycle_for, now, row, straight_line
 
 BLOCKS = ("rigid",)
+REALS = 64  # joints lean by 1e-4, overlaps are 0.5 mm at 20 m
 G, K, DENSITY = 10.0, 1.33e9, 2000.0
 LOWER, UPPER = atan(6 / 20), atan(6 / 15)  # inclination of the joints
 MASSES = 138.75 * DENSITY, 75.0 * DENSITY

@@ -27,6 +27,7 @@ from udec_ia.verify.grids import fan
 from udec_ia.verify.measure import block
 
 BLOCKS = ("rigid", "sdef", "fdef")
+REALS = 64  # overlaps are some micrometres
 MU, COHESION, S3, K, DENSITY, W, H = 0.5, 5e4, 2e5, 1e10, 2000.0, 1.0, 4.0
 PART = 8e3  # of s1, Pa
 

@@ -24,6 +24,7 @@ import numpy as np
 from udec_ia.verify import Answer
 
 BLOCKS = ("sdef", "fdef")
+REALS = 64  # strains are 1e-4 and less
 G, KN, DENSITY, N, S, STRESS = 1e9, 1e9, 2000.0, 5, 1.5, 1e5
 LENGTH = N * S
 

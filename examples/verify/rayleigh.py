@@ -29,6 +29,7 @@ from udec_ia.verify.measure import push, row, step
 from udec_ia.verify.scenes import on_base
 
 BLOCKS = ("rigid",)
+REALS = 64  # a swing is 10 micrometres
 MASS, FCRIT, FREQ = 4000.0, 0.1, 20.0
 
 

@@ -25,6 +25,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.measure import block, now, push, row, step
 
 BLOCKS = ("rigid",)
+REALS = 64  # a step is some micrometres
 K, DENSITY, GAP, V = 1e8, 2000.0, 0.02, 0.5
 MASS = DENSITY * 2.0
 W = sqrt(2 * K / MASS)

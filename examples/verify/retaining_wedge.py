@@ -24,6 +24,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.measure import block
 
 BLOCKS = ("rigid",)
+REALS = 64  # overlaps are 0.1 mm at 8 m, and rest is to be to 1e-8
 G, DENSITY, K, PSI, PHI, WIDE, HIGH = 10.0, 2000.0, 1e9, radians(55), radians(25), 3.0, 6.0
 
 

@@ -27,6 +27,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.measure import block, row, step
 
 BLOCKS = ("rigid",)
+REALS = 64  # overlaps are 0.5 mm at 4 m, and rest is to be to 1e-5
 AL, PHI, KN, KS, DENSITY, DEPTH, TOP = radians(20), radians(45), 1e9, 2.5e8, 2000.0, 4.0, 1.0
 FORCE = 1e6  # H, N/m
 

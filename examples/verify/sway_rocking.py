@@ -27,6 +27,7 @@ from udec_ia.verify.measure import period, push, row, step
 from udec_ia.verify.scenes import on_base, settle
 
 BLOCKS = ("rigid",)
+REALS = 64  # a swing is a micrometre
 G, DENSITY, KN, KS, B, H, D = 10.0, 2000.0, 1e9, 5e8, 2.0, 3.0, 0.1
 MASS, INERTIA, E = DENSITY * B * H, DENSITY * B * H * (B**2 + H**2) / 12, B / 2 - D
 

@@ -77,14 +77,14 @@ def test_what_goes_wrong_is_a_row_and_no_end(tmp_path: Path, capsys: pytest.Capt
 def test_what_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = [problem(tmp_path, "one"), problem(tmp_path, "two", what="two", value="2.0")]
     folder = tmp_path / "out"
-    command = ["verify", *given, "--build", "i32r64,i16r32", "--out", str(folder)]
+    command = ["verify", *given, "--build", "i32r64,i32r32", "--out", str(folder)]
     assert main(command) == 1
     assert f"written: {folder / 'verification.md'}" in capsys.readouterr().out
     page = (folder / "verification.md").read_text()
     assert f"\n    udec {' '.join(command)}\n" in page
     assert "| [one](#a-number-that-is-one) | A number that is one | rigid, fdef | 4 | 0 % |" in page
     assert "| [two](#a-number-that-is-two) | A number that is two | rigid, fdef | 4 | **fails** |" in page
-    assert "| fdef | i16r32 | n \\| m | 2 | 1 | 1e+02 % **too much** | 6e-06 % | 6e-06 % last digit" in page
+    assert "| fdef | i32r32 | n \\| m | 2 | 1 | 1e+02 % **too much** | 6e-06 % | 6e-06 % last digit" in page
     pictures = sorted((folder / "images" / "verify").iterdir())
     assert [path.name for path in pictures] == ["one.png", "two.png"]
     for path in pictures:
@@ -99,7 +99,7 @@ def test_what_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         (["qqq"], "there is no problem qqq: udec verify --list names them all"),
         (["--blocks", "soft"], "--blocks soft: choose of rigid, sdef, fdef, with commas between"),
         (["--build", "i8r8"], "--build i8r8: choose of i16r32"),
-        (["ball", "--blocks", "fdef"], "none of these problems makes sense for --blocks fdef"),
+        (["ball", "--blocks", "fdef"], "none of these problems makes sense for fdef in i32r64"),
     ],
 )
 def test_a_wrong_command_line(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,6 +5,7 @@ when the program is installed. One such file has
 
     a docstring   its title; the problem, its formula and why the tolerance is what it is; its source
     BLOCKS        the types of blocks that it makes sense for: "rigid", "sdef", "fdef"
+    REALS         64, if what it measures is lost in reals of 32 bits; it may be left out
     solve(case)   builds and runs models, and yields an Answer for each number that is known
 
 A file of one's own is run by its path: `udec verify mine.py`.

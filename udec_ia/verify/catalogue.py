@@ -20,12 +20,16 @@ PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify 
 
 @dataclass(frozen=True)
 class Problem:
-    """One file. text: its docstring. blocks: types of blocks that it makes sense for. solve: runs it."""
+    """One file. text: its docstring. blocks: types of blocks that it makes sense for. solve: runs it.
+
+    reals: bits that a real must have at least.
+    """
 
     path: Path
     text: str
     blocks: tuple[str, ...]
     solve: Callable[[Case], Iterator[Answer]]
+    reals: int = 32
 
     @property
     def name(self) -> str:
@@ -68,4 +72,4 @@ def load(path: Path) -> Problem:
     text, blocks, solve = space["__doc__"], space.get("BLOCKS", ()), space.get("solve")
     if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
         raise ValueError(f"{printable(str(path))} is no problem: it needs {PARTS}")
-    return Problem(path, cleandoc(text), tuple(blocks), solve)
+    return Problem(path, cleandoc(text), tuple(blocks), solve, space.get("REALS", 32))

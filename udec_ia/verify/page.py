@@ -35,7 +35,8 @@ HEAD = """# Verification
 {many} problems that have an exact or a published answer, each a short Python file to read, to run and to
 change: [examples/verify](../examples/verify). `udec verify` runs them all, `udec verify {name}` one of them,
 and `udec verify mine.py` one of your own. `--blocks rigid,sdef,fdef` and `--build i32r64,i32r32` choose types
-of blocks and word schemes. The exit status is 1 if an error is above its tolerance.
+of blocks and word schemes; problems whose overlaps are lost in 32-bit reals are not run with these. The exit
+status is 1 if an error is above its tolerance.
 
 A tolerance is the sum of what is known to make a difference: a time-step, a rounding length, the size of
 zones, an overlap, the last digit. The last column says what, and how much each adds. None is tuned.

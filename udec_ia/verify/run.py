@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 
 from udec_ia.errors import UdecError
+from udec_ia.heap.words import scheme
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.verify.answer import Answer
 from udec_ia.verify.case import Case
@@ -45,11 +46,14 @@ class Result:
 
 
 def run(problems: Iterable[Problem], builds: Sequence[str], blocks: Sequence[str]) -> Iterator[Result]:
-    """All cases of the problems: in the words of each of `builds`, with those of `blocks` that make sense."""
+    """All cases of the problems: in the words of each of `builds`, with those of `blocks` that make sense.
+
+    Words whose reals are too short for a problem make no sense for it either.
+    """
     for problem in problems:
         for build in builds:
             for kind in problem.blocks:
-                if kind in blocks:
+                if kind in blocks and scheme(build).real_bits >= problem.reals:
                     yield run_case(problem, build, kind)
 
 

@@ -62,23 +62,29 @@ def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _verify(args: argparse.Namespace) -> Listing:
+    from udec_ia.heap.words import scheme
     from udec_ia.inspect.look.listing import Listing
     from udec_ia.verify.page import COLUMNS, brief, rows, write
     from udec_ia.verify.run import run
 
     problems, (builds, blocks) = _problems(args), _choice(args)
     if args.list:
-        named: list[tuple[Any, ...]] = [(one.name, ", ".join(one.blocks), one.title) for one in problems]
-        return Listing([], ("problem", "blocks", "what is asked"), named)
+        named: list[tuple[Any, ...]] = [
+            (one.name, ", ".join(one.blocks), one.reals, one.title) for one in problems
+        ]
+        return Listing([], ("problem", "blocks", "bits of a real", "what is asked"), named)
     results = []
     for result in run(problems, builds, blocks):
         print(result.said(), file=sys.stderr, flush=True)
         results.append(result)
     if not results:
-        raise ValueError(f"none of these problems makes sense for --blocks {args.blocks}")
+        raise ValueError(f"none of these problems makes sense for {', '.join(blocks)} in {', '.join(builds)}")
     wrong = sum(not one.holds for one in results)
     many = "1 case" if len(results) == 1 else f"{len(results)} cases"
     said = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
+    short = [one.name for one in problems if any(scheme(build).real_bits < one.reals for build in builds)]
+    if short:
+        said.append(f"not run with 32-bit reals, in which what they measure is lost: {', '.join(short)}")
     if args.out is not None:
         said.append(f"written: {write(results, args.out, _command(args))}")
     return Listing(said, COLUMNS, list((rows if args.json else brief)(results)), int(wrong > 0))
