@@ -19,6 +19,7 @@ from udec_ia.verify import Answer
 from udec_ia.verify.scenes import settle
 
 BLOCKS = ("rigid", "sdef")
+REALS = 64  # overlaps are 0.1 mm at 4 m
 G, DENSITY, K, B, H, CUT, D = 10.0, 2000.0, 1e9, 4.0, 3.0, 2.5, 0.1
 
 

@@ -31,14 +31,14 @@ BULK, SHEAR, DENSITY = 2e8, 1e8, 2000.0
 CP = sqrt((BULK + 4 * SHEAR / 3) / DENSITY)
 
 
-def press(case, mixed):
-    """Settlement and load of the strip, m and Pa; mixed: with zones in pairs."""
+def press(case, mixed, n=N):
+    """Settlement and load of the strip, m and Pa; mixed: with zones in pairs; n: zones over the width."""
     m = case.model("mohr-coulomb")
     m.property(1, density=DENSITY, kn=1e9, ks=1e9, bulk=BULK, g=SHEAR)
     m.property(1, block_cohesion=COHESION, block_tension=1e9)
     m.round(0.02)
     m.block(0, 0, 0, HIGH, WIDE, HIGH, WIDE, 0, constitutive=2)
-    generate(m, rectangle(0, WIDE, 0, HIGH, N, N // 2), mixed=mixed)
+    generate(m, rectangle(0, WIDE, 0, HIGH, n, n // 2), mixed=mixed)
     for x in (0.0, WIDE):
         m.boundary(x - 0.001, x + 0.001, -1, HIGH + 1, xvel=0)
     m.boundary(-1, WIDE + 1, -0.001, 0.001, xvel=0, yvel=0)
@@ -46,7 +46,7 @@ def press(case, mixed):
     m.fraction(0.5)
     m.damping(0.6, CP / 4 / HIGH, "mass")
     m.cycle(0)
-    d = WIDE / N
+    d = WIDE / n
     points = m.table("gridpoint")
     under = (points["KXG"] < HALF + 0.001) & (points["KYG"] > HIGH - 0.001)
     sinks, loads = [0.0], [0.0]

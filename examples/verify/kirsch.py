@@ -78,15 +78,9 @@ def solve(case):
         off = float(np.sqrt(((got - exact)[inside] ** 2).mean()))
         yield Answer(f"{what} stress for r < 3 a, root of the mean square of errors", "Pa", off, 0.0, within)
     line, mean = np.linspace(0, 90, 91), float(r[near].mean())
-    q = (A / mean) ** 2
     case.graph(
         "angle from the direction of the stress (degrees)",
-        "hoop stress/p in the zones at the wall",
-        {
-            f"Kirsch, r = {mean:.3f} a": (
-                line,
-                0.5 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * np.radians(line))),
-            )
-        },
+        f"hoop stress/p at r = {mean:.3f} a",
+        {"exact": (line, -ring(mean, np.radians(line))[1] / P)},
         [(np.degrees(t[near]), -hoop[near] / P)],
     )

@@ -59,14 +59,14 @@ def falls(case, factor, draw=False):
     m = stack(case, factor)
     if draw:
         m.cycle(0)
-        case.draw(m, window=(-6.2, 6, -1.2, 2.5))
+        case.draw(m, window=(-6.2, 6, -1.2, 3.2))
     m.damping(2.0, sqrt(K / (N * MASS)) / (2 * pi), "mass")  # so that it is not shaken when it is set down
     m.cycle(400)
     m.damping(0.05, sqrt(K / MASS) / (2 * pi), "stiffness")
     cycle_for(m, 0.8 if draw else WATCHED)
     top = max(m.table("block"), key=lambda one: one["KX"])
     if draw:
-        case.draw(m, window=(-6.2, 6, -1.2, 2.5))
+        case.draw(m, window=(-6.2, 6, -1.2, 3.2))
     return float(top["KY"]) < (N - 0.5) * HIGH - SUNK
 
 

@@ -29,6 +29,7 @@ from udec_ia.verify.measure import cycle_for, row
 from udec_ia.verify.scenes import on_base, settle
 
 BLOCKS = ("rigid", "sdef", "fdef")
+REALS = 64  # an overlap is 20 micrometres
 G, DENSITY, K, D = 10.0, 2000.0, 1e9, 0.1
 B, H, WATCHED = 1.0, 2.0, 3.0  # m, m, s
 MASS = DENSITY * B * H

@@ -84,7 +84,7 @@ def test_what_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert f"\n    udec {' '.join(command)}\n" in page
     assert "| [one](#a-number-that-is-one) | A number that is one | rigid, fdef | 4 | 0 % |" in page
     assert "| [two](#a-number-that-is-two) | A number that is two | rigid, fdef | 4 | **fails** |" in page
-    assert "| fdef | i32r32 | n \\| m | 2 | 1 | 1e+02 % **too much** | 6e-06 % | 6e-06 % last digit" in page
+    assert "| fdef | i32r32 | n \\| m | 2 | 1 | 1e+02 % **too much** | 6.1e-06 % | 6e-06 % last digit" in page
     pictures = sorted((folder / "images" / "verify").iterdir())
     assert [path.name for path in pictures] == ["one.png", "two.png"]
     for path in pictures:

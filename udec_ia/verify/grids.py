@@ -32,7 +32,7 @@ def outline(nodes: Any) -> list[float]:
 
 def generate(model: Model, nodes: Any, mixed: bool = False) -> int:
     """GENERATE for the block under the nodes; the diagonals of neighbouring quadrilaterals alternate."""
-    ny, nx = nodes.shape[0] - 1, nodes.shape[1] - 1
+    nx, ny = int(nodes.shape[1]) - 1, int(nodes.shape[0]) - 1
     points = [(float(x), float(y)) for x, y in nodes.reshape(-1, 2)]
 
     def number(i: int, j: int) -> int:  # grid-points are numbered from the last one
@@ -60,7 +60,8 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
     for start, end in zip(ring, np.roll(ring, -1), strict=True):
         for k in range(edge_points + 1):
             s = k / (edge_points + 1)
-            outer.append(tuple(float((1 - s) * start[name] + s * end[name]) for name in ("KXP", "KYP")))
+            px, py = ((1 - s) * start[name] + s * end[name] for name in ("KXP", "KYP"))
+            outer.append((float(px), float(py)))
     n, cx, cy = len(outer), float(row["KX"]), float(row["KY"])
     zones = [(1, k + 2, (k + 1) % n + 2) for k in range(n)]  # the centroid, given last, is number 1
     at = cx - 1e-6, cx + 1e-6, cy - 1e-6, cy + 1e-6

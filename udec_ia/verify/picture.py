@@ -12,7 +12,7 @@ from udec_ia.output.graph import COLOURS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SIZE = (6.2, 3.6)  # inches of a graph
+SIZE = (7.2, 3.4)  # inches of a graph
 DPI = 90
 SHADES = 64  # colours of a file
 
@@ -29,7 +29,7 @@ def graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequenc
     for colour, (label, points) in zip(COLOURS, exact.items(), strict=False):
         axes.plot(*points, color=colour, linewidth=1.2, label=label)
     for k, points in enumerate(computed):
-        style = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
+        style: dict[str, Any] = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
         label = "computed" if k == 0 else "_"  # said once
         axes.plot(*points, "o", color=COLOURS[k % len(COLOURS)], label=label, **style)
     axes.set_xlabel(x, fontsize=9, color=INK)
@@ -38,7 +38,7 @@ def graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequenc
     axes.tick_params(labelsize=8, colors=INK, width=0.6)
     for spine in axes.spines.values():
         spine.set(linewidth=0.6, color="#8a857c")
-    axes.legend(fontsize=8, frameon=False)
+    figure.legend(loc="outside right upper", fontsize=8, frameon=False)
     return figure
 
 
