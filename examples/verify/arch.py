@@ -8,19 +8,17 @@ thinner it is, the less room there is; at last it turns to a mechanism with five
       /  .'   '.  \                        friction that holds
      o__/       \__o
 
-Here there are 28 voussoirs, and forces act not farther out than D from their corners, where the
-rounding begins. The line of thrust goes through the joint at the angle a from the crown at the radius
+Here there are 28 voussoirs, and forces act not farther out than D from their corners, where the rounding
+begins. The line of thrust goes through the joint at the angle a from the crown at the radius
 
      r = (M + W x)/(W sin a + H cos a)
 
 with the weight W above it, x the place of its centroid, and the thrust H and its moment M at the crown.
-The least thickness is that for which one pair H, M keeps r within the faces less D, for all joints. It
-is compared with the thickness at which the model falls, by bisection; the page's formula is that with
-infinitely many joints and without D.
+The least thickness is that for which one pair H, M keeps r within the faces less D, for all joints. With
+720 voussoirs and no D that is Milankovitch's number; with 28 it is what the model is compared with, whose
+least thickness is found by bisection.
 
-Tolerance. Half of the last interval. All joints close by up to H/KN, which lowers the crown by that for
-each joint. The corners of straight voussoirs lie on the circles, not their middles: they are taken as
-they are.
+Tolerance. Half of the last interval. All joints close by up to H/KN, and the crown sinks by that for each.
 
 Source: M. Milankovitch, Theorie der Druckkurven, Z. Math. Phys. 55 (1907) 1-27; J. Heyman, The safety
 of masonry arches, Int. J. Mech. Sci. 11 (1969) 363-385; J. Ochsendorf, The masonry arch on spreading

@@ -1,4 +1,4 @@
-"""Two joint blocks of a slope
+"""Two blocks on the joints of a slope
 
 A square of 20 m is cut by three joints; the foot is fixed and the left part taken away. Two blocks
 remain, the upper one on a joint that dips 2 in 5, the lower one on a joint that dips 3 in 10:
@@ -14,8 +14,8 @@ Tolerance. The joints give way by the weight on them over KN, and lean by that o
 contacts: a lean of d changes an acceleration by g d (cos psi + mu sin psi). A swing on the springs
 tilts the straight line through the velocities by a bounded part.
 
-Source: I. Newton; the slope is the four-block problem of P. Cundall's early reports. R. Goodman,
-Introduction to Rock Mechanics (1989), for blocks on blocks.
+Source: I. Newton, Principia (1687), for bodies that push each other; the geometry is that of many a
+textbook slope, and ours.
 """
 
 from math import atan, cos, pi, radians, sin, sqrt, tan

@@ -18,7 +18,7 @@ the wedge is set free and gravity grows until the wedge comes out.
 Tolerance. H: half a step of the rock's way. P: half of the last increment of gravity, and the force
 ratio at which each increment was ended.
 
-Source: B. Brady and E. Brown, Rock Mechanics for Underground Mining (1985), 9.5, after J. Bray (1977).
+Source: B. Brady and E. Brown, Rock Mechanics for Underground Mining (1985), chapter 9, after J. Bray (1977).
 """
 
 from math import cos, pi, radians, sin, sqrt, tan

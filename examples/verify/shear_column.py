@@ -13,7 +13,7 @@ Tolerance. Zones give waves of the wave number k as a chain of masses does, with
 d)^2/24, d the height of a zone; central differences raise it by (w dt)^2/24; the greatest strain e
 changes arms by itself.
 
-Source: N. Ambraseys (1960); S. Kramer, Geotechnical Earthquake Engineering (1996), 7.2.
+Source: S. Kramer, Geotechnical Earthquake Engineering (1996), chapter 7.
 """
 
 from math import pi, sqrt

@@ -123,3 +123,15 @@ def test_python_does_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     script = capsys.readouterr().out
     exec(compile(script, "script", "exec"), {})
     assert "mine, rigid, i32r64: 1 of 1 within tolerance" in capsys.readouterr().out
+
+
+def test_short_reals_are_not_tried_on_what_they_lose(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = Path(problem(tmp_path, "fine"))
+    path.write_text(path.read_text() + "\n\nREALS = 64\n")
+    assert main(["verify", str(path), "--build", "i32r32,i32r64", "--blocks", "rigid"]) == 0
+    out, err = capsys.readouterr()
+    assert "not run with 32-bit reals, in which what they measure is lost: fine\n" in out
+    assert "i32r32" not in err
+    assert main(["verify", str(path), "--build", "i32r32"]) == 2

@@ -39,7 +39,8 @@ of blocks and word schemes; problems whose overlaps are lost in 32-bit reals are
 status is 1 if an error is above its tolerance.
 
 A tolerance is the sum of what is known to make a difference: a time-step, a rounding length, the size of
-zones, an overlap, the last digit. The last column says what, and how much each adds. None is tuned.
+zones, an overlap, the last digit. The last column says what, and how much each adds. None is tuned. An error
+that is nearly all of its tolerance is one that its reasons explain, as the longer period of a chain of zones.
 
 | problem | what is asked | cases | answers | largest share of a tolerance |
 |---|---|---|---|---|
