@@ -144,11 +144,11 @@ def test_a_deck_runs_away_from_the_checkout(installed: Path, tmp_path: Path) -> 
 
 def test_the_problems_come_with_the_wheel(installed: Path, tmp_path: Path) -> None:
     before = files(installed)
-    listed = run("-m", "udec_ia", "verify", "--list", cwd=tmp_path, **away(installed)).splitlines()[1:]
+    verify = partial(run, "-m", "udec_ia", "verify", cwd=tmp_path, NUMBA_DISABLE_JIT="1", **away(installed))
+    listed = verify("--list").splitlines()[1:]
     there = {path.stem for path in (ROOT / "examples" / "verify").glob("*.py")}
     assert {line.split()[0] for line in listed} == there
-    output = run("-m", "udec_ia", "verify", "column", "--blocks", "rigid", cwd=tmp_path, **away(installed))
-    assert "1 case, all within tolerance" in output
+    assert "1 case, all within tolerance" in verify("eccentric", "--blocks", "rigid")
     assert files(installed) == before
 
 
