@@ -51,8 +51,10 @@ BELOW = {  # layers that a layer imports
         "printable",
         "restart",
         "study",
+        "verify",
         "view",
     },
+    "verify": {"errors", "files", "heap", "layout", "model", "output", "printable"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 
