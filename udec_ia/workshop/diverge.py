@@ -77,7 +77,8 @@ def _run(args: argparse.Namespace, path: Path, build: str, laws: list[str] | Non
 
     if args.cycles is not None:
         return of_state(Model.restore(path, out=out, constitutive=laws), args.cycles)
-    return of_deck(Model(build=build, out=out, name=path.stem, constitutive=laws), _text(path), path.name)
+    model = Model(build=build, out=out, name=path.stem, constitutive=laws)
+    return of_deck(model, _text(path), path.name, (Path(), path.parent))
 
 
 def _text(path: Path) -> str:
