@@ -75,7 +75,8 @@ def spoil(array: MainArray, rng: Rng) -> None:
     top = int(np.iinfo(h.ia.dtype).max)
     for _ in range(int(rng.integers(0, 4) if rng.random() < 0.5 else rng.integers(0, 40))):
         at, other = int(rng.integers(used)), int(rng.integers(1, used))
-        h.ia[at] = rng.choice([0, 1, -1, other, int(h.ia[other]), int(h.ia[at]) + 1, top, -top - 1])
+        was, its = int(h.ia[at]), int(h.ia[other])
+        h.ia[at] = rng.choice([0, 1, -1, other, its, min(-was, top), max(was - 1, -top), top, -top - 1])
     for _ in range(int(rng.integers(0, 4))):
         h.ra[int(rng.integers(used // array.scheme.ratio))] = rng.choice(
             [np.nan, np.inf, -np.inf, -1e30, 1e-30, 1e12, 0.0]
