@@ -29,7 +29,7 @@ from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
-CHUNK = 20_000  # pairs of blocks looked at together
+CHUNK = 10_000  # pairs of blocks looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
 FAR = 3.0  # rounding lengths that a corner is away from an edge at most, where its arc meets the edge
 AROUND = 8  # directions in which it is looked whether a block holds a point

@@ -231,10 +231,14 @@ class State:
             left -= len(found)
             corners.append(np.array(found, np.int64))
             owners.append(np.full(len(found), block))
-        at, once = np.unique(np.concatenate(corners), return_index=True)
-        order = np.argsort(once)
-        self._enter("corner", at[order])
-        self.owner["corner"] = np.concatenate(owners)[once[order]]
+        at, owner = np.concatenate(corners), np.concatenate(owners)
+        self._enter("corner", at)
+        once = self.rows("corner", at) == np.arange(len(at))
+        if not once.all():  # the first list that a corner stands in has it
+            once = np.sort(np.unique(at, return_index=True)[1])
+            at, owner = at[once], owner[once]
+            self._enter("corner", at)
+        self.owner["corner"] = owner
         rings.row[~rings.contact] = self.rows("corner", rings.item[~rings.contact])
         return rings
 
