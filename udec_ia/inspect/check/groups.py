@@ -155,6 +155,10 @@ class State:
             self._columns[key] = self.read(self.address[kind], name, i)
         return self._columns[key]
 
+    def forget(self) -> None:
+        """Keep no column: what comes now needs others, and room."""
+        self._columns.clear()
+
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
         before = addresses - 1
