@@ -20,7 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.monitor import RESTART_FILE, run_deck
 from udec_ia.deck.reference import explain, summary
 from udec_ia.deck.variables import Values
 from udec_ia.errors import MESSAGES, UdecError, spoilt
@@ -64,7 +64,7 @@ from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.scaling import relaxations_due
 from udec_ia.ops.run.static import STATIC, statically
 from udec_ia.ops.run.timestep import bound, describe, kind_of
-from udec_ia.ops.run.watch import Series, Solution, Watch
+from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Solution, Watch
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
 from udec_ia.printable import printable
@@ -72,8 +72,6 @@ from udec_ia.session import NAME, Session
 from udec_ia.transaction import Undo, beside, command, looking, numbers, once, steady
 
 R = TypeVar("R")
-RESTART_FILE = "restart.h5"
-SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 Ended = Callable[[int], None]

@@ -83,7 +83,7 @@ class Matching:
     def _join(self, kind: str, one: Any, two: Any) -> None:
         """The groups at the addresses (n,) and (n,) match."""
         for side, at in zip(self.sides, (one, two), strict=True):
-            side.number[at] = np.arange(self._count + 1, self._count + 1 + len(at))
+            side.give_numbers(at, self._count + 1)
         self._count += len(one)
         before = self.pairs[kind]
         self.pairs[kind] = np.concatenate((before[0], one)), np.concatenate((before[1], two))
@@ -150,7 +150,7 @@ class Matching:
         lowest = 0 if kind in OPTIONAL else 1
         left = [side.listed(kind) for side in self.sides]
         for names in KEYS[kind]:
-            left = [at[side.number[at] == 0] for side, at in zip(self.sides, left, strict=True)]
+            left = [at[side.numbers(at) == 0] for side, at in zip(self.sides, left, strict=True)]
             keys: list[list[Any]] = []
             known: list[Any] = []
             for side, at in zip(self.sides, left, strict=True):
