@@ -3,8 +3,8 @@
 LOCAL damping takes from whatever swings, at all frequencies alike; scaled masses let all of the model answer
 within the same number of cycles; and the step is the greatest that is safe, but for what contacts that are
 yet to be made need. What nothing holds would drift on for ever, so there is a little mass damping, too, which
-takes a fifth of a per cent of every velocity in a cycle. There is no other damping. What a model passes through on the way is not what it would
-pass through: friction and plastic strain may remember it.
+takes a fifth of a per cent of every velocity in a cycle. There is no other damping. What a model passes
+through on the way is not what it would pass through: friction and plastic strain may remember it.
 """
 
 from __future__ import annotations
