@@ -59,7 +59,15 @@ from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import cycle, finish
-from udec_ia.ops.run.remarks import on_laws, on_loads, on_moduli, on_properties, on_rest, on_rounding
+from udec_ia.ops.run.remarks import (
+    on_laws,
+    on_loads,
+    on_moduli,
+    on_properties,
+    on_resolution,
+    on_rest,
+    on_rounding,
+)
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.scaling import relaxations_due
 from udec_ia.ops.run.static import STATIC, statically
@@ -704,6 +712,7 @@ class Model(Session):
         self.remark(on_laws(self.array))
         self.remark(on_loads(self.array))
         self.remark(on_rounding(self.array))
+        self.remark(on_resolution(self.array))
 
     @once
     def history(
