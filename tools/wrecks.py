@@ -245,7 +245,7 @@ def cases(seed: int, first: int, last: int, sound: Path, only: list[str]) -> Ite
     outside = sound / "outside"
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        warm(sound)
+        warm(sound, only)
         room()
         for case in range(first, last):
             rng = np.random.default_rng([seed, case])
@@ -263,13 +263,14 @@ def cases(seed: int, first: int, last: int, sound: Path, only: list[str]) -> Ite
                 yield [case, what, command, ended.status, ended.wrong + clear(bad, kept)]
 
 
-def warm(sound: Path) -> None:
+def warm(sound: Path, only: list[str]) -> None:
     """Have all that commands need loaded, so that it does not count."""
     for build in ALL_SCHEMES:
         rng, good = np.random.default_rng(0), str(sound / f"{build}.h5")
         for command in (*looks(rng, good), *changes(rng, good, good), *runs(rng, good), *pictures(rng, good)):
-            with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-                cli.main(command)
+            if not only or command[0] in only:
+                with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+                    cli.main(command)
     for path in Path().iterdir():
         path.unlink()
 

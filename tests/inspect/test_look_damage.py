@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -38,6 +40,7 @@ from udec_ia.output.dump import raw
 from udec_ia.restart import look_into, save
 
 HEADS = [getattr(g, field.name) for field in read_table().common if field.target] + [g.JUNK]
+WRECKS = Path(__file__).parents[2] / "tools" / "wrecks.py"
 TRIALS = 50  # in each word scheme
 LOOKS = 6  # at each of them, chosen at random
 SECONDS = 3.0  # of processor time, for these
@@ -155,3 +158,12 @@ def test_a_look_changes_nothing(tmp_path: Path) -> None:
     for look in [*looks(atlas, rng), *pictures(array, atlas, tmp_path)][::2]:
         seen(look)
     assert all(np.array_equal(one, two) for one, two in zip(before, every_word(array), strict=True))
+
+
+def test_commands_given_damaged_files() -> None:
+    """A part of the tool's: each command ends with a result or a message, the file stays as it is."""
+    some = ["info", "check", "dump", "walk", "find", "diff", "convert", "renumber", "patch"]
+    arguments = [sys.executable, str(WRECKS), "--files", "15", "--seed", "3", "--only", *some]
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "135 commands, 0 failures" in done.stdout
