@@ -624,7 +624,6 @@ class Model(Session):
             return self._to_rest(ratio, limit)
         self.inform(STATIC)
         begun = self.undo.before
-        self.undo.keep(self.array)  # to be prepared, as by _cycle
         try:
             with statically(self.array):
                 return self._to_rest(

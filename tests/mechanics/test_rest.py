@@ -15,7 +15,7 @@ from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
 
 KN, DENSITY = 1e8, 1000.0
-WAYS: list[dict[str, Any]] = [{"local": 0.8}, {"combined": 0.8}, {"kinetic": True}, {"adaptive": 0.5}]
+WAYS: list[dict[str, Any]] = [{"local": 0.8}, {"combined": 0.8}, {"kinetic": True}, {"adaptive": 0.7}]
 
 
 def sign(v: float) -> float:
@@ -32,16 +32,11 @@ def bounces(way: str, f: float, dt: float, cycles: int) -> list[float]:
             if now < kinetic:
                 v, now = 0.0, 0.0
             kinetic = now
-        elif way == "adaptive":
-            if alpha == 0:
-                alpha = 0.01 / dt
-            elif 2 * alpha * now * dt < f * abs(now - kinetic):
-                alpha = min(1.02 * alpha, 0.5 / dt)
-            else:
-                alpha = max(alpha / 1.02, 1e-8 / dt)
-            kinetic = now
         force = 2 * KN * max(-fall, 0.0) - m * G
         damped = force
+        if way == "adaptive":
+            quotient = -v * (force - before) / (m * v * v * dt) if v else 0.0
+            alpha = min(max(2 * f * math.sqrt(max(quotient, 0.0)), 1e-3 / dt), 1 / dt)
         if way == "local":
             damped = force - f * abs(force) * sign(v)
         elif way == "combined":

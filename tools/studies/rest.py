@@ -19,7 +19,7 @@ import numpy as np
 
 from udec_ia import Model, UdecError
 
-LIMIT = 40_000
+LIMIT = 20_000
 CRITICAL, FREQUENCIES = (0.2, 0.5, 1.0), (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 STEPS = 10  # of slow loading
 

@@ -183,8 +183,8 @@ COMMANDS = (
         "Mass or Stiffness takes that half alone, which is fcrit/2 at that frequency. There is none "
         "by default. Or what only leads to rest: LOCAL takes the fraction f of every unbalanced force, "
         "against the velocity; COMBINED half of that, and half against the change of the force; KINETIC "
-        "stops all when the kinetic energy has passed a peak; ADAPTIVE is mass damping with the power f "
-        "times the change of the kinetic energy. None of these is physics.",
+        "stops all when the kinetic energy has passed a peak; ADAPTIVE is mass damping, of which f is "
+        "the fraction of critical for what moves. None of these is physics.",
         "DAMP 0.1 30 STIFFNESS",
         optional="fcrit freq",
         words=(
@@ -423,7 +423,7 @@ COMMANDS = (
         "SOLve",
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
         "over the mean of the forces that contacts and zones carry. LIMIT: cycles after which to give up, "
-        "100000 if it is left off. STATIC: with LOCAL damping, the greatest safe step and scaled masses, "
+        "100000 if it is left off. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, "
         "whatever DAMPING and FRACTION say; all stands still at its end.",
         "SOLVE 1E-3 LIMIT 20000",
         numbers="ratio",

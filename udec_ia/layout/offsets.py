@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "de64341874dfa03093dc5b951afbca64a304bd4240b4a9f1535fa454f8a81300"
+DIGEST = "54ef7793cdfdaf391f5ffc217e07eb7a0ea8fd441cc3b3e88f615cff1b12fc1b"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -34,7 +34,7 @@ UNDAMPED = 0  # LREST: not at all
 LOCAL = 1  # LREST: LOCAL: against the velocity, in proportion to the unbalanced force
 COMBINED = 2  # LREST: COMBINED: half of that, and half against the change of the unbalanced force
 KINETIC = 3  # LREST: KINETIC: velocities are put to 0 when the kinetic energy has passed a peak
-ADAPTIVE = 4  # LREST: ADAPTIVE: ALPHA follows the change of the kinetic energy
+ADAPTIVE = 4  # LREST: ADAPTIVE: ALPHA follows the frequency of the motion
 AT_BLOCKS = 0  # JPHASE: before the block pass, where a cycle begins
 AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass
@@ -280,7 +280,7 @@ CON2 = 5  # damping factor 1/(1 + ALPHA.TDEL/2)
 ALPB = 6  # internal mass damping coefficient for simply deformable blocks
 C1B = 7  # damping factor derived from ALPB
 C2B = 8  # damping factor derived from ALPB
-RESTF = 9  # of LOCAL and COMBINED: fraction of the unbalanced force; of ADAPTIVE: of the power
+RESTF = 9  # of LOCAL and COMBINED: fraction of the unbalanced force; of ADAPTIVE: of critical damping
 PSCALE = 10  # plotting scale; 0 lets the plot fill its frame
 ATOL = 11  # distance between particles at which a contact is first formed
 BTOL = 12  # distance between particles at which a contact is broken
@@ -331,6 +331,6 @@ ESTOR = 8  # kinetic energy and strain energy when the last CYCLE ended
 EPOT = 9  # potential of gravity then, against that at ENERGY ON
 EREF = 10  # potential of gravity against the origin that counts as 0
 WREST = 11  # energy taken by LOCAL, COMBINED and KINETIC damping since ENERGY ON
-EMOVES = 12  # kinetic energy in the cycle before (KINETIC, ADAPTIVE)
+EMOVES = 12  # kinetic energy in the cycle before (KINETIC)
 WDRIVE = 13  # work that the boundary conditions have put in so far, not less what they have taken
 NCOMD = 14

@@ -1,23 +1,26 @@
-"""KINETIC and ADAPTIVE damping: what the course of the kinetic energy tells.
+"""KINETIC and ADAPTIVE damping: what the motion of the whole model tells.
 
 KINETIC puts all velocities to 0 when the kinetic energy has passed a peak, where the forces are nearest to
-balance (Cundall 1976). ADAPTIVE is mass damping with an ALPHA that goes up or down by 2 % in each cycle, so
-that its power is RESTF times the rate of change of the kinetic energy (Cundall 1982).
+balance (Cundall 1976). ADAPTIVE is mass damping that is critical for what moves: with v the velocities, m the
+inertial masses and F' the forces of the cycle before, the frequency of the motion is that of Rayleigh,
+
+    w w = - sum v (F - F')/dt / sum m v v          ALPHA = 2 f w          (Underwood 1983)
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.inertial import energy_of_motion
 from udec_ia.kernels.energy.stored import kinetic
+from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
 
-FASTER = 1.02  # what ALPHA is multiplied or divided by in a cycle
-FIRST, LOWEST, HIGHEST = 1e-2, 1e-8, 0.5  # ALPHA times the time-step: at first, and its bounds
+LOWEST, HIGHEST = 1e-3, 1.0  # ALPHA times the time-step
 
 
 @kernel
@@ -63,30 +66,77 @@ def halt_all(h: Memory) -> None:
         h.cd[g.WREST] += before - kinetic(h, True)
 
 
+@inlined
+def yielding(h: Memory, ir: int, before: Offset, f: float, v: float) -> float:
+    """Velocity `v` times the growth of the force `f` since the cycle before, which is at `before` in `ir`."""
+    grown = np.float64(f - getr(h, ir, before)) * v
+    putr(h, ir, before, f)
+    return float(grown)
+
+
 @kernel
-def adapt(h: Memory, energy: float, change: float) -> None:
-    """ALPHA and what follows from it, where the kinetic energy has changed by `change` to `energy`."""
-    dt = np.float64(h.cr[g.TDEL])
-    alpha = np.float64(h.cr[g.ALPHA])
-    if alpha == 0:
-        alpha = FIRST / dt
-    elif 2.0 * alpha * energy * dt < np.float64(h.cr[g.RESTF]) * abs(change):
-        alpha = min(alpha * FASTER, HIGHEST / dt)
-    else:
-        alpha = max(alpha / FASTER, LOWEST / dt)
-    h.cr[g.ALPHA] = alpha
+def yielding_body(h: Memory, ib: int, ir: int) -> float:
+    """The same of all degrees of freedom of block `ib`, which has no grid-points."""
+    total = yielding(h, ir, g.KRXFX, getr(h, ib, g.KBFX), getr(h, ib, g.KXD))
+    total += yielding(h, ir, g.KRXFY, getr(h, ib, g.KBFY), getr(h, ib, g.KYD))
+    total += yielding(h, ir, g.KRXFT, getr(h, ib, g.KBFT), getr(h, ib, g.KTD))
+    if iget(h, ib, HEAD) == g.MSDEF:
+        ie = iget(h, ib, g.KBEX)
+        f11, f12, f22 = straining_force(h, ie)
+        total += yielding(h, ir, g.KRXS11, f11, getr(h, ie, g.KED11))
+        total += yielding(h, ir, g.KRXS12, f12, getr(h, ie, g.KED12)) * 2.0
+        total += yielding(h, ir, g.KRXS22, f22, getr(h, ie, g.KED22))
+    return total
+
+
+@kernel
+def yielding_all(h: Memory) -> float:
+    """The same of all that moves."""
+    total = 0.0
+    ir = int64(h.ci[g.IRXPNT])
+    ib = int64(h.ci[g.IBPNT])
+    while ib != 0:
+        free = iget(h, ib, g.KBFIX) != g.FIXED
+        if iget(h, ib, HEAD) == g.MFDEF:
+            ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+            while ig != 0:
+                if free:
+                    total += yielding(h, ir, g.KRXFX, getr(h, ig, g.KGFX), getr(h, ig, g.KXDG))
+                    total += yielding(h, ir, g.KRXFY, getr(h, ig, g.KGFY), getr(h, ig, g.KYDG))
+                ir = following(h, ir)
+                ig = iget(h, ig, g.KG)
+        else:
+            if free:
+                total += yielding_body(h, ib, ir)
+            ir = following(h, ir)
+        ib = iget(h, ib, g.KB)
+    return total
+
+
+@kernel
+def adapt(h: Memory) -> None:
+    """ALPHA and what follows from it, from what moves how fast, and by how much forces have grown."""
+    dt, energy = np.float64(h.cr[g.TDEL]), energy_of_motion(h)
+    grown = yielding_all(h)
+    alpha = LOWEST / dt
+    if energy > 0 and grown < 0:
+        alpha = max(2.0 * np.float64(h.cr[g.RESTF]) * np.sqrt(-grown / (2.0 * energy * dt)), alpha)
+    alpha = min(alpha, HIGHEST / dt)
+    h.cr[g.ALPHA] = h.cr[g.ALPB] = alpha
     half = alpha * dt * 0.5
-    h.cr[g.CON1], h.cr[g.CON2] = 1.0 - half, 1.0 / (1.0 + half)
+    h.cr[g.CON1] = h.cr[g.C1B] = 1.0 - half
+    h.cr[g.CON2] = h.cr[g.C2B] = 1.0 / (1.0 + half)
 
 
 @kernel
 def look_at_motion(h: Memory) -> None:
     """What KINETIC or ADAPTIVE does before the step that begins."""
-    energy = energy_of_motion(h)
-    change = energy - h.cd[g.EMOVES]
-    h.cd[g.EMOVES] = energy
     if h.ci[g.LREST] == g.ADAPTIVE:
-        adapt(h, energy, change)
-    elif change < 0:
+        adapt(h)
+        return
+    energy = energy_of_motion(h)
+    fallen = energy < h.cd[g.EMOVES]
+    h.cd[g.EMOVES] = energy
+    if fallen:
         halt_all(h)
         h.cd[g.EMOVES] = 0.0

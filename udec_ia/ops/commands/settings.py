@@ -86,7 +86,7 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 def set_relaxation(array: MainArray, how: str, f: float = 1.0) -> None:
     """DAMPING LOCAL f, COMBINED f, KINETIC and ADAPTIVE f: what leads to rest instead of mass damping.
 
-    f: fraction of the unbalanced force, or of the change of kinetic energy (kernels.drive.relax), up to 1.
+    f: fraction of the unbalanced force, or of critical damping (kernels.drive.relax), up to 1.
     All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
     """
     code = RELAXATIONS[how]

@@ -38,7 +38,7 @@ def relaxations_due(array: MainArray) -> bool:
 
 
 def _needed(array: MainArray) -> bool:
-    return bool(array.h.ci[g.LREST] == g.COMBINED or array.h.ci[g.LSCALE])
+    return bool(array.h.ci[g.LREST] in (g.COMBINED, g.ADAPTIVE) or array.h.ci[g.LSCALE])
 
 
 def renew_relaxations(array: MainArray) -> None:
