@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,11 @@ from udec_ia.layout import offsets as g
 
 KN, DENSITY = 1e8, 1000.0
 WAYS: list[dict[str, Any]] = [{"local": 0.8}, {"combined": 0.8}, {"kinetic": True}, {"adaptive": 0.7}]
+
+
+@pytest.fixture(autouse=True)
+def _histories_go_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
 def sign(v: float) -> float:
