@@ -11,9 +11,10 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError, as_completed
+from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from time import sleep
 from urllib.parse import urlsplit
@@ -93,6 +94,7 @@ def _in_processes(runs: list[Run], folder: Path, jobs: int, timed: bool) -> Iter
                 yield result
         except BrokenProcessPool:
             suspects = [run for run in left.values() if begun(run, folder)] or [*left.values()][:1]
+            clear(folder)
             for run in suspects:
                 yield _alone(run, folder, timed)
                 del left[run.name]
@@ -111,11 +113,16 @@ def _submitted(runs: list[Run], folder: Path, jobs: int, timed: bool) -> Iterato
     from joblib.externals.loky import ProcessPoolExecutor
 
     executor = ProcessPoolExecutor(jobs, initializer=_begin_worker, initargs=(os.getpid(),))
+    waiting = iter(runs)
     try:
-        if jobs > 1:
+        if min(jobs, len(runs)) > 1:
             executor.submit(rehearse, runs[0]).result()
-        for future in as_completed([executor.submit(obey, run, folder, timed) for run in runs]):
-            yield future.result()
+        going = {executor.submit(obey, run, folder, timed) for run in islice(waiting, jobs)}
+        while going:
+            done, going = wait(going, return_when=FIRST_COMPLETED)
+            going |= {executor.submit(obey, run, folder, timed) for run in islice(waiting, len(done))}
+            for future in done:
+                yield future.result()
     finally:
         executor.shutdown(wait=True, kill_workers=True)
 

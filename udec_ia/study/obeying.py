@@ -26,10 +26,10 @@ from udec_ia.errors import UdecError
 from udec_ia.model import Model
 from udec_ia.study.memory import peak_memory, restart_peak
 from udec_ia.study.reading import read
-from udec_ia.study.runs import DIED, ENDED, ERROR, Result, Run, write
+from udec_ia.study.runs import DECK, DIED, ENDED, ERROR, Result, Run, write
 from udec_ia.study.watching import Observer
 
-DECK, LOG = "deck.dat", "log.txt"
+LOG = "log.txt"
 BEGUN = "begun"  # file in the folder of a run that is not whole yet
 UNNAMED = ".run-"  # what the name of such a folder begins with
 log = logging.getLogger("udec_ia")

@@ -27,9 +27,11 @@ class Told:
             TextColumn("{task.description}"),
             TimeRemainingColumn(),
         )
-        self._bar = Progress(*columns, console=Console(file=stream, highlight=False), transient=True)
-        self._task = self._bar.add_task("", total=total)
+        self._bar: Progress | None = None
         if stream.isatty():
+            console = Console(file=stream, highlight=False)
+            self._bar = Progress(*columns, console=console, transient=True)
+            self._task = self._bar.add_task("", total=total)
             self._bar.start()
 
     def __call__(self, result: Result, why: str) -> None:
@@ -39,7 +41,7 @@ class Told:
         if why not in ("", KEPT):
             self.changed[why] = self.changed.get(why, 0) + 1
         line = told(result) + {"": "", KEPT: " (kept)"}.get(why, f" (anew: {why})")
-        if self.stream.isatty():
+        if self._bar is not None:
             self._bar.update(self._task, advance=1, description=printable(line))
             if result.status in (ERROR, DIED):
                 self._bar.console.print(line, markup=False)
@@ -48,7 +50,8 @@ class Told:
 
     def close(self) -> None:
         """Take the bar away."""
-        self._bar.stop()
+        if self._bar is not None:
+            self._bar.stop()
 
     @property
     def said(self) -> list[str]:

@@ -21,13 +21,14 @@ from udec_ia.errors import UdecError
 DIGITS = 12  # of the values of a logarithmic range between its ends
 MOST = 1_000_000  # values of a range
 FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
-Given = Value | str | Iterable[Value]
+Given = Value | Iterable[Value]
 
 
 def values_of(name: str, given: Given) -> list[Value]:
-    """The values of the variable `name`: one, several, or a text of the forms above. ValueError for others."""
+    """The values of the variable `name`: one, several, or a text as above. ValueError for others."""
     if not NAME.fullmatch(name):
         raise ValueError(f"{name!r} is no name of a variable: a letter, and letters, digits and _")
+    found: list[Value]
     if isinstance(given, str):
         texts = [part.strip() for part in given.split(",")]
         found = _range(name, given) if ":" in given else [_read(text) for text in texts]

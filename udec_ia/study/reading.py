@@ -90,7 +90,7 @@ def read(texts: Iterable[str]) -> list[Named]:
         one = Named(given[1] if given else text.strip(), _quantity(text, given.end() if given else 0))
         if one.name in (other.name for other in found):
             raise ValueError(
-                f"two quantities are called {one.name}: give one a name, as in NAME={text.strip()}"
+                f"two quantities are called {one.name}: give one of them a name, as in NAME = time"
             )
         found.append(one)
     return found

@@ -10,18 +10,23 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from udec_ia.deck.variables import Values
+from udec_ia.deck.language import COMMANDS, match
+from udec_ia.deck.parser import parse
+from udec_ia.deck.reader import statements
+from udec_ia.deck.variables import Values, Variables
+from udec_ia.errors import UdecError
 from udec_ia.heap.words import DEFAULT_SCHEME
 from udec_ia.ops.run.watch import Watch
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.version import __version__
 
-RESULT = "result.json"  # in the folder of a run
+RESULT, DECK = "result.json", "deck.dat"  # in the folder of a run
 EVERY = 100  # cycles between two looks whether to stop
 ENDED, ERROR, STOPPED, LATE, DIED = "ended", "error", "stopped", "timed out", "died"
 PACKAGE = Path(__file__).parent.parent
@@ -72,6 +77,7 @@ class Run:
             "deck": _digest(self.deck.encode()),
             "values": json.dumps({name: str(value) for name, value in sorted(self.values.items())}),
             "build": self.build,
+            "restart files": json.dumps(_restart_files(self)),
             "laws": json.dumps([_law(law) for law in self.constitutive]),
             "quantities": json.dumps(self.quantities),
             "rule to stop": json.dumps(self.stop) + looks,
@@ -145,6 +151,18 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(one) for one in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _restart_files(run: Run) -> list[str]:
+    """SHA-256 of the restart files that the deck names by their whole paths; others are its own."""
+    found: list[str] = []
+    with suppress(UdecError):  # which the run will end in
+        for statement in Variables(run.values).filled(statements(run.deck.splitlines(), run.file)):
+            command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+            if command is not None and command.name == "restart":
+                path = Path(parse(statement).named.get("path", ""))
+                found += [_digest(path.read_bytes())] if path.is_absolute() and path.is_file() else []
+    return found
 
 
 def _law(law: str) -> str:

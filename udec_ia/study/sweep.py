@@ -50,14 +50,14 @@ def sweep(
     dask: str = "",
     stream: TextIO | None = None,
 ) -> Sweep:
-    """Run `deck`, a path or a text, for all combinations of `values`; each run has a folder and a line of a table.
+    """Run `deck`, a path or a text, for all combinations of `values`: a folder and a line of a table each.
 
     values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7"
-    (ranges.py). quantities, stop, every, limit, build, constitutive: of each run (runs.Run). out: folder of it
-    all, by default NAME-sweep beside the working directory's other files; results that are there and made of
-    the same are taken. jobs, dask: who runs it (many.run_all). stream: takes how it is going.
-    A run that fails is a result. Raises ValueError for what is given wrongly, UdecError 7 and 10 for variables
-    of the deck, 31 if something cannot be written. Ctrl-C leaves the table of what is done.
+    (ranges.py). quantities, stop, every, limit, build, constitutive: of each run (runs.Run). out: folder of
+    it all, by default NAME-sweep in the working directory; results that are there and made of the same are
+    taken. jobs, dask: who runs it (many.run_all). stream: takes how it is going.
+    A run that fails is a result. Raises ValueError for what is given wrongly, UdecError 7 and 10 for
+    variables of the deck, 31 if something cannot be written. Ctrl-C leaves the table of what is done.
     """
     text, file = _read(deck)
     stem = Path(file).stem if file else "deck"

@@ -40,14 +40,14 @@ class Table:
     def listed(self, name: str) -> list[Any]:
         """A column, with Python's numbers."""
         column = self.columns[name]
-        return column.tolist() if isinstance(column, np.ndarray) else column
+        return list(column.tolist() if isinstance(column, np.ndarray) else column)
 
     def rows(self) -> list[tuple[Any, ...]]:
         """The lines, with Python's numbers."""
         return [*zip(*map(self.listed, self.columns), strict=True)]
 
     def write(self, base: Path, attributes: Mapping[str, str]) -> list[Path]:
-        """Write base.csv and base.h5, with attributes for the latter. Returns their names. Raises UdecError 31."""
+        """Write base.csv and base.h5, with attributes for the latter. Returns both names. UdecError 31."""
         paths = [base.with_name(f"{base.name}.{kind}") for kind in ("csv", "h5")]
         put_in_place(paths[0], self._csv(), _judge, force=False)
         put_in_place(paths[1], self._hdf5(attributes), force=False)

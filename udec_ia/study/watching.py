@@ -5,7 +5,6 @@ That changes no digit of the run: how a CYCLE is cut into pieces has no influenc
 
 from __future__ import annotations
 
-from contextlib import suppress
 from time import thread_time
 from typing import Any, TextIO
 
@@ -18,7 +17,7 @@ from udec_ia.model import Model
 from udec_ia.ops.run.watch import Watch
 from udec_ia.study.observed import NoValue, Start, State
 from udec_ia.study.reading import read, read_rule
-from udec_ia.study.runs import LATE, STOPPED, Run
+from udec_ia.study.runs import DECK, LATE, STOPPED, Run
 
 
 class Observer:
@@ -35,11 +34,12 @@ class Observer:
         asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
         self._start = Start(frozenset(one.place for one in asked if one.place is not None))
         self._watched = run.watcher(model)
+        self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
         self._clock, self._compiled = thread_time(), compile_seconds()
 
     def obey(self, out: TextIO) -> None:
         """Obey the deck of the run, whose output goes to `out`."""
-        name, text = self.run.file, self.run.deck
+        name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
         self.model.around = self._around
@@ -70,8 +70,9 @@ class Observer:
                 found[name] = quantity.value(state)
             except (NoValue, UdecError) as reason:
                 found[name] = float("nan")
-                remarks.append(f"{name} has no value: {getattr(reason, 'detail', reason)}")
-        return found, remarks
+                remarks.append(f"{name} has no value: {_said(reason)}")
+        never = (f"{rule} has never had a value: {why}" for rule, why in self._unknown.items() if why)
+        return found, [*remarks, *never]
 
     # ---- what happens on the way
 
@@ -97,11 +98,19 @@ class Observer:
         h = self.model.array.h
         whole = h.ci[g.JPHASE] == g.AT_BLOCKS and h.ci[g.NERR] == 0
         if self._rules and whole and h.ci[g.MCTOT] % self.run.every == 0:
-            state = self._state()
-            for rule in self._rules:
-                with suppress(NoValue, UdecError):  # not yet
-                    if rule.holds(state):
-                        self.over, self.why = STOPPED, rule.text
+            self._look_at_rules()
+
+    def _look_at_rules(self) -> None:
+        state = self._state()
+        for rule in self._rules:
+            try:
+                holds = rule.holds(state)
+            except (NoValue, UdecError) as reason:
+                self._unknown.setdefault(rule.text, _said(reason))
+                continue
+            self._unknown[rule.text] = ""
+            if holds and not self.over:
+                self.over, self.why = STOPPED, rule.text
 
     def _look_at_clock(self) -> None:
         if self.run.limit is not None and self.seconds > self.run.limit and not self.over:
@@ -109,6 +118,10 @@ class Observer:
 
     def _state(self) -> State:
         return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
+
+
+def _said(reason: Exception) -> str:
+    return reason.detail if isinstance(reason, UdecError) else str(reason)
 
 
 class _Monitor(Monitor):

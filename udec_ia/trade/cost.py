@@ -14,7 +14,6 @@ from udec_ia.trade.levers import Numbers
 from udec_ia.trade.surveyed import Segment
 
 
-
 @dataclass(frozen=True)
 class Rates:
     """apart: seconds beside cycles. each: seconds a cycle, of each CYCLE and SOLVE."""

@@ -80,7 +80,9 @@ class Deck:
     name: what errors call it. folder: where the names of its restart files begin.
     """
 
-    def __init__(self, text: str, name: str, values: Values | None = None, folder: Path | None = None) -> None:
+    def __init__(
+        self, text: str, name: str, values: Values | None = None, folder: Path | None = None
+    ) -> None:
         self.text, self.name, self.folder = text, name, folder or Path()
         variables = Variables(values)
         variables.check(text.splitlines(), name)
@@ -205,9 +207,7 @@ def _instead(one: Statement, text: str) -> list[str]:
     """The lines of a statement, `text` in the place of those with its words."""
     first = one.tokens[0].line
     words = {token.line for token in one.tokens}
-    return [
-        text if line == first else line.text for line in one.lines if line == first or line not in words
-    ]
+    return [text if line == first else line.text for line in one.lines if line == first or line not in words]
 
 
 def _put(one: Statement, texts: dict[Token, str]) -> list[str]:

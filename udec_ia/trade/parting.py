@@ -42,7 +42,9 @@ def parting(one: Path, two: Path, share: float) -> Parting | None:
 
 def _apart(first: Any, a: Any, b: Any) -> Any:
     """How far each block of `first` is from itself in two states; 0 if one of them has it no more."""
-    return np.where(_has(a, first) & _has(b, first), np.hypot(*(_places(a, first) - _places(b, first)).T), 0.0)
+    return np.where(
+        _has(a, first) & _has(b, first), np.hypot(*(_places(a, first) - _places(b, first)).T), 0.0
+    )
 
 
 def _has(rows: Any, first: Any) -> Any:

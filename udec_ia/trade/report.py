@@ -153,4 +153,3 @@ def half_step(price: Price) -> list[str]:
             f"{' of it: THE TIME-STEP IS TOO LARGE' if differs else ''}"
         )
     return found
-

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TextIO
 
 from udec_ia.deck.variables import Values
 from udec_ia.heap.words import DEFAULT_SCHEME
 from udec_ia.study.many import RUNS, run_all
+from udec_ia.study.progress import Told
 from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade import candidates, cost
 from udec_ia.trade.judge import Row, judge, margin, recommended
@@ -30,7 +33,6 @@ SURVEYED, REHEARSAL = "survey", "rehearsal"
 REHEARSED = 0.03  # seconds of each CYCLE in a rehearsal
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
 MOST_REST = 12.0  # order with which values may converge where rest is sought more closely from level to level
-Tell = Callable[[str], None]
 
 
 @dataclass
@@ -67,7 +69,7 @@ class Options:
     """What a price list is asked for. budget: seconds of the clock. jobs: see many.run_all.
 
     builds: word schemes beside the one with 64-bit reals; by default the one with 32-bit reals. half_step: run
-    the deck and the same with half the step, and nothing else.
+    the deck and the same with half the step, and nothing else. stream: takes how it is going.
     """
 
     quantities: tuple[str, ...] = QUANTITIES
@@ -78,8 +80,11 @@ class Options:
     constitutive: tuple[str, ...] = ()
     jobs: int | None = None
     half_step: bool = False
-    told: Callable[[Result, str], None] = lambda result, why: None
-    tell: Tell = lambda text: None
+    stream: TextIO = field(default_factory=io.StringIO)
+
+    def tell(self, text: str) -> None:
+        """Show how it is going."""
+        print(text, file=self.stream, flush=True)
 
 
 class Shop:
@@ -137,7 +142,9 @@ class Shop:
         put = numbers(self.survey, setting)
         decades = max(-math.log10(setting.ratio), 0.0)
         cycles = cost.cycles_of(self.survey, put)
-        cycles = [n * (1 + decades / 3) if one.solve else n for n, one in zip(cycles, self.survey, strict=True)]
+        cycles = [
+            n * (1 + decades / 3) if one.solve else n for n, one in zip(cycles, self.survey, strict=True)
+        ]
         return Row(setting, put, self.rates[setting.build].seconds(cycles))
 
     def price(self, rows: Sequence[Row]) -> float:
@@ -161,8 +168,11 @@ class Shop:
         return dropped
 
     def _all(self, runs: list[Surveyed]) -> list[Result]:
-        jobs = self.options.jobs
-        return run_all(runs, self.folder, jobs=jobs, timed=True, told=self.options.told)
+        told = Told(self.options.stream, len(runs))
+        try:
+            return run_all(runs, self.folder, jobs=self.options.jobs, timed=True, told=told)
+        finally:
+            told.close()
 
     def _segments(self, name: str) -> list[Segment]:
         return segments(self.folder / RUNS / name)
@@ -182,7 +192,9 @@ def trade(
     ahead = shop.rehearsed()
     options.tell(f"the deck as it is will take {ahead:.3g} s by the rehearsal")
     if ahead > options.budget:
-        price.said.append(f"the deck as it is takes {ahead:.3g} s, more than the budget of {options.budget:g} s")
+        price.said.append(
+            f"the deck as it is takes {ahead:.3g} s, more than the budget of {options.budget:g} s"
+        )
         return price
     result = shop.look()
     if result.status != ENDED or not shop.survey:
@@ -221,9 +233,7 @@ def _reference(price: Price, shop: Shop) -> None:
             shop.options.tell("the budget does not allow a finer reference")
         price.levels += [row for row in wanted if row.ran]
         names = _names(price)
-        values = {
-            name: [row.result.quantities[name] for row in price.levels if row.result] for name in names
-        }
+        values = {name: [row.result.quantities[name] for row in price.levels if row.result] for name in names}
         price.limits = {name: limit(found, most) for name, found in values.items()}
         price.known = judge(price.rows, price.limits, price.tolerance)
         unknown = [name for name in names if name not in price.known and shrinks(values[name])]
@@ -244,7 +254,9 @@ def _settings(price: Price, shop: Shop) -> None:
         least = min((row.setting.step for row in price.levels), default=1.0)
         done = {row.setting for row in price.rows}
         finer = candidates.shorter(shop.builds, least)
-        _try(price, shop, [one for one in [*finer, *candidates.tighter(price.deck, finer)] if one not in done])
+        _try(
+            price, shop, [one for one in [*finer, *candidates.tighter(price.deck, finer)] if one not in done]
+        )
 
 
 def _try(price: Price, shop: Shop, settings: Iterable[Setting]) -> None:

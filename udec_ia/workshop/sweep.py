@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.workshop.common import command, given
+from udec_ia.workshop.common import command, given, seconds
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
 VERBS = ("sweep",)
 TEXT = "run a deck for all combinations of values of its variables: a folder and a line of a table each"
-SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
+REPEATED = (
+    (
+        "--set",
+        "NAME=VALUES",
+        "values of a variable: 0.3:0.9:20 (first:last:number), 1e6:1e9:4:log, or 0.1,0.2",
+    ),
+    ("--quantity", "QUANTITY", 'column of the table, as in "force = max contact.KCFN"'),
+    ("--stop", "RULE", 'a run ends when this holds, as in "max block.KXD > 1"'),
+    ("--constitutive", "LAW", "as for udec run"),
+)
 SHOWN = ("status", "cycles", "seconds", "message")  # columns that are printed, beside values and quantities
 
 
@@ -25,28 +33,13 @@ def add_commands(commands: Any) -> None:
 
     parser = command(commands, "sweep", TEXT, _sweep, _script)
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands with variables ($F)")
-    many = {"action": "append", "default": []}
-    parser.add_argument(
-        "--set",
-        **many,
-        metavar="NAME=VALUES",
-        help="values of a variable: 0.3:0.9:20 (first:last:number), 1e6:1e9:4:log, or 0.1,0.2; repeatable",
-    )
-    parser.add_argument(
-        "--quantity",
-        **many,
-        metavar="QUANTITY",
-        help='column of the table: "e = max contact.KCFN"; repeatable',
-    )
-    parser.add_argument(
-        "--stop", **many, metavar="RULE", help='end a run when "max block.KXD > 1"; repeatable'
-    )
+    for option, metavar, text in REPEATED:
+        parser.add_argument(option, action="append", default=[], metavar=metavar, help=f"{text}; repeatable")
     parser.add_argument("--every", type=int, metavar="N", help="cycles between two looks at the rules (100)")
     parser.add_argument(
         "--limit", metavar="TIME", help="processor time after which a run is ended: 60s, 5m, 1h"
     )
     parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
-    parser.add_argument("--constitutive", **many, metavar="LAW", help="as for udec run")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-sweep)")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
     parser.add_argument("--dask", default="", metavar="ADDRESS", help="run on the workers of this scheduler")
@@ -83,7 +76,7 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
         "quantities": args.quantity,
         "stop": args.stop,
         "every": args.every,
-        "limit": None if args.limit is None else _seconds(args.limit),
+        "limit": None if args.limit is None else seconds("--limit", args.limit),
         "build": args.build,
         "constitutive": args.constitutive,
         "out": args.out,
@@ -91,14 +84,6 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
         "dask": args.dask,
     }
     return {name: value for name, value in options.items() if value not in (None, [], "")}
-
-
-def _seconds(text: str) -> float:
-    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
-    found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
-    if found is None:
-        raise ValueError(f"--limit {text}: give a time as in 60s, 5m or 1h")
-    return float(found[1]) * SECONDS[found[2]]
 
 
 def _script(args: argparse.Namespace) -> str:

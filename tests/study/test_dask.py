@@ -1,0 +1,104 @@
+"""Studies on a scheduler of dask.distributed with two workers, one of which is killed on the way."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from studies import PILE, ROOT, piles, wait_until
+
+from udec_ia import UdecError
+from udec_ia.cli import main
+from udec_ia.study.many import RUNS, run_all
+from udec_ia.study.obeying import UNNAMED
+from udec_ia.study.runs import Result
+
+FRICTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """The address of a scheduler, and its two workers; all of them processes of their own."""
+    pytest.importorskip("distributed", reason="dask.distributed is not installed: pip install udec-ia[dask]")
+    address = tmp_path / "scheduler.json"
+    common = ("--scheduler-file", str(address))
+    with ExitStack() as stack:
+
+        def start(*arguments: str) -> subprocess.Popen[bytes]:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "dask", *arguments, *common],
+                cwd=tmp_path,
+                env=os.environ | {"PYTHONPATH": str(ROOT)},
+                stderr=subprocess.DEVNULL,
+            )
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            return process
+
+        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+        workers = [start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard") for _ in range(2)]
+        wait_until(address.exists)
+        import json
+
+        from distributed import Client
+
+        where = ""
+
+        def there() -> bool:
+            nonlocal where
+            where = json.loads(address.read_text() or "{}").get("address", "")
+            return bool(where)
+
+        wait_until(there)
+        with Client(where, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield where, workers
+
+
+def test_a_worker_that_is_killed_is_made_up_for(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], tmp_path: Path
+) -> None:
+    """It is killed while both workers have a run; the results are those of a single process, bit for bit."""
+    address, workers = cluster
+    runs = piles(*FRICTIONS, cycles=6000)
+    killed: list[str] = []
+
+    def told(result: Result, _: str) -> None:
+        folder = tmp_path / "dask" / RUNS
+        if not killed:
+            wait_until(lambda: len([*folder.glob(f"{UNNAMED}*")]) == 2)
+            os.kill(workers[0].pid, signal.SIGKILL)
+            killed.append(result.name)
+
+    results = run_all(runs, tmp_path / "dask", dask=address, told=told)
+    serial = run_all(runs, tmp_path / "serial", jobs=0)
+    assert killed
+    assert workers[0].wait(10) == -signal.SIGKILL
+    assert workers[1].poll() is None
+    assert [one.outcome for one in results] == [one.outcome for one in serial]
+    assert [one.status for one in results] == ["ended"] * len(runs)
+
+
+def test_an_address_where_nobody_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("distributed", reason="dask.distributed is not installed: pip install udec-ia[dask]")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("udec_ia.study.many.CONNECT", 1)
+    Path("pile.dat").write_text(PILE)
+    for wrong in ("tcp://127.0.0.1:9", "nonsense://x"):
+        assert main(["sweep", "pile.dat", "--set", "F=0.1,0.2", "--dask", wrong]) == 2
+        assert f"udec sweep: no dask scheduler at {wrong}" in capsys.readouterr().err
+
+
+def test_without_dask_it_is_said_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UdecError, match="23") as caught:
+        run_all(piles(0.1), tmp_path, dask="tcp://127.0.0.1:9")
+    assert "udec-ia[dask]" in caught.value.advice

@@ -1,0 +1,108 @@
+"""`udec trade DECK`: what accuracy costs, for this deck; --half-step, --digits and --blame ask less, or more."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.workshop.common import command, given, seconds, variables
+
+if TYPE_CHECKING:
+    from udec_ia.inspect.look.listing import Listing, Tables
+    from udec_ia.trade.trade import Options, Price
+
+VERBS = ("trade",)
+TEXT = "find the cheapest time-step and word scheme for a deck that keep to a tolerance"
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser = command(commands, "trade", TEXT, _trade, _script)
+    parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
+    variables(parser)
+    many = {"action": "append", "default": []}
+    parser.add_argument(
+        "--quantity", **many, metavar="QUANTITY", help='what must be right: "max contact.KCFN"; repeatable'
+    )
+    parser.add_argument("--tolerance", type=float, metavar="SHARE", help="greatest error (default: 1e-3)")
+    parser.add_argument(
+        "--budget", default="5m", metavar="TIME", help="time it all may take: 60s, 5m, 1h (5m)"
+    )
+    parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
+    parser.add_argument("--builds", metavar="A,B", help="word schemes to try (default: with half the reals)")
+    parser.add_argument("--constitutive", **many, metavar="LAW", help="as for udec run")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-trade)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--half-step", action="store_true", help="only compare with half the step (report 4.6)")
+
+
+def _trade(args: argparse.Namespace) -> Listing | Tables:
+    from udec_ia.inspect.look.listing import Listing
+    from udec_ia.trade.report import COLUMNS, half_step, sentences, table
+    from udec_ia.trade.trade import trade
+
+    text = args.deck.read_text(encoding="utf-8-sig", errors="replace")
+    price = trade(text, args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent)
+    if args.half_step:
+        return Listing(price.said if len(price.levels) < 2 else half_step(price))
+    files = _files(price, args)
+    written = [f"written: {', '.join(map(str, files))}"] if files else []
+    return Listing([*sentences(price), *written], COLUMNS, table(price), 0 if price.best else 1)
+
+
+def _files(price: Price, args: argparse.Namespace) -> list[Path]:
+    from udec_ia.study.table import Table
+    from udec_ia.trade.picture import draw
+    from udec_ia.trade.report import COLUMNS, table
+
+    rows = table(price)
+    if not rows:
+        return []
+    base = _folder(args) / f"{args.deck.stem}-trade"
+    columns = dict(zip(("run", *COLUMNS[1:]), zip(*rows, strict=True), strict=True))
+    files = Table(columns).write(base, {"deck": price.deck.text})
+    return files + draw(price, f"{args.deck.name}: what accuracy costs", base)
+
+
+def _folder(args: argparse.Namespace) -> Path:
+    return args.out or Path(f"{args.deck.stem}-trade")
+
+
+def _options(args: argparse.Namespace) -> Options:
+    from udec_ia.heap.words import scheme
+    from udec_ia.trade.trade import Options
+
+    if args.tolerance is not None and not args.tolerance > 0:
+        raise ValueError(f"--tolerance {args.tolerance:g}: give more than 0")
+    builds = tuple(one.strip() for one in (args.builds or "").split(",") if one.strip())
+    for build in builds:
+        scheme(build)
+    named: dict[str, Any] = {
+        "quantities": tuple(args.quantity),
+        "tolerance": args.tolerance,
+        "budget": seconds("--budget", args.budget),
+        "build": args.build,
+        "builds": builds,
+        "constitutive": tuple(args.constitutive),
+        "jobs": args.jobs,
+        "half_step": args.half_step,
+        "stream": sys.stderr,
+    }
+    return Options(**{name: value for name, value in named.items() if value not in (None, ())})
+
+
+def _script(args: argparse.Namespace) -> str:
+    return (
+        "from pathlib import Path\n\n"
+        "from udec_ia.trade.report import sentences\n"
+        "from udec_ia.trade.trade import Options, trade\n\n"
+        f"options = Options(tolerance={args.tolerance or 1e-3!r}, quantities={tuple(args.quantity)!r} or Options.quantities)\n"
+        f"deck = Path({str(args.deck)!r})\n"
+        f"price = trade(deck.read_text(), deck.name, {given(args.set)!r}, Path({str(_folder(args))!r}), options)\n"
+        "print(*sentences(price), sep='\\n')"
+    )
