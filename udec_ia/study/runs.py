@@ -66,7 +66,7 @@ class Run:
         object.__setattr__(self, "constitutive", laws)
 
     def watcher(self, model: Any) -> Callable[[Watch], Watch]:
-        """Gives for the watch of each CYCLE or SOLVE of its model another one: runs of other studies see more."""
+        """Gives another one for the watch of each CYCLE or SOLVE of its model: other studies see more."""
         return lambda watch: watch
 
     @property

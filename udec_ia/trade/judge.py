@@ -18,8 +18,8 @@ SPREAD = 0.5  # of the tolerance: what the error of a reference may be
 class Row:
     """A setting, and what came of it.
 
-    predicted: seconds. result: None for what was dropped. cost: seconds by the rates of the survey and the cycles
-    that it took. errors: share of the reference, by quantity.
+    predicted: seconds. result: None for what was dropped. cost: seconds by the rates of the survey and the
+    cycles that it took. errors: share of the reference, by quantity.
     """
 
     setting: Setting

@@ -1,7 +1,7 @@
 """Settings, and the deck that a setting makes of the user's deck: other numbers in some of its lines.
 
-The lines stay where they are, as far as can be, so that numbers of lines mean the same in both. What only shows
-or saves is left out as a comment: it takes as long at any setting.
+The lines stay where they are, as far as can be, so that numbers of lines mean the same in both. What only
+shows or saves is left out as a comment: it takes as long at any setting.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ class Setting:
 class Numbers:
     """What a setting puts into the lines that count cycles.
 
-    fit: times the fraction that is asked for, a little below 1. cycles: of each CYCLE and SOLVE, in order; None
-    as they are. longer: of each of these, time-step of the deck over the new one.
+    fit: times the fraction that is asked for, a little below 1. cycles: of each CYCLE and SOLVE, in order;
+    None as they are. longer: of each of these, time-step of the deck over the new one.
     """
 
     fit: float = 1.0

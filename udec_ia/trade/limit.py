@@ -1,13 +1,14 @@
 """What a quantity tends to as the time-step is halved again and again, and how far that is known.
 
-Three values v1, v2, v3 of a step, a half and a quarter of it. If the differences d1 = v2 - v1 and d2 = v3 - v2 have
-one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the power p of the step, and
+Three values v1, v2, v3 of a step, a half and a quarter of it. If the differences d1 = v2 - v1 and d2 = v3 -
+v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the power p of the step, and
 
     v = v3 + d2 / (2^p - 1)
 
-(Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement studies,
-J. Fluids Eng. 116, 1994, asks for). The error of v is taken to be the whole correction. Else v3 is what there is, and
-the greatest of all differences its error: small, or none of the values means anything beyond it.
+(Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
+studies, J. Fluids Eng. 116, 1994, asks for). The error of v is taken to be the whole correction. Else v3 is
+what there is, and the greatest of all differences its error: small, or none of the values means anything
+beyond it.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 LEAST, MOST = 0.5, 3.0  # orders that are one
 
@@ -54,7 +56,7 @@ def limit(values: Sequence[float], most: float = MOST) -> Limit | None:
         return None
     if len(finite) == 1:
         return Limit(finite[0], math.inf)
-    differences = [b - a for a, b in zip(finite, finite[1:], strict=False)]
+    differences = [b - a for a, b in pairwise(finite)]
     if len(finite) > 2:
         one, two = differences[-2:]
         if one == two == 0:

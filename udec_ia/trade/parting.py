@@ -11,7 +11,7 @@ from udec_ia.trade.surveyed import tracks
 
 
 class Parting(NamedTuple):
-    """time: from which on a block is elsewhere (s). x, y: where it was at first. apart: how far at the end (m).
+    """time: from which on a block is elsewhere (s). x, y: where it was at first. apart: at the end (m).
 
     moved: the greatest way of any block (m).
     """
@@ -24,7 +24,7 @@ class Parting(NamedTuple):
 
 
 def parting(one: Path, two: Path, share: float) -> Parting | None:
-    """Where the runs in two folders part by more than `share` of the greatest way of a block, None if nowhere."""
+    """Where the runs in two folders part by more than `share` of the greatest way; None if nowhere."""
     pairs = [*zip(tracks(one), tracks(two), strict=False)]
     if not pairs:
         return None
@@ -37,7 +37,8 @@ def parting(one: Path, two: Path, share: float) -> Parting | None:
         return None
     mark = int(np.argmax(stays.any(axis=1)))
     block = int(np.argmax(np.where(stays[mark], apart[mark], -1.0)))
-    return Parting(pairs[mark][0][0], *map(float, first[block, 1:]), float(apart[-1, block]), moved)
+    x, y = map(float, first[block, 1:])
+    return Parting(pairs[mark][0][0], x, y, float(apart[-1, block]), moved)
 
 
 def _apart(first: Any, a: Any, b: Any) -> Any:

@@ -97,8 +97,9 @@ def _of_partings(price: Price) -> Iterator[str]:
             yield f"{names}: no block is elsewhere by more than the tolerance of the greatest way"
         else:
             yield (
-                f"{names} part at {found.time:.4g} s: the block that was at ({found.x:.4g}, {found.y:.4g}) is "
-                f"elsewhere from then on, by {found.apart:.3g} m at the end; the greatest way is {found.moved:.3g} m"
+                f"{names} part at {found.time:.4g} s: the block that was at ({found.x:.4g}, {found.y:.4g}) "
+                f"is elsewhere from then on, by {found.apart:.3g} m at the end; "
+                f"the greatest way is {found.moved:.3g} m"
             )
 
 
@@ -109,15 +110,15 @@ def _of_best(price: Price) -> list[str]:
     if row is None:
         least = min(price.rows, key=lambda row: row.error)
         return [
-            f"no setting that was run is within {price.tolerance:g}: the least error is {least.error:.2e}, of "
-            f"{least.setting.name}; a greater --budget or --tolerance may help"
+            f"no setting that was run is within {price.tolerance:g}: the least error is {least.error:.2e}, "
+            f"of {least.setting.name}; a greater --budget or --tolerance may help"
         ]
     own = next(one for one in price.levels if one.setting.step == 1)
     gain = own.cost / row.cost if row.cost else 1.0
     known = max(price.margins[name] for name in row.errors)
     said = [
-        f"recommended for {price.tolerance:g}: {row.setting.name}, error {row.error:.2e} (known to {known:.1e}), "
-        f"{row.cost:.3g} s, {gain:.2f} times as fast as the deck as it is in 64-bit reals"
+        f"recommended for {price.tolerance:g}: {row.setting.name}, error {row.error:.2e} "
+        f"(known to {known:.1e}), {row.cost:.3g} s: {gain:.2f} times as fast as the deck as it is"
     ]
     return said + [f"  {line}" for line in changes(price, row)]
 
@@ -141,11 +142,10 @@ def changes(price: Price, row: Row) -> list[str]:
 
 def half_step(price: Price) -> list[str]:
     """The check of report 4.6: the same run with half the time-step and twice the cycles."""
-    one, half = price.levels[:2]
-    assert one.result is not None and half.result is not None
+    one, half = (row.result.quantities for row in price.levels[:2] if row.result)
     found = []
     for name in price.limits:
-        a, b = one.result.quantities[name], half.result.quantities[name]
+        a, b = one[name], half[name]
         off = abs(a - b) / abs(b) if b else (0.0 if a == b else math.inf)
         differs = off > price.tolerance
         found.append(

@@ -1,7 +1,8 @@
 """How many cycles each CYCLE must have with another time-step, for the same time.
 
 What a CYCLE cannot have of its time in whole cycles, half a step at most, is left to the next one. Of the
-fractions up to FIT below the one that is asked for, the one that leaves least is taken, the greatest of equals.
+fractions up to FIT below the one that is asked for, the one that leaves least is taken, the greatest of
+equals.
 """
 
 from __future__ import annotations

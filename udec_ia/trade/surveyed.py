@@ -1,6 +1,7 @@
 """A run that is watched CYCLE by CYCLE: time-steps, seconds, and where blocks are on the way.
 
-What is found goes to two files in the folder of the run. How a CYCLE is cut into pieces changes no digit of it.
+What is found goes to two files in the folder of the run. How a CYCLE is cut into pieces changes no digit of
+it.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ REHEARSED = 256  # cycles of a piece of a rehearsal, at most
 class Segment:
     """One CYCLE or SOLVE.
 
-    asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the estimate,
-    or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0 if not asked
-    for. seconds: of the processor, without compiling.
+    asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the
+    estimate, or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0
+    if not asked for. seconds: of the processor, without compiling.
     """
 
     asked: int

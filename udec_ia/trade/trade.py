@@ -37,10 +37,10 @@ MOST_REST = 12.0  # order with which values may converge where rest is sought mo
 
 @dataclass
 class Price:
-    """The price list. rows: of all settings that were thought of. limits: of the quantities, None without one.
+    """The price list. rows: of all settings. limits: of the quantities, None without one.
 
-    known: quantities that can be compared. levels: rows of the reference, the step halved from one to the next.
-    best: what to take. fraction: that the deck begins with. said: sentences.
+    known: quantities that can be compared. levels: rows of the reference, the step halved from one to the
+    next. best: what to take. fraction: that the deck begins with. said: sentences.
     """
 
     deck: Deck
@@ -68,8 +68,8 @@ class Price:
 class Options:
     """What a price list is asked for. budget: seconds of the clock. jobs: see many.run_all.
 
-    builds: word schemes beside the one with 64-bit reals; by default the one with 32-bit reals. half_step: run
-    the deck and the same with half the step, and nothing else. stream: takes how it is going.
+    builds: word schemes beside the one with 64-bit reals; by default the one with 32-bit reals. half_step:
+    run the deck and the same with half the step, and nothing else. stream: takes how it is going.
     """
 
     quantities: tuple[str, ...] = QUANTITIES
@@ -181,7 +181,7 @@ class Shop:
 def trade(
     text: str, name: str, values: Values | None, folder: Path, options: Options, where: Path | None = None
 ) -> Price:
-    """The price list of the deck `text`. name: of its file. where: its folder. folder: for all that is written.
+    """The price list of the deck `text`. name: of its file. where: its folder. folder: for what is written.
 
     Raises UdecError for what is wrong with the deck, and if nothing can be written.
     """
