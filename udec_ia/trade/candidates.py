@@ -29,7 +29,7 @@ def longer(deck: Deck, survey: Sequence[Segment], builds: Sequence[str]) -> list
     for build in builds:
         step = 1.0
         while step <= LONGEST * 1.01:
-            one = Setting(build, step)
+            one = Setting(build, rounded(step))
             if step == 1 or share_of_bound(survey, one) <= BEYOND:
                 found.append(one)
             step *= RUNG
@@ -52,9 +52,14 @@ def shorter(builds: Sequence[str], least: float) -> list[Setting]:
     found: list[Setting] = []
     step = 1 / RUNG
     while step > least * 0.99:
-        found += [Setting(build, step) for build in builds]
+        found += [Setting(build, rounded(step)) for build in builds]
         step /= RUNG
     return found
+
+
+def rounded(step: float) -> float:
+    """A step as it is written: no two of one name differ in their last digits."""
+    return float(f"{step:.4g}")
 
 
 def has_static() -> bool:

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from udec_ia.study.runs import Result
-from udec_ia.trade.levers import Numbers
+from udec_ia.trade.levers import Numbers, Setting
+from udec_ia.trade.steps import to_rest
 from udec_ia.trade.surveyed import Segment
 
 
@@ -44,9 +45,9 @@ def scaled(one: Rates, factor: float) -> Rates:
     return Rates(one.apart, tuple(rate * factor for rate in one.each))
 
 
-def cycles_of(survey: Sequence[Segment], numbers: Numbers) -> list[float]:
+def cycles_of(survey: Sequence[Segment], numbers: Numbers, setting: Setting) -> list[float]:
     """Cycles of each CYCLE and SOLVE, the latter as far as can be known."""
     found: list[float] = []
     for one, n, longer in zip(survey, numbers.cycles, numbers.longer, strict=True):
-        found.append(one.done * longer if n is None else float(n))
+        found.append(to_rest(one, longer, setting) if n is None else float(n))
     return found

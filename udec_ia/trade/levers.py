@@ -48,7 +48,7 @@ class Setting:
         if self.safe:
             parts.append(f"safe={self.safe:.3g}")
         elif not self.static:
-            parts.append(f"step={self.step:.3g}")
+            parts.append(f"step={self.step:.4g}")
         times = {
             "ratio": self.ratio,
             "round": self.rounding,
@@ -66,12 +66,14 @@ class Numbers:
     """What a setting puts into the lines that count cycles.
 
     fit: times the fraction that is asked for, a little below 1. cycles: of each CYCLE and SOLVE, in order;
-    None as they are. longer: of each of these, time-step of the deck over the new one.
+    None as they are. longer: of each of these, time-step of the deck over the new one. most: cycles of each
+    SOLVE, after which it gives up; None as it is.
     """
 
     fit: float = 1.0
     cycles: tuple[int | None, ...] = ()
     longer: tuple[float, ...] = ()
+    most: tuple[int | None, ...] = ()
 
 
 class Deck:
@@ -170,7 +172,8 @@ class Deck:
             cycles = numbers.cycles[run] if run < len(numbers.cycles) else None
             return _instead(one, f"CYCLE {cycles}") if cycles is not None else _lines(one)
         if name == "solve":
-            return _instead(one, _solve(one, setting, longer))
+            most = numbers.most[run] if run < len(numbers.most) else None
+            return _instead(one, _solve(one, setting, longer, most))
         if name == "history":
             every = max(1, round(parse(one).positional[0] * longer))
             return _put(one, {one.tokens[1]: str(every)})
@@ -250,9 +253,11 @@ def _fraction(setting: Setting, numbers: Numbers, own: float, safe: bool) -> str
     return f"FRACTION {fraction:.10g}{' SAFE' if safe or setting.safe else ''}"
 
 
-def _solve(one: Statement, setting: Setting, longer: float) -> str:
+def _solve(one: Statement, setting: Setting, longer: float, most: int | None) -> str:
+    """SOLVE. most: cycles, if that is less than what the deck allows."""
     call = parse(one)
     limit = round(call.named.get("limit", LIMIT) * max(longer, 1.0) / min(setting.ratio, 1.0))
+    limit = min(limit, most or limit)
     static = " STATIC" if setting.static or call.named.get("static") else ""
     return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}"
 

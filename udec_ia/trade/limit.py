@@ -6,16 +6,17 @@ v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the p
     v = v3 + d2 / (2^p - 1)
 
 (Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
-studies, J. Fluids Eng. 116, 1994, asks for). The error of v is taken to be the whole correction. Else v3 is
-what there is, and the greatest of all differences its error: small, or none of the values means anything
-beyond it.
+studies, J. Fluids Eng. 116, 1994, asks for). The error of v is taken to be the whole correction, or, with
+four values, what the fourth has moved it by, if that is less: an extrapolation is no farther off than the
+one before it. Else v3 is what there is, and the greatest of all differences its error: small, or none of
+the values means anything beyond it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 LEAST, MOST = 0.5, 3.0  # orders that are one
@@ -56,15 +57,28 @@ def limit(values: Sequence[float], most: float = MOST) -> Limit | None:
         return None
     if len(finite) == 1:
         return Limit(finite[0], math.inf)
+    extrapolated = _extrapolated(finite[-3:], most)
+    if extrapolated is not None:
+        before = _extrapolated(finite[-4:-1], most)
+        if before is None:
+            return extrapolated
+        moved = abs(extrapolated.value - before.value)
+        return replace(extrapolated, error=min(extrapolated.error, moved))
     differences = [b - a for a, b in pairwise(finite)]
-    if len(finite) > 2:
-        one, two = differences[-2:]
-        if one == two == 0:
-            return Limit(finite[-1], 0.0)
-        if one * two > 0 and LEAST <= (order := math.log2(one / two)) <= most:
-            correction = two / (2**order - 1)
-            return Limit(finite[-1] + correction, abs(correction), order)
     return Limit(finite[-1], max(map(abs, differences[-2:])))
+
+
+def _extrapolated(values: Sequence[float], most: float) -> Limit | None:
+    """What three values tend to, None if they have no order."""
+    if len(values) < 3:
+        return None
+    one, two = (b - a for a, b in pairwise(values))
+    if one == two == 0:
+        return Limit(values[-1], 0.0)
+    if one * two > 0 and LEAST <= (order := math.log2(one / two)) <= most:
+        correction = two / (2**order - 1)
+        return Limit(values[-1] + correction, abs(correction), order)
+    return None
 
 
 def shrinks(values: Sequence[float]) -> bool:

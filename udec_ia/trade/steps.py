@@ -7,6 +7,7 @@ equals.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from udec_ia.trade.levers import Numbers, Setting
@@ -14,13 +15,15 @@ from udec_ia.trade.surveyed import Segment
 
 FIT = 0.06  # the greatest share by which a time-step may be smaller than it was asked for
 TRIED = 60  # fractions that are tried at most
+PATIENCE = 5  # times the cycles that a SOLVE is expected to take
 SAME = 1e-9  # of the time: what does not count as left
 
 
 def numbers(survey: Sequence[Segment], setting: Setting) -> Numbers:
     """What `setting` puts in the lines that count cycles. survey: of the deck as it is, with limits."""
     if setting.static:
-        return Numbers(1.0, tuple(None for _ in survey), tuple(1.0 for _ in survey))
+        same = tuple(1.0 for _ in survey)
+        return Numbers(1.0, tuple(None for _ in survey), same, _most(survey, same, setting))
     timed = [one for one in survey if not one.solve and one.asked > 0]
     fits = [1.0]
     if timed:
@@ -33,7 +36,8 @@ def numbers(survey: Sequence[Segment], setting: Setting) -> Numbers:
     left = [max(map(abs, _cycles(survey, setting, fit)[1]), default=0.0) for fit in fits]
     best = next(k for k, one in enumerate(left) if one <= min(left) + (SAME * total if timed else 0.0))
     longer = tuple(one.step / (_step(one, setting) * fits[best]) for one in survey)
-    return Numbers(fits[best], _cycles(survey, setting, fits[best])[0], longer)
+    cycles = _cycles(survey, setting, fits[best])[0]
+    return Numbers(fits[best], cycles, longer, _most(survey, longer, setting))
 
 
 def _step(one: Segment, setting: Setting) -> float:
@@ -57,6 +61,19 @@ def _cycles(
         cycles.append(n)
         rests.append(left)
     return tuple(cycles), rests
+
+
+def to_rest(one: Segment, longer: float, setting: Setting) -> float:
+    """Cycles that a SOLVE will take, a third more for each decade of the ratio."""
+    return one.done * longer * (1 + max(-math.log10(setting.ratio), 0.0) / 3)
+
+
+def _most(survey: Sequence[Segment], longer: Sequence[float], setting: Setting) -> tuple[int | None, ...]:
+    """Cycles after which each SOLVE is not expected to end any more."""
+    return tuple(
+        int(PATIENCE * to_rest(one, max(by, 1.0), setting)) + 1000 if one.solve else None
+        for one, by in zip(survey, longer, strict=True)
+    )
 
 
 def share_of_bound(survey: Sequence[Segment], setting: Setting) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from statistics import median
 from typing import TextIO
 
 from udec_ia.deck.variables import Values
@@ -31,6 +31,7 @@ NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
 SURVEYED, REHEARSAL = "survey", "rehearsal"
 REHEARSED = 0.03  # seconds of each CYCLE in a rehearsal
+WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
 MOST_REST = 12.0  # order with which values may converge where rest is sought more closely from level to level
 
@@ -98,6 +99,7 @@ class Shop:
         self.fraction = 0.1
         self.rates: dict[str, cost.Rates] = {}
         self.left = options.budget  # seconds of the clock
+        self._done: dict[str, list[Row]] = {}
 
     def run(self, setting: Setting, numbers: Numbers | None = None, **named: object) -> Surveyed:
         """The run of a setting."""
@@ -127,6 +129,7 @@ class Shop:
         if self.survey:
             self.fraction = self.survey[0].fraction
             found, rehearsed = cost.rates(result, self.survey), dict(self.rates)
+            found = cost.Rates(rehearsed[self.wide].apart, found.each)  # without what limits need
             for build in self.builds:
                 times = cost.ratio(rehearsed[build], rehearsed[self.wide])
                 self.rates[build] = found if build == self.wide else cost.scaled(found, times)
@@ -140,11 +143,7 @@ class Shop:
     def row(self, setting: Setting) -> Row:
         """A setting, with what it will cost."""
         put = numbers(self.survey, setting)
-        decades = max(-math.log10(setting.ratio), 0.0)
-        cycles = cost.cycles_of(self.survey, put)
-        cycles = [
-            n * (1 + decades / 3) if one.solve else n for n, one in zip(cycles, self.survey, strict=True)
-        ]
+        cycles = cost.cycles_of(self.survey, put, setting)
         return Row(setting, put, self.rates[setting.build].seconds(cycles))
 
     def price(self, rows: Sequence[Row]) -> float:
@@ -161,11 +160,26 @@ class Shop:
             some = [row for row in taken if row.setting.build == build]
             results = self._all([self.run(row.setting, row.numbers) for row in some])
             for row, result in zip(some, results, strict=True):
-                found = self._segments(row.setting.name)
                 row.result = result
-                row.cost = self.rates[build].seconds([one.done for one in found])
+            self._done[build] = self._done.get(build, []) + [row for row in some if row.ran]
+            self._learn(build)
         self.left -= self.price(taken)
         return dropped
+
+    def _learn(self, build: str) -> None:
+        """See what a cycle has cost in all runs of a word scheme until now, and so what each of them has.
+
+        A single run of a small model takes times that differ by a quarter from one time to the next.
+        """
+        done = [(row, self._segments(row.setting.name)) for row in self._done[build]]
+        rates = self.rates[build]
+        apart = [row.result.seconds - sum(one.seconds for one in found) for row, found in done if row.result]
+        rates = cost.Rates(max(median(apart), 0.0), rates.each)
+        spent = sum(one.seconds for _, found in done for one in found)
+        thought = sum(rates.seconds([one.done for one in found]) - rates.apart for _, found in done)
+        self.rates[build] = cost.scaled(rates, spent / thought) if spent > 0 and thought > 0 else rates
+        for row, found in done:
+            row.cost = self.rates[build].seconds([one.done for one in found])
 
     def _all(self, runs: list[Surveyed]) -> list[Result]:
         told = Told(self.options.stream, len(runs))
@@ -236,7 +250,11 @@ def _reference(price: Price, shop: Shop) -> None:
         values = {name: [row.result.quantities[name] for row in price.levels if row.result] for name in names}
         price.limits = {name: limit(found, most) for name, found in values.items()}
         price.known = judge(price.rows, price.limits, price.tolerance)
-        unknown = [name for name in names if name not in price.known and shrinks(values[name])]
+        unknown = [
+            name
+            for name, one in price.limits.items()
+            if one and one.share > WANTED * price.tolerance and shrinks(values[name])
+        ]
         k = len(price.levels)
         if not unknown or k > FINEST or any(not row.ran for row in wanted):
             return
@@ -250,8 +268,9 @@ def _settings(price: Price, shop: Shop) -> None:
     done = {row.setting for row in price.rows}
     longer = candidates.longer(price.deck, shop.survey, shop.builds)
     _try(price, shop, [one for one in longer if one not in done])
-    if price.best is None and price.known:
-        least = min((row.setting.step for row in price.levels), default=1.0)
+    if price.known and (price.best is None or price.best.setting.step < 1):
+        steps = [row.setting.step for row in price.levels]
+        least = price.best.setting.step if price.best else min(steps, default=1.0)
         done = {row.setting for row in price.rows}
         finer = candidates.shorter(shop.builds, least)
         _try(
