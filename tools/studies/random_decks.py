@@ -88,7 +88,8 @@ def stack(r: random.Random) -> str:
         f"START\nPROP MAT=1 {_material(r)}\n"
         f"BLOCK 0,0 0,{n * size:.4f} {size:.4f},{n * size:.4f} {size:.4f},0\n"
         f"{cuts}FIX 0 {size:.3f} 0 {size:.3f}\nROUND {0.1 * size:.3f}\nGRAVITY {r.uniform(0, 1):.2f},-10\n"
-        f"{_fraction(r)}{_damping(r)}CYCLE {r.randint(1000, 3000)}\nCYCLE {r.randint(1000, 3000)}\nSTOP\nEND\n"
+        f"{_fraction(r)}{_damping(r)}"
+        f"CYCLE {r.randint(1000, 3000)}\nCYCLE {r.randint(1000, 3000)}\nSTOP\nEND\n"
     )
 
 
@@ -160,7 +161,7 @@ def error(quantities: dict[str, float], true: dict[str, float]) -> float:
 
 
 def over_cheapest(price: Price, shop: Shop, true: dict[str, float]) -> tuple[float, str]:
-    """Cost of the cycles of what is recommended, over that of the cheapest within the tolerance; its name."""
+    """Seconds of what is recommended over those of the cheapest within the tolerance, and its name."""
     steps = [rounded(FINE**k) for k in range(-8, 17)]
     settings = [Setting(build, step) for build in shop.builds for step in steps]
     settings = [one for one in settings if share_of_bound(shop.survey, one) <= BEYOND]
@@ -168,7 +169,7 @@ def over_cheapest(price: Price, shop: Shop, true: dict[str, float]) -> tuple[flo
     assert price.best is not None
     rows = [shop.row(one) for one in dict.fromkeys([price.best.setting, *settings])]
     shop.do(rows)
-    costs = [row.cost - shop.rates[row.setting.build].apart for row in rows]
+    costs = [row.cost for row in rows]
     within = [
         (cost, row.setting.name)
         for row, cost in zip(rows, costs, strict=True)
@@ -191,7 +192,7 @@ def study(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
     true = truth(price, shop)
     times, cheapest = over_cheapest(price, shop, true)
     ratios = [
-        row.predicted / row.result.seconds for row in price.rows if row.result and row.result.seconds > 0.02
+        row.predicted / row.result.seconds for row in price.rows if row.result and row.result.seconds > 0.05
     ]
     close = sum(2 / 3 <= ratio <= 1.5 for ratio in ratios) / len(ratios) if ratios else math.nan
     return Verdict(
@@ -219,7 +220,8 @@ def main() -> int:
             found.append(one)
             print(
                 f"{k:3d} {one.kind:7s} {one.tolerance:7.0e} {one.recommended:32s} error {one.error:8.1e} "
-                f"{'holds' if one.holds else '-----'}  cost {one.times:5.2f}  {one.cheapest:20s} predicted {one.predicted:4.2f}",
+                f"{'holds' if one.holds else '-----'}  cost {one.times:5.2f} of {one.cheapest:20s} "
+                f"predicted {one.predicted:4.2f}",
                 flush=True,
             )
     given = [one for one in found if not math.isnan(one.error)]

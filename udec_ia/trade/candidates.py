@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -33,7 +34,7 @@ def longer(deck: Deck, survey: Sequence[Segment], builds: Sequence[str]) -> list
             if step == 1 or share_of_bound(survey, one) <= BEYOND:
                 found.append(one)
             step *= RUNG
-        if any(one.bound > 0 for one in survey):
+        if any(0 < one.bound < math.inf for one in survey):
             found += [Setting(build, safe=safe) for safe in SAFE]
         if deck.rests and has_static():
             found.append(Setting(build, static=True))
@@ -47,11 +48,11 @@ def tighter(deck: Deck, settings: Sequence[Setting]) -> list[Setting]:
     return [replace(one, ratio=one.ratio * TIGHTER**k) for k in (1, 2) for one in settings]
 
 
-def shorter(builds: Sequence[str], least: float) -> list[Setting]:
-    """Steps below that of the deck, down to `least`."""
+def shorter(builds: Sequence[str], finest: float) -> list[Setting]:
+    """Steps below that of the deck, down to `finest`."""
     found: list[Setting] = []
     step = 1 / RUNG
-    while step > least * 0.99:
+    while step > finest * 0.99:
         found += [Setting(build, rounded(step)) for build in builds]
         step /= RUNG
     return found

@@ -29,7 +29,7 @@ from udec_ia.trade.trade import Options, Shop
 ENSEMBLE = 16
 KICK = 4e-4  # seconds, about
 SHARE = 0.5  # of the digits that longer words have more, which rounding leaves and chaos does not
-COLUMNS = ("quantity", "value", "digits", "least", "32-bit", "least 32", "step", "what limits it")
+COLUMNS = ("quantity", "value", "digits", "at least", "32-bit", "at least 32", "step", "what limits it")
 
 
 @dataclass
@@ -62,7 +62,7 @@ class Ensemble:
         for name in self.names:
             one, two = self.digits(wide, name), self.digits(narrow, name)
             numbers = [
-                getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "least")
+                getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")
             ]
             shown = [round(number, 1) for number in (*numbers, self.step(name))]
             value = one.mean if one else math.nan
@@ -74,10 +74,10 @@ def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
     """What limits a quantity."""
     if wide is None or narrow is None:
         return "too few runs came to their end"
-    if wide.digits - narrow.digits < SHARE * (wide.most - narrow.most):
+    if wide.digits - narrow.digits < SHARE * (wide.full - narrow.full):
         return "chaos: longer words give no more digits"
-    lost = f"rounding takes {max(wide.most - wide.digits, 0):.1f} digits"
-    if step < wide.least:
+    lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
+    if step < wide.lower:
         return f"the time-step; {lost}"
     return lost
 

@@ -66,14 +66,14 @@ class Numbers:
     """What a setting puts into the lines that count cycles.
 
     fit: times the fraction that is asked for, a little below 1. cycles: of each CYCLE and SOLVE, in order;
-    None as they are. longer: of each of these, time-step of the deck over the new one. most: cycles of each
+    None as they are. longer: of each of these, time-step of the deck over the new one. limits: cycles of each
     SOLVE, after which it gives up; None as it is.
     """
 
     fit: float = 1.0
     cycles: tuple[int | None, ...] = ()
     longer: tuple[float, ...] = ()
-    most: tuple[int | None, ...] = ()
+    limits: tuple[int | None, ...] = ()
 
 
 class Deck:
@@ -163,7 +163,7 @@ class Deck:
         """The lines of a statement. run: CYCLEs and SOLVEs before it."""
         longer = numbers.longer[run] if run < len(numbers.longer) else 1.0
         if name in SHOWS or name == FILLED or (name == "save" and not self._saves):
-            return [f"* {line.text}" if line.text.strip() else line.text for line in one.lines]
+            return _left_out(one)
         if name == "fraction":
             call = parse(one)
             safe = bool(call.named.get("safe"))
@@ -172,8 +172,8 @@ class Deck:
             cycles = numbers.cycles[run] if run < len(numbers.cycles) else None
             return _instead(one, f"CYCLE {cycles}") if cycles is not None else _lines(one)
         if name == "solve":
-            most = numbers.most[run] if run < len(numbers.most) else None
-            return _instead(one, _solve(one, setting, longer, most))
+            last = numbers.limits[run] if run < len(numbers.limits) else None
+            return _instead(one, _solve(one, setting, longer, last))
         if name == "history":
             every = max(1, round(parse(one).positional[0] * longer))
             return _put(one, {one.tokens[1]: str(every)})
@@ -186,7 +186,7 @@ class Deck:
         if name == "generate" and setting.edge != 1:
             return _times(one, _after(one, "Edge"), setting.edge)
         if setting.types and name in ("generate", "change") and _makes_soft(one, name):
-            return [f"* {line.text}" for line in one.lines]
+            return _left_out(one)
         return _lines(one)
 
     def _restart(self, one: Statement) -> list[str]:
@@ -204,6 +204,12 @@ def _command(statement: Statement) -> str:
 
 def _lines(one: Statement) -> list[str]:
     return [line.text for line in one.lines]
+
+
+def _left_out(one: Statement) -> list[str]:
+    """The lines of a statement as comments."""
+    words = {token.line for token in one.tokens}
+    return [f"* {line.text}" if line in words else line.text for line in one.lines]
 
 
 def _instead(one: Statement, text: str) -> list[str]:
@@ -253,11 +259,11 @@ def _fraction(setting: Setting, numbers: Numbers, own: float, safe: bool) -> str
     return f"FRACTION {fraction:.10g}{' SAFE' if safe or setting.safe else ''}"
 
 
-def _solve(one: Statement, setting: Setting, longer: float, most: int | None) -> str:
-    """SOLVE. most: cycles, if that is less than what the deck allows."""
+def _solve(one: Statement, setting: Setting, longer: float, last: int | None) -> str:
+    """SOLVE. last: cycles, if that is less than what the deck allows."""
     call = parse(one)
     limit = round(call.named.get("limit", LIMIT) * max(longer, 1.0) / min(setting.ratio, 1.0))
-    limit = min(limit, most or limit)
+    limit = min(limit, last or limit)
     static = " STATIC" if setting.static or call.named.get("static") else ""
     return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}"
 

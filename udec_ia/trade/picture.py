@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SIZE = (7.5, 6.5)  # inches
 COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
 FRONT = "#33302b"
-LEAST = 1e-16  # error that is drawn for none
+SMALLEST = 1e-16  # error that is drawn for none
 
 
 def draw(price: Price, title: str, base: Path) -> list[Path]:
@@ -41,7 +41,7 @@ def draw(price: Price, title: str, base: Path) -> list[Path]:
 
 
 def _panel(panel: Axes, price: Price, rows: list[Row], x: list[float], label: str) -> None:
-    error = [max(row.error, LEAST) for row in rows]
+    error = [max(row.error, SMALLEST) for row in rows]
     builds = [*dict.fromkeys(row.setting.build for row in rows)]
     for build, colour in zip(builds, COLOURS, strict=False):
         some = [k for k, row in enumerate(rows) if row.setting.build == build]

@@ -108,10 +108,10 @@ def _of_best(price: Price) -> list[str]:
         return ["no recommendation: no quantity has a limit that settings could be measured against"]
     row = price.best
     if row is None:
-        least = min(price.rows, key=lambda row: row.error)
+        nearest = min(price.rows, key=lambda row: row.error)
         return [
-            f"no setting that was run is within {price.tolerance:g}: the least error is {least.error:.2e}, "
-            f"of {least.setting.name}; a greater --budget or --tolerance may help"
+            f"no setting that was run is within {price.tolerance:g}: the least error is {nearest.error:.2e}, "
+            f"of {nearest.setting.name}; a greater --budget or --tolerance may help"
         ]
     own = next(one for one in price.levels if one.setting.step == 1)
     gain = own.cost / row.cost if row.cost else 1.0

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from statistics import NormalDist, fmean, stdev
 
 PROBABILITY = CONFIDENCE = 0.95
@@ -25,32 +26,32 @@ HALVINGS = 200
 
 @dataclass(frozen=True)
 class Digits:
-    """Of `runs` results. mean; spread: sigma/|mu|; digits: -log10 of it; least: the lower end of the
+    """Of `runs` results. mean; spread: sigma/|mu|; digits: -log10 of it; lower: the lower end of the
     interval.
 
-    most: digits that the words have; a sample of equal numbers has as many.
+    full: digits that the words have; a sample of equal numbers has as many.
     """
 
     runs: int
     mean: float
     spread: float
     digits: float
-    least: float
-    most: float
+    lower: float
+    full: float
 
 
 def digits(results: Sequence[float], bits: int) -> Digits | None:
     """The digits of results with so many bits in their fraction (52, 23); None for too few results."""
     found = [value for value in results if math.isfinite(value)]
-    most = (bits + 1) * math.log10(2)
+    full = (bits + 1) * math.log10(2)
     if len(found) < FEWEST:
         return None
     mean, sigma = fmean(found), stdev(found)
     if sigma == 0:
-        return Digits(len(found), mean, 0.0, most, most, most)
+        return Digits(len(found), mean, 0.0, full, full, full)
     spread = sigma / abs(mean) if mean else math.inf
-    own = min(-math.log10(spread), most) if spread < math.inf else 0.0
-    return Digits(len(found), mean, spread, own, own - doubt(len(found)), most)
+    own = min(-math.log10(spread), full) if spread < math.inf else 0.0
+    return Digits(len(found), mean, spread, own, own - doubt(len(found)), full)
 
 
 def doubt(runs: int, probability: float = PROBABILITY, confidence: float = CONFIDENCE) -> float:
@@ -60,6 +61,7 @@ def doubt(runs: int, probability: float = PROBABILITY, confidence: float = CONFI
     return bits * math.log10(2)
 
 
+@cache
 def chi_squared(p: float, degrees: int) -> float:
     """The p quantile of the chi-squared distribution, by bisection."""
     low, high = 0.0, degrees + 20 * math.sqrt(2 * degrees) + 50

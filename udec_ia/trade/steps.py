@@ -23,7 +23,7 @@ def numbers(survey: Sequence[Segment], setting: Setting) -> Numbers:
     """What `setting` puts in the lines that count cycles. survey: of the deck as it is, with limits."""
     if setting.static:
         same = tuple(1.0 for _ in survey)
-        return Numbers(1.0, tuple(None for _ in survey), same, _most(survey, same, setting))
+        return Numbers(1.0, tuple(None for _ in survey), same, _limits(survey, same, setting))
     timed = [one for one in survey if not one.solve and one.asked > 0]
     fits = [1.0]
     if timed:
@@ -37,7 +37,7 @@ def numbers(survey: Sequence[Segment], setting: Setting) -> Numbers:
     best = next(k for k, one in enumerate(left) if one <= min(left) + (SAME * total if timed else 0.0))
     longer = tuple(one.step / (_step(one, setting) * fits[best]) for one in survey)
     cycles = _cycles(survey, setting, fits[best])[0]
-    return Numbers(fits[best], cycles, longer, _most(survey, longer, setting))
+    return Numbers(fits[best], cycles, longer, _limits(survey, longer, setting))
 
 
 def _step(one: Segment, setting: Setting) -> float:
@@ -68,7 +68,7 @@ def to_rest(one: Segment, longer: float, setting: Setting) -> float:
     return one.done * longer * (1 + max(-math.log10(setting.ratio), 0.0) / 3)
 
 
-def _most(survey: Sequence[Segment], longer: Sequence[float], setting: Setting) -> tuple[int | None, ...]:
+def _limits(survey: Sequence[Segment], longer: Sequence[float], setting: Setting) -> tuple[int | None, ...]:
     """Cycles after which each SOLVE is not expected to end any more."""
     return tuple(
         int(PATIENCE * to_rest(one, max(by, 1.0), setting)) + 1000 if one.solve else None

@@ -29,11 +29,13 @@ QUANTITIES = (
 TOLERANCE, BUDGET = 1e-3, 300.0
 NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes with half the reals
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
-SURVEYED, REHEARSAL = "survey", "rehearsal"
+SURVEYED, WARM, REHEARSAL = "survey", "warm", "rehearsal"
 REHEARSED = 0.03  # seconds of each CYCLE in a rehearsal
 WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
-MOST_REST = 12.0  # order with which values may converge where rest is sought more closely from level to level
+REST_ORDER = (
+    12.0  # order with which values may converge where rest is sought more closely from level to level
+)
 
 
 @dataclass
@@ -117,9 +119,10 @@ class Shop:
     def rehearse(self) -> None:
         """Learn what a cycle costs in each word scheme."""
         for build in self.builds:
-            run = self.run(Setting(build), name=f"{REHEARSAL},{build}", rehearsed=REHEARSED)
-            result = self._all([run])[0]
-            self.rates[build] = cost.rates(result, self._segments(run.name))
+            names = [f"{WARM},{build}", f"{REHEARSAL},{build}"]  # the first one loads what it needs
+            runs = [self.run(Setting(build), name=name, rehearsed=REHEARSED) for name in names]
+            result = self._all(runs)[-1]
+            self.rates[build] = cost.rates(result, self._segments(result.name))
 
     def look(self) -> Result:
         """The survey."""
@@ -238,7 +241,7 @@ def _names(price: Price) -> list[str]:
 def _reference(price: Price, shop: Shop) -> None:
     """Halve the step until the limits are known well enough, or the budget ends, or nothing converges."""
     own, deck = Setting(shop.wide), price.deck
-    most = MOST_REST if deck.has("solve") else 3.0
+    highest = REST_ORDER if deck.has("solve") else 3.0
     wanted = [shop.row(candidates.level(own, k, deck)) for k in range(LEVELS + 1)]
     while True:
         shop.options.tell(f"reference: {', '.join(row.setting.name for row in wanted)}")
@@ -248,7 +251,7 @@ def _reference(price: Price, shop: Shop) -> None:
         price.levels += [row for row in wanted if row.ran]
         names = _names(price)
         values = {name: [row.result.quantities[name] for row in price.levels if row.result] for name in names}
-        price.limits = {name: limit(found, most) for name, found in values.items()}
+        price.limits = {name: limit(found, highest) for name, found in values.items()}
         price.known = judge(price.rows, price.limits, price.tolerance)
         unknown = [
             name
@@ -270,9 +273,9 @@ def _settings(price: Price, shop: Shop) -> None:
     _try(price, shop, [one for one in longer if one not in done])
     if price.known and (price.best is None or price.best.setting.step < 1):
         steps = [row.setting.step for row in price.levels]
-        least = price.best.setting.step if price.best else min(steps, default=1.0)
+        finest = price.best.setting.step if price.best else min(steps, default=1.0)
         done = {row.setting for row in price.rows}
-        finer = candidates.shorter(shop.builds, least)
+        finer = candidates.shorter(shop.builds, finest)
         _try(
             price, shop, [one for one in [*finer, *candidates.tighter(price.deck, finer)] if one not in done]
         )
