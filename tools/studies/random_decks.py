@@ -192,7 +192,7 @@ def study(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
     true = truth(price, shop)
     times, cheapest = over_cheapest(price, shop, true)
     ratios = [
-        row.predicted / row.result.seconds for row in price.rows if row.result and row.result.seconds > 0.05
+        row.predicted / row.result.seconds for row in price.rows if row.result and row.result.seconds > 0.02
     ]
     close = sum(2 / 3 <= ratio <= 1.5 for ratio in ratios) / len(ratios) if ratios else math.nan
     return Verdict(

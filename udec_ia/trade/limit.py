@@ -8,9 +8,9 @@ v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the p
 (Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
 studies, J. Fluids Eng. 116, 1994, asks for).
 The error of v is taken to be the whole correction or, with four values, what the fourth has moved it by, if
-that is less: an extrapolation is no farther off than the one before it; both with a factor of safety. Else v3
-is what there is, and twice the greatest of the last differences its error: of an error that goes with the step
-as much is left as the last difference.
+that is less: an extrapolation is no farther off than the one before it; both with a factor of safety. Else
+v3 is what there is, and twice the greatest of the last differences its error: of an error that goes with the
+step as much is left as the last difference.
 """
 
 from __future__ import annotations

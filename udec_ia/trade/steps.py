@@ -45,22 +45,31 @@ def _step(one: Segment, setting: Setting) -> float:
     return setting.safe * one.bound if setting.safe else setting.step * one.step
 
 
-def _cycles(
-    survey: Sequence[Segment], setting: Setting, fit: float
+def cycles_for(
+    survey: Sequence[Segment], steps: Sequence[float]
 ) -> tuple[tuple[int | None, ...], list[float]]:
-    """Cycles of each CYCLE, None for SOLVE; and the time that is left after each of them (s)."""
+    """Cycles of each CYCLE, None for SOLVE, for the time that it has in the deck, with other time-steps (s).
+
+    And the time that is left after each of them (s).
+    """
     left, cycles, rests = 0.0, list[int | None](), list[float]()
-    for one in survey:
+    for one, step in zip(survey, steps, strict=True):
         if one.solve:
             left = 0.0
             cycles.append(None)
             continue
-        step = _step(one, setting) * fit
         n = max(1, round((one.asked * one.step + left) / step)) if one.asked else 0
         left += one.asked * one.step - n * step
         cycles.append(n)
         rests.append(left)
     return tuple(cycles), rests
+
+
+def _cycles(
+    survey: Sequence[Segment], setting: Setting, fit: float
+) -> tuple[tuple[int | None, ...], list[float]]:
+    """The same for a setting."""
+    return cycles_for(survey, [_step(one, setting) * fit for one in survey])
 
 
 def to_rest(one: Segment, longer: float, setting: Setting) -> float:

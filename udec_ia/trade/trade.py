@@ -121,19 +121,26 @@ class Shop:
         for build in self.builds:
             names = [f"{WARM},{build}", f"{REHEARSAL},{build}"]  # the first one loads what it needs
             runs = [self.run(Setting(build), name=name, rehearsed=REHEARSED) for name in names]
-            result = self._all(runs)[-1]
+            result = self.results(runs)[-1]
             self.rates[build] = cost.rates(result, self._segments(result.name))
+
+    def rehearsal(self, setting: Setting, seconds: float) -> list[Segment]:
+        """The CYCLEs and SOLVEs of a rehearsal, each of which ends after some seconds."""
+        run = self.run(setting, name=f"{REHEARSAL},{setting.name}", rehearsed=seconds)
+        self.results([run])
+        return self._segments(run.name)
 
     def look(self) -> Result:
         """The survey."""
         run = self.run(Setting(self.wide), name=SURVEYED, limits=True)
-        result = self._all([run])[0]
+        result = self.results([run])[0]
         self.survey = self._segments(SURVEYED)
         if self.survey:
             self.fraction = self.survey[0].fraction
             found, rehearsed = cost.rates(result, self.survey), dict(self.rates)
-            found = cost.Rates(rehearsed[self.wide].apart, found.each)  # without what limits need
-            for build in self.builds:
+            apart = rehearsed[self.wide].apart if self.wide in rehearsed else found.apart
+            found = cost.Rates(apart, found.each)  # without what limits need
+            for build in rehearsed:
                 times = cost.ratio(rehearsed[build], rehearsed[self.wide])
                 self.rates[build] = found if build == self.wide else cost.scaled(found, times)
         return result
@@ -161,7 +168,7 @@ class Shop:
             dropped.append(taken.pop())
         for build in dict.fromkeys(row.setting.build for row in taken):
             some = [row for row in taken if row.setting.build == build]
-            results = self._all([self.run(row.setting, row.numbers) for row in some])
+            results = self.results([self.run(row.setting, row.numbers) for row in some])
             for row, result in zip(some, results, strict=True):
                 row.result = result
             self._done[build] = self._done.get(build, []) + [row for row in some if row.ran]
@@ -184,7 +191,8 @@ class Shop:
         for row, found in done:
             row.cost = self.rates[build].seconds([one.done for one in found])
 
-    def _all(self, runs: list[Surveyed]) -> list[Result]:
+    def results(self, runs: list[Surveyed]) -> list[Result]:
+        """What comes of runs."""
         told = Told(self.options.stream, len(runs))
         try:
             return run_all(runs, self.folder, jobs=self.options.jobs, timed=True, told=told)

@@ -44,6 +44,11 @@ def add_commands(commands: Any) -> None:
     what.add_argument(
         "--blame", action="store_true", help="the same, and which fields the others are lost in"
     )
+    what.add_argument(
+        "--levers",
+        metavar="A,B",
+        help="levers of the model and their refinement: round,zones,stiffness,types",
+    )
     parser.add_argument("--runs", type=int, metavar="N", help="perturbed runs of --digits (default: 16)")
 
 
@@ -54,6 +59,8 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
 
     if args.digits or args.blame:
         return _digits(args)
+    if args.levers:
+        return _levers(args)
     price = trade(
         _text(args), args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent
     )
@@ -86,6 +93,25 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
         return listing
     said, rows = blame.Blame(found).search()
     return Tables({"digits": listing, "blame": Listing(said, blame.COLUMNS, rows)})
+
+
+def _levers(args: argparse.Namespace) -> Listing:
+    from udec_ia.inspect.look.listing import Listing
+    from udec_ia.trade import model
+    from udec_ia.trade.levers import Deck
+    from udec_ia.trade.trade import Shop
+
+    levers = [one.strip() for one in args.levers.split(",")]
+    unknown = [one for one in levers if one not in model.LEVERS]
+    if unknown:
+        raise ValueError(f"--levers {unknown[0]}: there are {', '.join(model.LEVERS)}")
+    deck = Deck(_text(args), args.deck.name, given(args.set), args.deck.parent)
+    shop = Shop(deck, _options(args), _folder(args))
+    result = shop.look()
+    if result.status != "ended" or not shop.survey:
+        return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
+    rows = [row for lever in levers for row in model.refine(shop, lever)]
+    return Listing([], model.COLUMNS, rows)
 
 
 def _files(price: Price, args: argparse.Namespace) -> list[Path]:
