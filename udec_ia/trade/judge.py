@@ -46,9 +46,21 @@ class Row:
         return self.result.words * bits // 8 if self.result else 0
 
 
-def judge(rows: Sequence[Row], limits: Mapping[str, Limit | None], tolerance: float) -> list[str]:
-    """Enter the errors of all rows. Returns the names of the quantities that can be compared."""
-    known = [name for name, one in limits.items() if one and one.share <= SPREAD * tolerance]
+def judge(
+    rows: Sequence[Row], limits: Mapping[str, Limit | None], tolerance: float, parted: bool
+) -> list[str]:
+    """Enter the errors of all rows. Returns the names of the quantities that can be compared.
+
+    parted: the finest runs have parted for good. Then two numbers may still be near each other by chance, and
+    only those that converge with an order, or are the same, are compared.
+    """
+    known = [
+        name
+        for name, one in limits.items()
+        if one
+        and one.share <= SPREAD * tolerance
+        and (not parted or math.isfinite(one.order) or one.error == 0)
+    ]
     for row in rows:
         if row.result is not None:
             found = row.result.quantities

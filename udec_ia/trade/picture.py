@@ -1,4 +1,4 @@
-"""The picture of a price list: error against time and against memory, with the Pareto set."""
+"""The picture of a price list: error against time and against memory, each with its Pareto set."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from udec_ia.output.draw import INK
 from udec_ia.output.picture import write
-from udec_ia.trade.judge import Row, pareto
+from udec_ia.trade.judge import Row
 from udec_ia.trade.trade import Price
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _panel(panel: Axes, price: Price, rows: list[Row], x: list[float], label: st
         some = [k for k, row in enumerate(rows) if row.setting.build == build]
         at = [x[k] for k in some], [error[k] for k in some]
         panel.plot(*at, "o", color=colour, markersize=4, label=build)
-    front = sorted((k for k, row in enumerate(rows) if row in pareto(rows)), key=lambda k: x[k])
+    front = [k for k in sorted(range(len(rows)), key=lambda k: (x[k], error[k])) if _best_until(k, x, error)]
     at = [x[k] for k in front], [error[k] for k in front]
     panel.plot(*at, color=FRONT, linewidth=0.8, label="Pareto set")
     panel.axhline(price.tolerance, color=COLOURS[1], linewidth=0.8, linestyle="--", label="tolerance")
@@ -59,3 +59,10 @@ def _panel(panel: Axes, price: Price, rows: list[Row], x: list[float], label: st
     panel.set_ylabel("greatest error", fontsize=9, color=INK)
     panel.tick_params(labelsize=8, colors=INK)
     panel.grid(color="#e4e0d8", linewidth=0.6)
+
+
+def _best_until(k: int, x: list[float], error: list[float]) -> bool:
+    """True if nothing that costs no more than row `k` has a smaller error, or as small a one for less."""
+    return not any(
+        a <= x[k] and e <= error[k] and (a, e) != (x[k], error[k]) for a, e in zip(x, error, strict=True)
+    )

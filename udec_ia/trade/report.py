@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import combinations
 
 from udec_ia.trade.judge import Row, pareto, within
 from udec_ia.trade.levers import Setting
 from udec_ia.trade.limit import Limit
-from udec_ia.trade.parting import parting
 from udec_ia.trade.trade import Price
 
 COLUMNS = ("setting", "error", "seconds", "predicted", "measured", "MB", "cycles", "what")
@@ -87,20 +85,15 @@ def _of_times(price: Price) -> Iterator[str]:
 
 
 def _of_partings(price: Price) -> Iterator[str]:
-    """Where the finest runs part, if there is a quantity without a limit."""
-    if len(price.known) == len(price.limits):
-        return
-    for one, two in [*combinations(price.levels[-3:], 2)][::-1][:1]:
-        found = parting(price.path(one), price.path(two), price.tolerance)
-        names = f"{one.setting.name} and {two.setting.name}"
-        if found is None:
-            yield f"{names}: no block is elsewhere by more than the tolerance of the greatest way"
-        else:
-            yield (
-                f"{names} part at {found.time:.4g} s: the block that was at ({found.x:.4g}, {found.y:.4g}) "
-                f"is elsewhere from then on, by {found.apart:.3g} m at the end; "
-                f"the greatest way is {found.moved:.3g} m"
-            )
+    """Where the finest runs part."""
+    found = price.parted
+    if found is not None:
+        one, two = (row.setting.name for row in price.levels[-2:])
+        yield (
+            f"{one} and {two} part at {found.time:.4g} s: "
+            f"the block that was at ({found.x:.4g}, {found.y:.4g}) is elsewhere from then on, by {found.apart:.3g} m at the end; "
+            f"the greatest way is {found.moved:.3g} m"
+        )
 
 
 def _of_best(price: Price) -> list[str]:

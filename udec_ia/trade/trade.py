@@ -18,6 +18,7 @@ from udec_ia.trade import candidates, cost
 from udec_ia.trade.judge import Row, judge, margin, recommended
 from udec_ia.trade.levers import Deck, Numbers, Setting
 from udec_ia.trade.limit import Limit, limit, shrinks
+from udec_ia.trade.parting import Parting, parting
 from udec_ia.trade.steps import numbers
 from udec_ia.trade.surveyed import Segment, Surveyed, segments
 
@@ -43,7 +44,8 @@ class Price:
     """The price list. rows: of all settings. limits: of the quantities, None without one.
 
     known: quantities that can be compared. levels: rows of the reference, the step halved from one to the
-    next. best: what to take. fraction: that the deck begins with. said: sentences.
+    next. best: what to take. fraction: that the deck begins with. parted: where the finest runs part.
+    said: sentences.
     """
 
     deck: Deck
@@ -55,6 +57,7 @@ class Price:
     known: list[str] = field(default_factory=list)
     best: Row | None = None
     fraction: float = 0.1
+    parted: Parting | None = None
     said: list[str] = field(default_factory=list)
 
     @property
@@ -257,10 +260,11 @@ def _reference(price: Price, shop: Shop) -> None:
         if shop.do(wanted):
             shop.options.tell("the budget does not allow a finer reference")
         price.levels += [row for row in wanted if row.ran]
+        price.parted = _parted(price)
         names = _names(price)
         values = {name: [row.result.quantities[name] for row in price.levels if row.result] for name in names}
         price.limits = {name: limit(found, highest) for name, found in values.items()}
-        price.known = judge(price.rows, price.limits, price.tolerance)
+        price.known = judge(price.rows, price.limits, price.tolerance, price.parted is not None)
         unknown = [
             name
             for name, one in price.limits.items()
@@ -272,6 +276,14 @@ def _reference(price: Price, shop: Shop) -> None:
         wanted = [shop.row(candidates.level(own, k, deck))]
         if shop.price(wanted) > shop.left / 2:
             return
+
+
+def _parted(price: Price) -> Parting | None:
+    """Where the two finest runs of the reference part by more than the tolerance, None if they do not."""
+    if len(price.levels) < 2:
+        return None
+    one, two = (price.path(row) for row in price.levels[-2:])
+    return parting(one, two, price.tolerance)
 
 
 def _settings(price: Price, shop: Shop) -> None:
@@ -295,7 +307,7 @@ def _try(price: Price, shop: Shop, settings: Iterable[Setting]) -> None:
     shop.options.tell(f"{len(rows)} settings, which will take {seconds:.3g} s; {shop.left:.3g} s are left")
     price.rows += rows
     shop.do(rows)
-    price.known = judge(price.rows, price.limits, price.tolerance)
+    price.known = judge(price.rows, price.limits, price.tolerance, price.parted is not None)
     price.best = recommended(price.rows, price.margins, price.tolerance)
 
 
