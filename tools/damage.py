@@ -1,12 +1,13 @@
 """Single words of sealed restart files changed, one at a time: RESTART must refuse what it cannot believe.
 
     python tools/damage.py --changes 10000 --seed 1 --build i32r64
+    python tools/damage.py --changes 20000 --only pointer head junk count
 
 The file holds groups of every kind that a program makes: blocks of all types, zones in pairs and others, a
 block that hangs on a virtual contact, boundary conditions on all that takes one, signals, functions,
 histories and junk. A word is drawn and another number is put there. Each change goes through the proof that
-RESTART makes; all that it takes, and one in FILES of the others, are saved in a sealed file, too, and RESTART
-must say the same. The field table says what the word is:
+RESTART makes; one in TAKEN of those that it takes, and one in REFUSED of the others, are saved in a sealed
+file, too, and RESTART must say the same. The field table says what the word is:
 
     head, pointer, junk    must be refused, whatever it is now
     count                  must be refused
@@ -43,7 +44,9 @@ from udec_ia.layout.table import Field
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart import load, save
 
-FILES = 20  # one in so many of the refused changes goes through a file
+TAKEN, REFUSED = 5, 100  # one in so many of the changes that are taken or refused goes through a file
+PARTS = {"pointer": 0.5, "code": 0.2, "count": 0.08, "head": 0.08, "junk": 0.06, "real": 0.03, "spare": 0.03}
+PARTS |= {"note": 0.02}  # shares of the changes, by what the words are
 Rng = np.random.Generator
 COUNTS = {"NBLK", "NCON", "NDOM", "NVIRT", "NSOFT", "KFNG", "KFNZ", "MFREE", "MTOP"}
 NOTES = {"NERR", "IERAD", "NWANT"}  # of what a kernel left behind; CYCLE clears them before it begins
@@ -227,23 +230,25 @@ def restart_refuses(array: MainArray, series: Sequence[Series], file: Path) -> b
     return False
 
 
-def damage(model: Model, changes: int, seed: int, file: Path) -> list[str]:
-    """Print what became of the changes, by what the words are. Returns those wrongly taken."""
+def damage(model: Model, changes: int, seed: int, file: Path, only: Sequence[str] = ()) -> list[str]:
+    """Print what became of the changes, by what the words are. Returns those wrongly taken.
+
+    only: keys of PARTS; all if there are none.
+    """
     rng, array, series = np.random.default_rng(seed), model.array, model.histories()
     state = State(array)
     by_what: dict[str, list[Word]] = {}
     for word in words(state):
         by_what.setdefault(word.what, []).append(word)
-    parts = {"pointer": 0.5, "code": 0.2, "count": 0.08, "head": 0.08, "junk": 0.06}
-    rest = (1 - sum(parts.values())) / 3
-    parts |= dict.fromkeys(("real", "spare", "note"), rest)
+    parts = {what: share for what, share in PARTS.items() if not only or what in only}
+    shares = np.array([*parts.values()]) / sum(parts.values())
     tried: Counter[str] = Counter()
     refused: Counter[str] = Counter()
     named: Counter[str] = Counter()
     taken: Counter[tuple[str, str]] = Counter()
     faults: list[str] = []
-    for _ in range(changes):
-        what = str(rng.choice(list(parts), p=list(parts.values())))
+    for number in range(changes):
+        what = str(rng.choice(list(parts), p=shares))
         word = by_what[what][int(rng.integers(len(by_what[what])))]
         name = word.field.name if word.field is not None else what
         changed = array.copy()
@@ -253,7 +258,7 @@ def damage(model: Model, changes: int, seed: int, file: Path) -> list[str]:
         memory[word.place] = value
         tried[what] += 1
         broken = bool(check_links(changed))
-        if not broken or sum(tried.values()) % FILES == 0:
+        if number % (REFUSED if broken else TAKEN) == 0:
             assert broken == restart_refuses(changed, series, file), (word, was, value)
         if broken:
             refused[what] += 1
@@ -277,11 +282,12 @@ def main() -> int:
     parser.add_argument("--changes", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--build", choices=list(ALL_SCHEMES), default=DEFAULT_SCHEME)
+    parser.add_argument("--only", nargs="+", choices=[*PARTS], default=[], help="words of these kinds alone")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         model = every_kind(options.build, Path(folder))
         found = model.check()
-        faults = damage(model, options.changes, options.seed, Path(folder) / "damaged.h5")
+        faults = damage(model, options.changes, options.seed, Path(folder) / "damaged.h5", options.only)
     print(*found, *faults, sep="\n")
     return 1 if faults or found else 0
 

@@ -20,7 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self, SupportsIndex, TextIO, TypeVar, Unpack
 
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.monitor import RESTART_FILE, run_deck
 from udec_ia.deck.reference import explain, summary
 from udec_ia.deck.variables import Values
 from udec_ia.errors import MESSAGES, UdecError, spoilt
@@ -59,10 +59,20 @@ from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import cycle, finish
-from udec_ia.ops.run.remarks import on_laws, on_loads, on_moduli, on_properties, on_rest, on_rounding
+from udec_ia.ops.run.remarks import (
+    on_laws,
+    on_loads,
+    on_moduli,
+    on_properties,
+    on_resolution,
+    on_rest,
+    on_rounding,
+)
 from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.scaling import relaxations_due
+from udec_ia.ops.run.static import STATIC, statically
 from udec_ia.ops.run.timestep import bound, describe, kind_of
-from udec_ia.ops.run.watch import Series, Solution, Watch
+from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Solution, Watch
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
 from udec_ia.printable import printable
@@ -70,9 +80,9 @@ from udec_ia.session import NAME, Session
 from udec_ia.transaction import Undo, beside, command, looking, numbers, once, steady
 
 R = TypeVar("R")
-RESTART_FILE = "restart.h5"
-SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
+
+Ended = Callable[[int], None]
 
 
 class Model(Session):
@@ -528,10 +538,33 @@ class Model(Session):
         settings.set_gravity(self.array, gx, gy)
 
     @numbers
-    def damping(self, fcrit: float, freq: float, only: str | None = None) -> None:
-        """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping)."""
+    def damping(
+        self,
+        fcrit: float | None = None,
+        freq: float | None = None,
+        only: str | None = None,
+        *,
+        local: float | None = None,
+        combined: float | None = None,
+        kinetic: bool = False,
+        adaptive: float | None = None,
+    ) -> None:
+        """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
+
+        Or one of what else leads to rest: local, combined, kinetic or adaptive (see set_relaxation).
+        """
         self._ready(sound=False)
-        settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
+        others = {"local": local, "combined": combined, "kinetic": kinetic or None, "adaptive": adaptive}
+        given = {how: f for how, f in others.items() if f is not None}
+        if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
+            advice = "fcrit and freq, or one of " + ", ".join(word.upper() for word in others)
+            raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
+        for how, f in given.items():
+            settings.set_relaxation(self.array, how, float(f))
+        if not given:
+            if fcrit is None or freq is None:
+                raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
+            settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
     @steady
     def energy(self, state: str = "on") -> None:
@@ -551,10 +584,13 @@ class Model(Session):
         return balance(self.array.h)
 
     @numbers
-    def fraction(self, f: float, *, safe: bool = False) -> None:
-        """FRACTION: fraction of the critical time-step to be used; safe: of a bound on all modes."""
+    def fraction(self, f: float, *, safe: bool = False, scaled: bool = False) -> None:
+        """FRACTION: fraction of the critical time-step to be used; safe: of a bound on all modes.
+
+        scaled: the same with inertial masses that make all degrees of freedom as quick as the quickest one.
+        """
         self._ready(sound=False)
-        settings.set_fraction(self.array, f, safe)
+        settings.set_fraction(self.array, f, safe, scaled)
 
     @steady
     def scale(self, s: float) -> None:
@@ -572,8 +608,10 @@ class Model(Session):
         return self._cycle(n, self._recorder.watch(self.array))
 
     @beside
-    def solve(self, ratio: float, limit: int = SOLVE_LIMIT) -> Solution:
+    def solve(self, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
+
+        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say (ops.run.static).
 
         The ratio: greatest unbalanced force over the mean of those that are carried (drive.unbalanced); it is
         looked at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic
@@ -581,9 +619,25 @@ class Model(Session):
         """
         self._ready()
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
-        self.remark(on_rest(self.array))
+        if not static:
+            self.remark(on_rest(self.array))
+            return self._to_rest(ratio, limit)
+        self.inform(STATIC)
+        begun = self.undo.before
+        self.undo.keep(self.array)  # to be prepared, as by _cycle
+        try:
+            with statically(self.array):
+                return self._to_rest(
+                    ratio, limit, lambda n: self.log_call(Model.solve, (ratio, n), {"static": True})
+                )
+        finally:
+            if self.undo.before is not begun:  # cycles are to stay, and with them what stood before
+                self.undo.afresh(self)
+
+    def _to_rest(self, ratio: float, limit: int, ended: Ended | None = None) -> Solution:
+        """Up to `limit` cycles to rest; ended: as of _cycle."""
         watch = Watch(self.array, self._recorder.series, ratio)
-        cycles = self._cycle(limit, watch)
+        cycles = self._cycle(limit, watch, ended)
         h, kinds = self.array.h, soft(self.array)
         reached = cycles > 0 and bool(at_rest(h, float(ratio)))
         ends, motion = float(force_ratio(h, kinds)), float(motion_ratio(h, kinds))
@@ -594,11 +648,14 @@ class Model(Session):
         self._recorder.solutions.append(solution)
         return solution
 
-    def _cycle(self, n: int, watch: Watch | None) -> int:
-        """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were."""
+    def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
+        """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were.
+
+        ended: logs how many cycles are to stay when the run ends before its time; by default as a CYCLE.
+        """
         self._boxes.forget()
-        if self.array.h.ci[MCTOT] == 0:
-            self.undo.keep(self.array)  # to be arranged, rounded and given its masses
+        if self.array.h.ci[MCTOT] == 0 or relaxations_due(self.array):
+            self.undo.keep(self.array)  # to be arranged, rounded, given masses and relaxations
         moved = arrange(self.array)
         if moved is not None:
             self.renumber(moved)
@@ -619,7 +676,8 @@ class Model(Session):
                 self._runaway,
             )
         except BaseException:
-            self.log_call(Model.cycle, (int(self.array.h.ci[MCTOT]) - before,), {})  # they stay
+            ended = ended or (lambda n: self.log_call(Model.cycle, (n,), {}))
+            ended(int(self.array.h.ci[MCTOT]) - before)  # they stay
             finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts
                 self.keep(watch)
@@ -654,6 +712,7 @@ class Model(Session):
         self.remark(on_laws(self.array))
         self.remark(on_loads(self.array))
         self.remark(on_rounding(self.array))
+        self.remark(on_resolution(self.array))
 
     @once
     def history(

@@ -35,6 +35,7 @@ from udec_ia.heap.guarding import Astray
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.kinds import forget
 from udec_ia.heap.lent import Writes
+from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.log import Step
 from udec_ia.signals import hold, passing
@@ -49,7 +50,7 @@ COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a
 
 def command(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that may change any word of IA()."""
-    return _obeyed(_unsettling(method), words=True)
+    return _obeyed(_unsettling(method, words=True), words=True)
 
 
 def once(method: Method[P, R]) -> Method[P, R]:
@@ -83,12 +84,17 @@ def looking(method: Method[P, R]) -> Method[P, R]:
     return beside(shown)
 
 
-def _unsettling(method: Method[P, R]) -> Method[P, R]:
-    """The next CYCLE finds masses and time-step anew. Obeyed once more, the method says so again."""
+def _unsettling(method: Method[P, R], words: bool = False) -> Method[P, R]:
+    """The next CYCLE finds masses and time-step anew. Obeyed once more, the method says so again.
+
+    words: blocks may change, and what was made of them for the last CYCLE is given back.
+    """
 
     @wraps(method)
     def unsettles(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         model.array.h.ci[g.LREADY] = 0
+        if words and model.array.h.ci[g.IRXPNT]:
+            lose_relaxations(model.array.h)
         return method(model, *args, **named)
 
     return unsettles

@@ -66,7 +66,7 @@ def test_help_names_every_command() -> None:
 
 
 def test_help_explains_a_command_by_any_abbreviation() -> None:
-    assert explain("dam").startswith("DAmping fcrit freq [Mass | Stiffness | Internal]\n")
+    assert explain("dam").startswith("DAmping [fcrit] [freq] [Mass | Stiffness | Internal] [Local f]")
     with pytest.raises(UdecError) as caught:
         explain("DAMPENING")
     assert caught.value.number == 2

@@ -148,6 +148,22 @@ def test_what_is_asked_for_and_what_does_not_count(state: MainArray) -> None:
             fields(allowed=(wrong,))
 
 
+@pytest.mark.parametrize(
+    ("only", "said"),
+    [
+        ((), "{all} groups of both and the common block"),
+        (("block.KXD", "common.FRAC"), "{block} groups of both and the common block"),
+        (("block.KXD", "domain"), "{some} groups of both"),
+        (("common",), "the common block"),
+    ],
+)
+def test_the_summary_says_what_was_compared(only: tuple[str, ...], said: str, state: MainArray) -> None:
+    many = {kind: len(at) for kind, at in Atlas(state.h).groups.items()}
+    counts = {**many, "all": sum(many.values()), "some": many["block"] + many["domain"]}
+    (line, *_) = diff(state, state.copy(), only).as_text().splitlines()
+    assert line == f"the first and the second: no number differs in {said.format(**counts)}"
+
+
 def test_codes_are_told_by_name(state: MainArray) -> None:
     other = state.copy()
     ic = next(int(row["address"]) for row in table(state, "contact") if row["KCCOD"] == g.CORNER_EDGE)

@@ -13,6 +13,7 @@ from udec_ia.cli import main
 from udec_ia.diverge import Divergence, Judge, diverge, of_deck, of_state
 from udec_ia.errors import UdecError
 from udec_ia.inspect.table import table
+from udec_ia.layout import offsets as g
 
 DECK = """\
 START
@@ -100,9 +101,59 @@ def test_decks_that_cannot_be_in_step(tmp_path: Path) -> None:
     one, two = (of_deck(Model(out=tmp_path), text) for text in texts)
     with pytest.raises(UdecError, match="30 cycles"):
         diverge(one, two, Judge())
-    one, two = (of_deck(Model(out=tmp_path), text) for text in (PLAIN, PLAIN.replace("CYCLE 200", "SOLVE")))
-    with pytest.raises(UdecError, match="SOLVE"):
+    texts = PLAIN, PLAIN.replace("CYCLE 200", "SOLVE 0 LIMIT 131")
+    one, two = (of_deck(Model(out=tmp_path), text) for text in texts)
+    with pytest.raises(UdecError, match=r"SOLVEs that end alike"):
         diverge(one, two, Judge())
+
+
+RESTING = PLAIN.replace("GRAVITY 3", "DAMPING 0.5 5 MASS\nGRAVITY 0").replace("CYCLE 200", "SOLVE {ratio}")
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.01])
+def test_solves_end_as_they_do_alone(ratio: float, tmp_path: Path) -> None:
+    text = RESTING.format(ratio=ratio)
+    alone = Model(out=tmp_path)
+    alone.run(text)
+    cycles = int(alone.h.ci[g.MCTOT])
+    assert 30 < cycles < 3000
+    one, two = (of_deck(Model(out=tmp_path), text) for _ in range(2))
+    assert diverge(one, two, Judge(0.0)) == cycles
+    assert np.array_equal(
+        one.model.h.ia[: one.model.h.ci[g.MFREE] - 1], alone.h.ia[: alone.h.ci[g.MFREE] - 1]
+    )
+
+
+def test_a_deck_that_goes_on_from_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is beside the deck, or where one stands; a deck that has written one goes on from its own."""
+    (tmp_path / "decks").mkdir()
+    model = Model(out=tmp_path / "decks")
+    model.run(PLAIN.replace("CYCLE 200", "SAVE state.h5"))
+    model.run("GRAVITY 0 -1\nSAVE\nSAVE other.h5")
+    (tmp_path / "decks" / "other.h5").rename(tmp_path / "other.h5")
+    monkeypatch.chdir(tmp_path)
+    for restart, cycles in (
+        ("state.h5", 33),
+        ("other.h5", 33),
+        ("", 33),
+        ("state.h5\nSAVE\nCYCLE 2\nRESTART", 33),
+    ):
+        for name, friction in (("one", 0.5), ("two", 0.49)):
+            text = f"RESTART {restart}\nPROPERTY MAT=1 FRICTION={friction}\nCYCLE 3\n"
+            (tmp_path / "decks" / f"{name}.dat").write_text(text)
+        assert main(["diverge", "decks/one.dat", "decks/two.dat", "--tolerance", "1"]) == 0
+        assert capsys.readouterr().out == f"no difference in {cycles} cycles\n"
+    assert sorted(path.name for path in (tmp_path / "decks").iterdir()) == [
+        "one.dat",
+        "restart.h5",
+        "state.h5",
+        "two.dat",
+    ]
+    (tmp_path / "decks" / "one.dat").write_text("RESTART nowhere.h5\n")
+    assert main(["diverge", "decks/one.dat", "decks/two.dat"]) == 2
+    assert "nowhere.h5" in capsys.readouterr().err
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -171,7 +171,7 @@ def test_a_property_has_an_array() -> None:
 def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
     fields |= {field.name: field for field in TABLE.common}
-    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX", "KHK", "JPHASE"}
+    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX", "KHK", "JPHASE", "LREST"}
     for code in TABLE.codes:
         assert any(low <= code.value <= (high or 0) for low, high in fields[code.field].allowed)
         assert getattr(offsets, code.name) == code.value

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan, generate, rectangle
 from mechanics import at, block, box, model, push, sound
 from naive.bodies import area_and_moments, by_address, momentum, outlines, points_of
 from naive.relocate import differences, essence
@@ -18,6 +17,7 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
+from udec_ia.verify.grids import fan, generate, rectangle
 
 EPS = float(np.finfo(float).eps)
 RHO, K, G, D = 2000.0, 2e8, 1e8, 0.05

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
 from mechanics import at, block, box, model, push, sound
 from naive.bodies import (
     applied_stress,
@@ -25,6 +24,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.verify.grids import fan
 
 KINDS = ("rigid", "sdef", "fdef", "zoned")
 CHANGES = [(old, new) for old in KINDS for new in KINDS if (old, new) != ("zoned", "zoned")]

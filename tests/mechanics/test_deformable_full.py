@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from continua import energies, pulsed
-from grids import generate, rectangle
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
+from udec_ia.verify.grids import generate, rectangle
 
 RHO, K, G = 2000.0, 2e8, 1e8
 CP = math.sqrt((K + 4 * G / 3) / RHO)
@@ -97,6 +96,32 @@ def test_a_turn_by_360_degrees_strains_nothing() -> None:
         determinant = zones["KZS11"] * zones["KZS22"] - zones["KZS12"] ** 2
         np.testing.assert_allclose(determinant, 2e10, rtol=1e-6)
     np.testing.assert_allclose(zones["KZS11"], 3e5, rtol=1e-6)
+
+
+def energies(m: Model) -> tuple[float, float]:
+    """Kinetic energy of the slab, and its strain energy, J/m."""
+    points, zones = m.table("gridpoint"), m.table("zone")
+    kinetic = 0.5 * (points["KGPM"] * (points["KXDG"] ** 2 + points["KYDG"] ** 2)).sum()
+    one, two = K + 4 * G / 3, K - 2 * G / 3
+    s11, s12, s22 = zones["KZS11"], zones["KZS12"], zones["KZS22"]
+    density = (one * (s11**2 + s22**2) - 2 * two * s11 * s22) / (one**2 - two**2) + s12**2 / G
+    return float(kinetic), float((zones["KZM"] / RHO * density).sum() / 2)
+
+
+def pulsed(length: float, lasts: float, stress: float) -> Model:
+    """A bar on rollers with viscous ends, into which a smooth pulse of the given stress will run."""
+    m = slab(rectangle(0, length, 0, 1, 60, 2), 0.02)
+    for y in (0.0, 1.0):
+        m.boundary(-1, length + 1, y - 0.01, y + 0.01, yvel=0)
+    for x in (0.0, length):
+        m.boundary(x - 0.01, x + 0.01, -1, 2, viscous=True)
+    times = np.linspace(0, lasts, 60)
+    factors = 0.5 * (1 - np.cos(2 * np.pi * times / lasts))
+    m.function(1, *np.stack([times, factors], axis=-1).ravel().tolist(), 1.001 * lasts, 0.0)
+    m.boundary(-0.01, 0.01, -1, 2, stress=(2 * stress, 0, 0), function=1)  # half of it stays in the dashpots
+    m.fraction(0.5)
+    m.cycle(0)
+    return m
 
 
 def test_a_pulse_leaves_through_a_viscous_edge() -> None:

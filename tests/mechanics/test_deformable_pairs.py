@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
 from mechanics import block, box, model, push, sound
 from naive.bodies import contact_forces, momentum, outlines
 from naive.contacts import contacts
@@ -15,6 +14,7 @@ from naive.contacts import contacts
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
+from udec_ia.verify.grids import fan
 
 TYPES = ("rigid", "sdef", "zoned")
 PAIRS = list(combinations_with_replacement(TYPES, 2))

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import fan
 from mechanics import box, model, sound
 from naive.bodies import points_of
 from naive.stiffness import Scene
@@ -18,6 +17,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.timestep import Limit, bound, estimate, instability
+from udec_ia.verify.grids import fan
 
 D = 0.05
 JOINTS = (3e8, 1e8)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from grids import generate, rectangle
 from kinds import every_kind
 from mechanics import box, model
 from naive.relocate import differences, essence
@@ -17,6 +16,7 @@ from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy import Balance
+from udec_ia.verify.grids import generate, rectangle
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BULK, SHEAR = 1e7, 5e6

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from grids import fan
 from handmade import two_blocks
 from mechanics import box, model
 
@@ -14,6 +13,7 @@ from udec_ia.inspect.walk import boundary, corners, groups, loop
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output.printout import LINE, printout
+from udec_ia.verify.grids import fan
 
 EVERYTHING = ("blocks", "contacts", "corners", "domains", "list", "dlist")
 KINDS = {"blocks": "block", "contacts": "contact", "corners": "corner", "domains": "domain"}

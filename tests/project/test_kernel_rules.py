@@ -19,7 +19,10 @@ IN_DOUBLES = {  # they sum up over a whole run, or solve for what is the same in
     "body/bounds.py",
     "detect/tunnelling.py",
     "drive/contact_stiffness.py",
+    "drive/peaks.py",
+    "drive/relax.py",
     "drive/unbalanced.py",
+    "energy/inertial.py",
     "energy/stored.py",
     "energy/works.py",
 }

@@ -24,7 +24,7 @@ BELOW = {  # layers that a layer imports
     "output": {"errors", "files", "heap", "inspect", "kernels", "layout", "ops", "printable", "restart"},
     "view": {"files", "heap", "inspect", "layout", "printable"},
     "debug": {"deck", "errors", "heap", "inspect", "kernels", "layout", "ops", "signals"},
-    "diverge": {"debug", "deck", "errors", "heap", "inspect", "layout", "ops"},
+    "diverge": {"debug", "deck", "errors", "heap", "inspect", "kernels", "layout", "ops"},
     "study": {
         "deck",
         "errors",
@@ -65,8 +65,10 @@ BELOW = {  # layers that a layer imports
         "restart",
         "study",
         "trade",
+        "verify",
         "view",
     },
+    "verify": {"errors", "files", "heap", "layout", "model", "output", "printable"},
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

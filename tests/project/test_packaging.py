@@ -96,8 +96,11 @@ def test_what_is_in_the_wheel(built: tuple[Path, Path]) -> None:
         for path in (ROOT / "udec_ia").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
+    problems = {
+        f"udec_ia/verify/problems/{path.name}" for path in (ROOT / "examples" / "verify").glob("*.py")
+    }
     info = f"udec_ia-{udec_ia.__version__}.dist-info/"
-    assert {name for name in names if not name.startswith(info)} == sources
+    assert {name for name in names if not name.startswith(info)} == sources | problems
     assert {"udec_ia/layout/groups.table", "udec_ia/layout/offsets.py", "udec_ia/py.typed"} <= names
     assert {info + "entry_points.txt", info + "licenses/LICENSE"} <= names
 
@@ -136,6 +139,16 @@ def test_a_deck_runs_away_from_the_checkout(installed: Path, tmp_path: Path) -> 
     assert "2 blocks" in output
     assert udec("check", "results/restart.h5").strip().endswith("sound")
     assert {path.name for path in tmp_path.iterdir()} == {"two.dat", "results"}
+    assert files(installed) == before
+
+
+def test_the_problems_come_with_the_wheel(installed: Path, tmp_path: Path) -> None:
+    before = files(installed)
+    verify = partial(run, "-m", "udec_ia", "verify", cwd=tmp_path, NUMBA_DISABLE_JIT="1", **away(installed))
+    listed = verify("--list").splitlines()[1:]
+    there = {path.stem for path in (ROOT / "examples" / "verify").glob("*.py")}
+    assert {line.split()[0] for line in listed} == there
+    assert "1 case, all within tolerance" in verify("eccentric", "--blocks", "rigid")
     assert files(installed) == before
 
 

@@ -90,7 +90,7 @@ BOLT = [
     "KBOF   real  0..    data  N/m  ours/2 | force",
 ]
 BOLTS = replaced(
-    ("HEAD  MSIG ", "HEAD  MBOLT  10  bolt | bolt\nHEAD  MSIG "),
+    ("HEAD  MSIG ", "HEAD  MBOLT  11  bolt | bolt\nHEAD  MSIG "),
     ("GROUP  signal", "\n".join(BOLT) + "\nGROUP  signal"),
     (
         line("NBLK"),

@@ -181,10 +181,22 @@ COMMANDS = (
         "DAmping",
         "Rayleigh damping: fraction of critical damping at the centre frequency, in cycles per unit time. "
         "Mass or Stiffness takes that half alone, which is fcrit/2 at that frequency. There is none "
-        "by default.",
+        "by default. Or what only leads to rest: LOCAL takes the fraction f of every unbalanced force, "
+        "against the velocity; COMBINED half of that, and half against the change of the force; KINETIC "
+        "stops all when the kinetic energy has passed a peak; ADAPTIVE is mass damping with the power f "
+        "times the change of the kinetic energy. None of these is physics.",
         "DAMP 0.1 30 STIFFNESS",
-        numbers="fcrit freq",
-        words=(Word("Mass", sets="only"), Word("Stiffness", sets="only"), Word("Internal", sets="only")),
+        optional="fcrit freq",
+        words=(
+            Word("Mass", sets="only"),
+            Word("Stiffness", sets="only"),
+            Word("Internal", sets="only"),
+            Word("Local", "f"),
+            Word("Combined", "f"),
+            Word("Kinetic"),
+            Word("Adaptive", "f"),
+        ),
+        ours="LOCAL, COMBINED, KINETIC, ADAPTIVE",
     ),
     Command(
         "DEFault",
@@ -230,11 +242,12 @@ COMMANDS = (
         "FRaction",
         "Use the fraction f of the critical time-step: of the estimate of 1980, which is only approximate, "
         "or of a bound that no mode of the contacts and zones of now exceeds. By default it is 0.1 of the "
-        "estimate.",
+        "estimate. SCALED: of that bound, with inertial masses that make all as quick as the quickest; "
+        "the way to rest is then none of the model, and time has no meaning.",
         "FRAC 0.1",
         numbers="f",
-        words=(Word("Safe"),),
-        ours="Safe",
+        words=(Word("Safe"), Word("SCaled")),
+        ours="Safe, Scaled",
     ),
     Command("Fix", "Fix the blocks with centroids in x1<x<x2, y1<y<y2.", "FIX 0 60 0 10", numbers=RANGE),
     Command(
@@ -410,10 +423,11 @@ COMMANDS = (
         "SOLve",
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
         "over the mean of the forces that contacts and zones carry. LIMIT: cycles after which to give up, "
-        "100000 if it is left off.",
+        "100000 if it is left off. STATIC: with LOCAL damping, the greatest safe step and scaled masses, "
+        "whatever DAMPING and FRACTION say; all stands still at its end.",
         "SOLVE 1E-3 LIMIT 20000",
         numbers="ratio",
-        words=(Word("Limit", "n"),),
+        words=(Word("Limit", "n"), Word("STatic")),
         ours="the command",
     ),
     Command(

@@ -39,6 +39,7 @@ COUNTED = {  # what a command that returns a number has done
 }
 NONE = {"split": "no block cut", "boundary": "no condition in range"}
 RUNS = ("cycle", "solve")  # what they have done until something ends them stays
+RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
 
@@ -144,8 +145,9 @@ class Monitor:
                 self.stop()
             return None
         named = dict(call.named)
-        if "path" in named:  # files named in a deck are in the folder for files
-            named["path"] = _in_folder(self.model.out, named["path"])
+        place = self.place(name, named.get("path"))
+        if place is not None:
+            named["path"] = place
         model = self.model
         before = model.tell, model.inform, model.explain_step, model.logs_calls
         model.explain_step, model.logs_calls = True, False
@@ -154,6 +156,10 @@ class Monitor:
             return getattr(model, name)(*call.positional, **named)
         finally:
             model.tell, model.inform, model.explain_step, model.logs_calls = before
+
+    def place(self, command: str, name: str | None) -> Path | None:
+        """Where the file is that a command names: in the folder for files. None if it names none."""
+        return None if name is None else _in_folder(self.model.out, name)
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""

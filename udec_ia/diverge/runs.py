@@ -6,19 +6,22 @@ changes no digit of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from io import StringIO
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from udec_ia.debug.session import cycle_statement, cycles_of
 from udec_ia.debug.timeline import Copy, copied
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import statements
+from udec_ia.deck.monitor import RESTART_FILE, Monitor
+from udec_ia.deck.parser import parse
+from udec_ia.deck.reader import Line, Statement, statements, tokens
 from udec_ia.deck.variables import Values
-from udec_ia.errors import UdecError
+from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
+from udec_ia.ops.run.watch import SOLVE_LIMIT
 
-EVERY = 64  # cycles between two comparisons
+EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 
 
 class Step(NamedTuple):
@@ -41,9 +44,30 @@ def of_state(model: Any, cycles: int) -> Run:
     return Run(model, _cycles(model, cycles))
 
 
-def of_deck(model: Any, text: str, name: str = "deck", values: Values | None = None) -> Run:
-    """The deck `text`, on a new model. values: of its variables, by name."""
-    return Run(model, _deck(model, text, name, values))
+def of_deck(
+    model: Any, text: str, name: str = "deck", values: Values | None = None, beside: Sequence[Path] = ()
+) -> Run:
+    """The deck `text`, on a new model. values: of its variables, by name.
+
+    beside: folders of files that RESTART finds if the deck wrote none.
+    """
+    return Run(model, _deck(_Monitor(model, values, beside), text, name))
+
+
+class _Monitor(Monitor):
+    """Obeys a deck whose own files are in a folder that had none."""
+
+    def __init__(self, model: Any, values: Values | None, beside: Sequence[Path]) -> None:
+        super().__init__(model, StringIO(), values=values)
+        self._beside = beside
+
+    def place(self, command: str, name: str | None) -> Path | None:
+        """As Monitor.place; a restart file that is not there is looked for in the other folders."""
+        if command == "restart" and not (self.model.out / (name or RESTART_FILE)).exists():
+            for folder in self._beside:
+                if (folder / (name or RESTART_FILE)).exists():
+                    return folder / (name or RESTART_FILE)
+        return super().place(command, name)
 
 
 def _cycles(model: Any, cycles: int) -> Iterator[Step]:
@@ -54,19 +78,14 @@ def _cycles(model: Any, cycles: int) -> Iterator[Step]:
         yield _step(model)
 
 
-def _deck(model: Any, text: str, name: str, values: Values | None) -> Iterator[Step]:
-    monitor = Monitor(model, StringIO(), values=values)
+def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
+    model: Any = monitor.model
     monitor.variables.check(text.splitlines(), name)
     for statement in monitor.variables.filled(statements(text.splitlines(), name)):
         if not statement.tokens or monitor.ended:
             continue
         line = f"{name}:{statement.tokens[0].line.number}: {statement.tokens[0].line.shown.strip()}"
-        word = statement.tokens[0].text.upper()
-        if word.startswith("SOLV"):
-            raise UdecError(
-                26, f"{line} ends where the run says", "runs are compared in CYCLEs: give their number"
-            )
-        left = cycles_of(statement)
+        ratio, left = _rest_of(statement)
         if not left:
             monitor.obey(statement)
             continue
@@ -74,9 +93,33 @@ def _deck(model: Any, text: str, name: str, values: Values | None) -> Iterator[S
         yield _step(model, line)
         while left > 0:
             piece = min(left, _to_next(model))
-            monitor.obey(cycle_statement(statement, piece))
+            monitor.obey(_part(statement, ratio, piece))
             left -= piece
             yield _step(model, line)
+            if ratio is not None and at_rest(model.array.h, ratio):
+                break
+
+
+def _rest_of(statement: Statement) -> tuple[float | None, int]:
+    """The force ratio that a SOLVE asks for, and how many cycles it or a CYCLE has at most; 0 for others.
+
+    SOLVE ... STATIC is one of the others: all stands still at its end, so it cannot be done in parts.
+    """
+    call = parse(statement)
+    if call.command.name != "solve":
+        return None, cycles_of(statement)
+    if call.named.get("static"):
+        return None, 0
+    return float(call.positional[0]), int(call.named.get("limit", SOLVE_LIMIT))
+
+
+def _part(statement: Statement, ratio: float | None, n: int) -> Statement:
+    """So many cycles of a CYCLE or SOLVE. A SOLVE in such parts ends after the same cycle as a whole one."""
+    if ratio is None:
+        return cycle_statement(statement, n)
+    first = statement.tokens[0].line
+    line = Line(first.file, first.number, f"SOLVE {ratio!r} LIMIT {n}")
+    return Statement([line], tokens(line))
 
 
 def _to_next(model: Any) -> int:

@@ -45,7 +45,7 @@ def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
             raise UdecError(
                 26,
                 f"after {now[0].line} there were {now[0].cycle} cycles, after {now[1].line} {now[1].cycle}",
-                "runs can be compared that have their CYCLEs in common",
+                "runs can be compared that have their CYCLEs in common, and SOLVEs that end alike",
             )
         cycle = now[0].cycle
         off = judge.off(now[0].copy.array(), now[1].copy.array())

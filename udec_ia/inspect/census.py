@@ -64,8 +64,9 @@ def reached(
     top = left = len(words) + 1
     shapes = {group.name: _shape(table, group, ratio) for group in table.groups}
     soft = {head.value: SOFT_NAMES[head.name] for head in table.heads if head.name in SOFT_NAMES}
-    kind_at = np.zeros(top, np.int16)  # number of the kind of the group that begins there; 0 for none
-    place = np.empty(top, np.int64)
+    places = (top - 2) // ratio + 1  # groups begin on reals: at these places, counted from 0
+    kind_at = np.zeros(places, np.int16)  # number of the kind of the group that begins there; 0 for none
+    last_at = np.empty(places, np.int32)
     wave: dict[str, list[Any]] = {}
     for kind, address in heads:
         wave.setdefault(kind, []).append(np.array([address], np.int64))
@@ -76,10 +77,11 @@ def reached(
                 continue
             at = np.concatenate(wave[kind])
             at = at[(at >= 1) & (at <= top - shape.size) & ((at - 1) % ratio == 0)]
-            at = _once(at[kind_at[at] == 0], place)
+            at = at[kind_at[(at - 1) // ratio] == 0]
+            at = at[_once((at - 1) // ratio, last_at)]
             if shape.heads:
                 at = at[one_of(words[at - 1], shape.heads)]
-            kind_at[at] = number
+            kind_at[(at - 1) // ratio] = number
             left -= len(at) * shape.size
             if not len(at) or (strict and left < 0):
                 continue
@@ -88,14 +90,14 @@ def reached(
                 for other, chosen in _by_kind(soft, words[at - 1], target, to):
                     ahead.setdefault(other, []).append(chosen)
         wave = ahead
-    return {kind: np.flatnonzero(kind_at == number) for number, kind in enumerate(shapes, 1)}
+    return {kind: np.flatnonzero(kind_at == number) * ratio + 1 for number, kind in enumerate(shapes, 1)}
 
 
-def _once(at: Any, place: Any) -> Any:
-    """Each of the addresses `at` once. place: room for a number at every address."""
-    rows = np.arange(len(at))
-    place[at] = rows
-    return at[place[at] == rows]
+def _once(places: Any, last_at: Any) -> Any:
+    """True for each of `places` that stands for its equals. last_at: room for a number at every place."""
+    rows = np.arange(len(places), dtype=last_at.dtype)
+    last_at[places] = rows
+    return last_at[places] == rows
 
 
 def _by_kind(soft: dict[int, str], codes: Any, target: str, to: Any) -> list[tuple[str, Any]]:

@@ -128,6 +128,7 @@ def _energy(b: Balance) -> str:
         ("gravity, since the account began", b.potential),
         ("lost to friction", b.friction),
         ("lost to mass damping", b.mass_damping),
+        ("lost on the way to rest", b.relaxation),
         ("lost to stiffness damping", b.stiffness_damping),
         ("lost to yielding", b.yielding),
         ("lost to changes of shape", b.shape),

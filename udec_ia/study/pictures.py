@@ -75,6 +75,7 @@ def _map(panel: Axes, axes: list[Any], value: Any, name: str) -> None:
     unknown = ~np.isfinite(value)
     panel.plot(axes[0][unknown], axes[1][unknown], "x", color=FAILED)
     bar = panel.get_figure().colorbar(mesh, ax=panel)  # type: ignore[union-attr]
+    bar.ax.tick_params(labelsize=8, colors=INK)
     bar.set_label(drawable(name), fontsize=9, color=INK, parse_math=False)
 
 

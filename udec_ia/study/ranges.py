@@ -19,7 +19,7 @@ from udec_ia.deck.variables import NAME, Value, spelt
 from udec_ia.errors import UdecError
 
 DIGITS = 12  # of the values of a logarithmic range between its ends
-MOST = 1_000_000  # values of a range
+LONGEST = 1_000_000  # values of a range
 FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
 Given = Value | Iterable[Value]
 
@@ -68,8 +68,8 @@ def _range(name: str, text: str) -> list[Value]:
         raise ValueError(f"{name}={text}: {FORM}") from None
     if how not in ("", "log"):
         raise ValueError(f"{name}={text}: {how!r} is no kind of range, log is one; {FORM}")
-    if not 2 <= n <= MOST:
-        raise ValueError(f"{name}={text}: a range has 2 to {MOST} values, not {n}")
+    if not 2 <= n <= LONGEST:
+        raise ValueError(f"{name}={text}: a range has 2 to {LONGEST} values, not {n}")
     if how == "log":
         return _logarithmic(name, text, float(a), float(b), n)
     steps = [a + (b - a) * k / (n - 1) for k in range(n)]

@@ -12,12 +12,12 @@ from typing import NamedTuple, TextIO
 from udec_ia.deck.monitor import names_a_file
 from udec_ia.deck.variables import Value, Variables
 from udec_ia.heap.words import DEFAULT_SCHEME
-from udec_ia.study.many import run_all
+from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.pictures import draw
 from udec_ia.study.progress import Told
 from udec_ia.study.ranges import Given, grid
 from udec_ia.study.reading import DEFAULTS, read
-from udec_ia.study.runs import EVERY, Result, Run
+from udec_ia.study.runs import EVERY, Result, Run, kept
 from udec_ia.study.table import BEFORE, BEHIND, Table
 
 LONGEST = 120  # characters of the name of a folder
@@ -82,9 +82,8 @@ def sweep(
     try:
         results = run_all(runs, folder, jobs=jobs, dask=dask, told=told)
     except KeyboardInterrupt as interrupt:
-        done = {one.name: one for one in told.results}
         with suppress(Exception):
-            put([done[run.name] for run in runs if run.name in done])
+            put([one for run in runs if (one := kept(run, folder / RUNS)[0]) is not None])
         raise type(interrupt)(str(folder)) from None
     finally:
         told.close()

@@ -150,7 +150,7 @@ class Deck:
                 lines += _types(setting.types)
             lines += self._line(one, name, setting, numbers, run)
             if name in ("start", "restart") and not told:
-                lines.append(_fraction(setting, numbers, fraction, False))
+                lines.append(_fraction(setting, numbers, fraction, ""))
             run += name in ("cycle", "solve")
         return "".join(f"{line}\n" for line in lines)
 
@@ -166,8 +166,8 @@ class Deck:
             return _left_out(one)
         if name == "fraction":
             call = parse(one)
-            safe = bool(call.named.get("safe"))
-            return _instead(one, _fraction(setting, numbers, call.positional[0], safe))
+            words = "".join(f" {word.upper()}" for word in ("safe", "scaled") if call.named.get(word))
+            return _instead(one, _fraction(setting, numbers, call.positional[0], words))
         if name == "cycle":
             cycles = numbers.cycles[run] if run < len(numbers.cycles) else None
             return _instead(one, f"CYCLE {cycles}") if cycles is not None else _lines(one)
@@ -253,10 +253,11 @@ def _after(one: Statement, *keywords: str) -> list[Token]:
     return found
 
 
-def _fraction(setting: Setting, numbers: Numbers, own: float, safe: bool) -> str:
-    """FRACTION. own: what the deck has."""
+def _fraction(setting: Setting, numbers: Numbers, own: float, words: str) -> str:
+    """FRACTION. own: what the deck has, with these words."""
     fraction = (setting.safe or own * setting.step) * numbers.fit
-    return f"FRACTION {fraction:.10g}{' SAFE' if safe or setting.safe else ''}"
+    safe = " SAFE" if setting.safe and "SAFE" not in words else ""
+    return f"FRACTION {fraction:.10g}{safe}{words}"
 
 
 def _solve(one: Statement, setting: Setting, longer: float, last: int | None) -> str:

@@ -91,8 +91,8 @@ def _of_partings(price: Price) -> Iterator[str]:
         one, two = (row.setting.name for row in price.levels[-2:])
         yield (
             f"{one} and {two} part at {found.time:.4g} s: "
-            f"the block that was at ({found.x:.4g}, {found.y:.4g}) is elsewhere from then on, by {found.apart:.3g} m at the end; "
-            f"the greatest way is {found.moved:.3g} m"
+            f"the block that was at ({found.x:.4g}, {found.y:.4g}) is elsewhere from then on, "
+            f"by {found.apart:.3g} m at the end; the greatest way is {found.moved:.3g} m"
         )
 
 

@@ -73,6 +73,7 @@ def _convert(args: argparse.Namespace) -> Listing:
 
     state = _read(args)
     made = convert(state.array, scheme(args.build))
+    state = state._replace(array=made.array)  # the former one is not needed any more, and takes memory
     return _write(args, state, made.array, _convert_line(args), Listing(made.said), made.broken)
 
 

@@ -100,7 +100,7 @@ def _run(
     if args.cycles is not None:
         return of_state(Model.restore(path, out=out, constitutive=laws), args.cycles)
     model = Model(build=build, out=out, name=path.stem, constitutive=laws)
-    return of_deck(model, _text(path), path.name, values)
+    return of_deck(model, _text(path), path.name, values, (Path(), path.parent))
 
 
 def _text(path: Path) -> str:

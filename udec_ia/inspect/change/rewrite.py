@@ -58,9 +58,9 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     start, used = _places(found, to)
     fresh = _empty(array, to, used)
     wide = np.int32 if used < 2**31 else np.int64
-    moved = np.zeros(int(array.h.ci[g.MFREE]) + 1, wide)  # new address of the group at an address
+    moved = _Moved(np.zeros(int(array.h.ci[g.MFREE]) // array.scheme.ratio + 2, wide), array.scheme.ratio)
     for kind, at in found.items():
-        moved[at] = start[kind]
+        moved.to[moved.places(at)] = start[kind]
     fit = _Fit(array, to)
     for kind, at in found.items():
         for first in range(0, len(at), PIECE):
@@ -71,6 +71,21 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     if to.real_bits != array.scheme.real_bits:
         tolset(fresh.h, fresh.h.cr[g.DTOL])
     return Rewritten(fresh, fit.reals, fit.rounded, fit.vanished, fit.change, fit.where)
+
+
+class _Moved(NamedTuple):
+    """Where groups have moved. to: the new address of each, by its place; groups begin on reals."""
+
+    to: Any
+    ratio: int
+
+    def places(self, addresses: Any) -> Any:
+        """Where the addresses of groups stand in `to`; 0 of 0."""
+        return (addresses.astype(np.int64) + (self.ratio - 1)) // self.ratio
+
+    def of(self, addresses: Any) -> Any:
+        """The new addresses of groups at `addresses`; 0 of 0."""
+        return self.to[self.places(addresses)]
 
 
 def _places(found: dict[str, Any], to: Scheme) -> tuple[dict[str, Any], int]:
@@ -98,7 +113,9 @@ def _empty(array: MainArray, to: Scheme, used: int) -> MainArray:
     return fresh
 
 
-def _write(array: MainArray, fresh: MainArray, kind: str, at: Any, start: Any, moved: Any, fit: _Fit) -> None:
+def _write(
+    array: MainArray, fresh: MainArray, kind: str, at: Any, start: Any, moved: _Moved, fit: _Fit
+) -> None:
     """The groups of a kind, from the addresses `at` of `array` to the addresses `start` of `fresh`."""
     old, new = (layouts(one.scheme.ratio)[kind] for one in (array, fresh))
     rows = array.h.ia[(at - 1)[:, np.newaxis] + np.arange(old.size)]  # a row each
@@ -108,19 +125,19 @@ def _write(array: MainArray, fresh: MainArray, kind: str, at: Any, start: Any, m
         here, there = old.offset[field.name] - field.real, new.offset[field.name] - field.real
         values = (reals if field.real else rows)[:, here : here + field.count]
         if field.target is not None:
-            values = moved[values]
+            values = moved.of(values)
         target = fresh_reals if field.real else fresh_rows
         target[:, there : there + field.count] = fit.take(kind, at, field, values)
     fresh.h.ia[(start - 1)[:, np.newaxis] + np.arange(new.size)] = fresh_rows
 
 
-def _write_common(array: MainArray, fresh: MainArray, moved: Any, used: int, fit: _Fit) -> None:
+def _write_common(array: MainArray, fresh: MainArray, moved: _Moved, used: int, fit: _Fit) -> None:
     """The common block, with the addresses in it, and the memory as it is now."""
     size = int(fresh.h.ci[g.MTOP])
     for field in TABLE.common:
         values = variable(array.h, field)
         if field.target is not None:
-            values = moved[values]
+            values = moved.of(values)
         variable(fresh.h, field)[:] = fit.take("", None, field, values) if field.type == "real" else values
     fresh.h.ci[g.JUNK], fresh.h.ci[g.MTOP], fresh.h.ci[g.MFREE] = 0, size, used + 1
 

@@ -21,7 +21,7 @@ def check_codes(state: State) -> None:
         for field in TABLE.group(kind).fields:
             if field.real or field.target is not None or not field.allowed or not len(addresses):
                 continue
-            values = state.column(kind, field.name)
+            values = state.read(addresses, field.name)
             for row in np.flatnonzero(~allowed(field, values)):
                 state.report(
                     2, f"{field.name} of {kind}@{addresses[row]} is {values[row]}, not {in_words(field)}"

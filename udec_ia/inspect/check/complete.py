@@ -23,13 +23,13 @@ from math import hypot, isqrt
 
 import numpy as np
 
-from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot, length
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
-CHUNK = 20_000  # pairs of blocks looked at together
+CHUNK = 10_000  # pairs of blocks looked at together
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
 FAR = 3.0  # rounding lengths that a corner is away from an edge at most, where its arc meets the edge
 AROUND = 8  # directions in which it is looked whether a block holds a point
@@ -46,7 +46,7 @@ class Joined:
         self.blocks = len(o.block)
         pair = self._key(one, two)
         order = np.argsort(pair, kind="stable")
-        self.pair, self.point, self.overlap = pair[order], touch.point[order], touch.overlap[order]
+        self.pair, self.point, self.overlap = pair[order], touch.point.take(order, 0), touch.overlap[order]
 
     def _key(self, one: Numbers, two: Numbers) -> Numbers:
         return np.minimum(one, two) * self.blocks + np.maximum(one, two)
@@ -61,7 +61,7 @@ class Joined:
         key = self._key(one, two)
         first = np.searchsorted(self.pair, key, "left")
         row, place = ragged(np.searchsorted(self.pair, key, "right") - first)
-        away = np.hypot(*(point[row] - self.point[first[row] + place]).T)
+        away = length(point.take(row, 0) - self.point.take(first[row] + place, 0))
         return np.bincount(row[away <= reach[row]], minlength=len(key)) > 0
 
     @cached_property
@@ -122,7 +122,7 @@ def _beside_blunt_arc(o: Outlines, j: Numbers, point: Numbers) -> Numbers:
     """Distance of each point, along the edge of corner j, from a blunt arc at one end; inf without one."""
     found = np.full(len(j), np.inf)
     for corner, end in ((j, -1), (o.before[j], 1)):
-        away = np.abs(dot(o.p[corner] + end * o.d * o.t[j] - point, o.t[j]))
+        away = np.abs(dot(o.p.take(corner, 0) + end * o.d * o.t.take(j, 0) - point, o.t.take(j, 0)))
         found = np.where(o.r[corner] > BLUNT * o.d, np.minimum(found, away), found)
     return found
 
@@ -131,10 +131,10 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
     """True if a corner of a third block, rounded to less than `width`, comes within `reach` of `point`."""
     tip = np.flatnonzero((o.r > 0) & (2 * o.r < width) & ~np.isin(o.owner, hosts))
     edge = np.concatenate((tip, o.after[tip]))
-    start = o.p[o.before[edge]]
-    along = np.clip(dot(point - start, o.t[edge]), o.start[edge], o.end[edge])
-    from_edge = point - start - along[:, None] * o.t[edge]
-    near_arc = np.hypot(*(point - o.c[tip]).T) <= o.r[tip] + reach
+    start = o.p.take(o.before[edge], 0)
+    along = np.clip(dot(point - start, o.t.take(edge, 0)), o.start[edge], o.end[edge])
+    from_edge = point - start - along[:, None] * o.t.take(edge, 0)
+    near_arc = np.hypot(*(point - o.c.take(tip, 0)).T) <= o.r[tip] + reach
     return bool(near_arc.any() or (np.hypot(*from_edge.T) <= reach).any())
 
 
@@ -163,7 +163,7 @@ def _thin_tips(
         tips = np.flatnonzero((o.owner == third) & (o.r > 0))
         for x, y, overlap in joined.points[min(one, third), max(one, third)]:
             for u, v, depth in joined.points[min(two, third), max(two, third)]:
-                at = np.hypot(*(o.c[tips] - (x, y)).T) <= near
+                at = np.hypot(*(o.c.take(tips, 0) - (x, y)).T) <= near
                 thin = at & (2 * o.r[tips] < overlap + depth)
                 if hypot(x - u, y - v) <= near and thin.any():
                     found.append((x, y, overlap))
@@ -214,8 +214,10 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
     pair, place = ragged(o.count[a])
     i, b = o.first[a[pair]] + place, b[pair]
     reach = o.d + o.slack[i]
-    inside = o.arc[i] & (o.p[i] >= o.low[b] - reach[:, None]).all(axis=1)
-    inside &= (o.p[i] <= o.high[b] + reach[:, None]).all(axis=1)
+    inside = o.arc[i]
+    for axis in (0, 1):
+        at = o.p[i, axis]
+        inside &= (at >= o.low[b, axis] - reach) & (at <= o.high[b, axis] + reach)
     i, b = i[inside], b[inside]
     pair, place = ragged(o.count[b])
     i, j = i[pair], o.first[b[pair]] + place
@@ -234,49 +236,53 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     then be far away along the edge. A point of an edge that does not face it has deeper ones beside it, where
     its own edge goes on.
     """
-    along, blunt = dot(o.c[i] - o.p[o.before[j]], o.t[j]), o.r[i] > BLUNT * o.d
+    along, blunt = dot(o.c.take(i, 0) - o.p.take(o.before[j], 0), o.t.take(j, 0)), o.r[i] > BLUNT * o.d
     keep = blunt | ((along >= o.start[j]) & (along <= o.end[j]))
+    keep &= dot(o.e.take(j, 0), o.out.take(i, 0)) < 0
     i, j, blunt = i[keep], j[keep], blunt[keep]
-    inward = -o.e[j]
-    early, late = dot(inward, o.t[i]), dot(inward, o.t[o.after[i]])
-    reach = np.where(o.pointed[i], 0.0, o.d)[:, None]
-    deepest = np.select(
-        [(early < 0)[:, None], (late > 0)[:, None]],
-        [o.p[i] - reach * o.t[i], o.p[i] + reach * o.t[o.after[i]]],
-        o.c[i] + o.r[i][:, None] * inward,
+    inward = -o.e.take(j, 0)
+    early, late = dot(inward, o.t.take(i, 0)), dot(inward, o.t.take(o.after[i], 0))
+    deepest = o.c.take(i, 0) + o.r[i][:, None] * inward
+    for ends, along, sign in ((early < 0, i, -1.0), ((early >= 0) & (late > 0), o.after[i], 1.0)):
+        k = i[ends]
+        reach = sign * np.where(o.pointed[k], 0.0, o.d)[:, None]
+        deepest[ends] = o.p.take(k, 0) + reach * o.t.take(along[ends], 0)
+    depth, along = (
+        dot(deepest - o.p.take(j, 0), inward),
+        dot(deepest - o.p.take(o.before[j], 0), o.t.take(j, 0)),
     )
-    depth, along = dot(deepest - o.p[j], inward), dot(deepest - o.p[o.before[j]], o.t[j])
     slack = o.rounding(i, j)
     awry = np.where(o.pointed[i], AWRY_POINT, AWRY)
     keep = ~blunt | ((along >= o.start[j]) & (along <= o.end[j]))
     keep &= (depth >= -o.apart(i, j)) & (depth <= o.d) & (-early <= awry) & (late <= awry)
-    keep &= dot(inward, o.out[i]) > 0
-    i, j, deepest, depth, slack = i[keep], j[keep], deepest[keep], depth[keep], slack[keep]
-    keep = (depth <= slack) | _inside(o, deepest, o.owner[j])
-    return i[keep], j[keep], deepest[keep], depth[keep]
+    i, j, deepest, depth, slack = i[keep], j[keep], deepest.compress(keep, 0), depth[keep], slack[keep]
+    keep = depth <= slack
+    deep = np.flatnonzero(~keep)
+    keep[deep] = _inside(o, deepest.take(deep, 0), o.owner[j[deep]])
+    return i[keep], j[keep], deepest.compress(keep, 0), depth[keep]
 
 
 def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """Pairs of arcs that overlap along their line of centres, each facing the other."""
     keep = o.arc[j] & (o.owner[i] < o.owner[j])
     i, j = i[keep], j[keep]
-    between = o.c[j] - o.c[i]
-    distance = np.hypot(*between.T)
+    between = o.c.take(j, 0) - o.c.take(i, 0)
+    distance = length(between)
     depth = o.r[i] + o.r[j] - distance
     keep = (depth >= -o.apart(i, j)) & (distance > 0)
     for k, towards in ((i, between), (j, -between)):
-        keep &= (dot(towards, o.t[k]) >= 0) & (dot(towards, o.t[o.after[k]]) <= 0)
-        keep &= dot(towards, o.out[k]) > 0
+        keep &= (dot(towards, o.t.take(k, 0)) >= 0) & (dot(towards, o.t.take(o.after[k], 0)) <= 0)
+        keep &= dot(towards, o.out.take(k, 0)) > 0
     i, j, depth = i[keep], j[keep], depth[keep]
-    towards = between[keep] / distance[keep][:, None]
-    return i, j, o.c[i] + (o.r[i] - depth / 2)[:, None] * towards, depth
+    towards = between.compress(keep, 0) / distance[keep][:, None]
+    return i, j, o.c.take(i, 0) + (o.r[i] - depth / 2)[:, None] * towards, depth
 
 
 def _inside(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
     """True for each point that lies in the polygon of its block (by the crossings of a ray)."""
     pair, place = ragged(o.count[block])
     j = o.first[block[pair]] + place
-    a, b, q = o.p[o.before[j]], o.p[j], point[pair]
+    a, b, q = o.p.take(o.before[j], 0), o.p.take(j, 0), point.take(pair, 0)
     spans = (a[:, 1] > q[:, 1]) != (b[:, 1] > q[:, 1])
     left = cross(b - a, q - a) > 0
     crossed = np.bincount(pair[spans & (left == (b[:, 1] > a[:, 1]))], minlength=len(block))
@@ -287,9 +293,14 @@ def _in_rounded(o: Outlines, point: Numbers, block: Numbers) -> Numbers:
     """True for each point that lies in the rounded outline of its block: the polygon without its tips."""
     pair, place = ragged(o.count[block])
     j = o.first[block[pair]] + place
-    from_centre = point[pair] - o.c[j]
-    tip = (dot(from_centre, o.t[j]) >= 0) & (dot(from_centre, o.t[o.after[j]]) <= 0) & (o.r[j] > 0)
-    tip &= (np.hypot(*from_centre.T) > o.r[j]) & (np.hypot(*(point[pair] - o.p[j]).T) <= o.d)
+    here = point.take(pair, 0)
+    from_centre = here - o.c.take(j, 0)
+    tip = (
+        (dot(from_centre, o.t.take(j, 0)) >= 0)
+        & (dot(from_centre, o.t.take(o.after[j], 0)) <= 0)
+        & (o.r[j] > 0)
+    )
+    tip &= (length(from_centre) > o.r[j]) & (length(here - o.p.take(j, 0)) <= o.d)
     in_tip = np.bincount(pair[tip], minlength=len(block)) > 0
     return _inside(o, point, block) & ~in_tip
 
@@ -300,7 +311,10 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
     Only what lies in the boxes of both can do so.
     """
     edge = o.straight
-    low, high = np.maximum(o.low[a], o.low[b]), np.minimum(o.high[a], o.high[b])  # the box that both share
+    low, high = (
+        np.maximum(o.low.take(a, 0), o.low.take(b, 0)),
+        np.minimum(o.high.take(a, 0), o.high.take(b, 0)),
+    )  # the box that both share
 
     def common(block: Numbers, low_corner: Numbers, high_corner: Numbers) -> tuple[Numbers, Numbers]:
         """Pair and corner for what the corners of `block` have, from low to high, in that box."""
@@ -318,11 +332,12 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
     slack = o.rounding(i, j)
     cut = np.ones(len(pair), bool)
     for k, m in ((i, j), (j, i)):
-        u, v = (dot(point[k] - o.p[m], o.e[m]) for point in edge)
+        u, v = (dot(point.take(k, 0) - o.p.take(m, 0), o.e.take(m, 0)) for point in edge)
         cut &= (np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack)
     bad = [pair[cut]]
     for inner, outer in ((a, b), (b, a)):
-        for point in o.rounded.transpose(1, 0, 2):
-            pair, k = common(inner, point, point)
-            bad.append(pair[_in_rounded(o, point[k], outer[pair])])
+        for of_arc in range(3):
+            points = o.rounded[:, of_arc]
+            pair, k = common(inner, points, points)
+            bad.append(pair[_in_rounded(o, points[k], outer[pair])])
     return [(int(a[k]), int(b[k])) for k in np.unique(np.concatenate(bad))]

@@ -67,12 +67,12 @@ class Outlines:
     @cached_property
     def z(self) -> Numbers:
         """Length of the edge that ends at the corner."""
-        return np.asarray(np.hypot(*(self.p - self.p[self.before]).T))
+        return length(self.p - self.p.take(self.before, 0))
 
     @cached_property
     def t(self) -> Numbers:
         """Unit vector along the edge that ends at the corner."""
-        return np.asarray((self.p - self.p[self.before]) / self.z[:, None])
+        return np.asarray((self.p - self.p.take(self.before, 0)) / self.z[:, None])
 
     @cached_property
     def e(self) -> Numbers:
@@ -87,7 +87,7 @@ class Outlines:
     @cached_property
     def out(self) -> Numbers:
         """A vector along the bisector of the corner's two edges, outwards."""
-        return np.asarray(self.e + self.e[self.after])
+        return np.asarray(self.e + self.e.take(self.after, 0))
 
     @cached_property
     def rounded(self) -> Numbers:
@@ -97,26 +97,29 @@ class Outlines:
         """
         round_it = (self.r > 0)[:, None]
         outwards = self.p - self.c
-        far = np.maximum(np.hypot(*outwards.T), self.fine)
+        far = np.maximum(length(outwards), self.fine)
         top = np.where(round_it, self.c + (self.r / far)[:, None] * outwards, self.p)
         start = self.p - np.where(round_it, self.d * self.t, 0.0)
-        end = self.p + np.where(round_it, self.d * self.t[self.after], 0.0)
+        end = self.p + np.where(round_it, self.d * self.t.take(self.after, 0), 0.0)
         return np.stack((start, top, end), axis=1)
 
     def deepest(self, i: Numbers, inward: Numbers, on_edge: Numbers) -> Numbers:
         """The places of arcs i that are deepest along `inward`; on an edge a blunt one has an end."""
         blunt = on_edge & (self.r[i] > BLUNT * self.d)
-        early, late = dot(inward, self.t[i]) < 0, dot(inward, self.t[self.after[i]]) > 0
-        return np.select(
-            [(blunt & late)[:, None], (blunt & early)[:, None]],
-            [self.p[i] + self.d * self.t[self.after[i]], self.p[i] - self.d * self.t[i]],
-            self.c[i] + self.r[i][:, None] * inward,
-        )
+        early, late = dot(inward, self.t.take(i, 0)) < 0, dot(inward, self.t.take(self.after[i], 0)) > 0
+        found = np.asarray(self.c.take(i, 0) + self.r[i][:, None] * inward)
+        for ends, along, reach in (
+            (blunt & late, self.after, self.d),
+            (blunt & early & ~late, np.arange(len(self.p)), -self.d),
+        ):
+            k = i[ends]
+            found[ends] = self.p.take(k, 0) + reach * self.t.take(along[k], 0)
+        return found
 
     @cached_property
     def turn(self) -> Numbers:
         """Angle by which the outline turns clockwise at the corner; negative at a concave corner."""
-        t, after = self.t, self.t[self.after]
+        t, after = self.t, self.t.take(self.after, 0)
         return np.asarray(np.arctan2(-cross(t, after), dot(t, after)))
 
     @cached_property
@@ -161,7 +164,7 @@ class Outlines:
     @cached_property
     def straight(self) -> tuple[Numbers, Numbers]:
         """Start and end of the straight part of the edge that ends at the corner."""
-        start = self.p[self.before]
+        start = self.p.take(self.before, 0)
         return start + self.start[:, None] * self.t, start + self.end[:, None] * self.t
 
     @cached_property
@@ -178,6 +181,11 @@ class Outlines:
 def dot(a: Numbers, b: Numbers) -> Numbers:
     """Scalar products of two arrays of plane vectors."""
     return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
+
+
+def length(a: Numbers) -> Numbers:
+    """Lengths of plane vectors. Their squares are numbers: `outlines` sees to that."""
+    return np.asarray(np.sqrt(dot(a, a)))
 
 
 def cross(a: Numbers, b: Numbers) -> Numbers:
@@ -240,7 +248,7 @@ def check_numbers(state: State) -> None:
         for field in TABLE.group(kind).fields:
             if not field.real or not len(addresses):
                 continue
-            values = state.column(kind, field.name)
+            values = state.read(addresses, field.name)
             bad = ~np.isfinite(values)
             if field.allowed:
                 bad |= ~allowed(field, values)
@@ -264,7 +272,7 @@ def check_outlines(state: State, o: Outlines) -> None:
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")
         return
-    from_first = o.p - o.p[o.first][o.owner]
+    from_first = o.p - o.p.take(o.first[o.owner], 0)
     area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
     for i in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
@@ -300,7 +308,7 @@ def circles(o: Outlines) -> tuple[Numbers, Numbers]:
 
 def reaches(o: Outlines, centroid: Numbers) -> Numbers:
     """Distance of the farthest corner of each block from its centroid."""
-    return np.asarray(np.maximum.reduceat(np.hypot(*(o.p - centroid[o.owner]).T), o.first))
+    return np.asarray(np.maximum.reduceat(length(o.p - centroid.take(o.owner, 0)), o.first))
 
 
 def _check_circles(state: State, o: Outlines) -> None:
@@ -348,13 +356,15 @@ def touches(state: State, o: Outlines) -> Touches:
     comparable = (code >= g.CORNER_CORNER) & (code < g.VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
     at = np.flatnonzero(comparable)
     code, i, j = code[at], ends[0][at], ends[1][at]
-    between = o.c[j] - o.c[i]
-    distance = np.hypot(*between.T)
+    between = o.c.take(j, 0) - o.c.take(i, 0)
+    distance = length(between)
     two_arcs = code == g.CORNER_CORNER
     arc, edge = np.where(code == g.EDGE_CORNER, (j, i), (i, j))
-    inward = np.where(two_arcs[:, None], between / distance[:, None], -o.e[edge])  # away from the arc's block
+    inward = np.where(
+        two_arcs[:, None], between / distance[:, None], -o.e.take(edge, 0)
+    )  # away from the arc's block
     deepest = o.deepest(arc, inward, ~two_arcs)
-    overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p[edge], inward))
+    overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p.take(edge, 0), inward))
     point = deepest - (overlap / 2)[:, None] * inward
     return Touches(at, code, i, j, overlap, point, 2 * np.maximum(o.slack[i], o.slack[j]))
 

@@ -111,8 +111,9 @@ class State:
         self.address: dict[str, Numbers] = {}
         self.owner: dict[str, Numbers] = {}
         self._columns: dict[str, Numbers] = {}
-        self._kind_at = np.zeros(self.free, np.int8)
-        self._row_at = np.zeros(self.free, np.int32)
+        places = (self.free - 1) // self.ratio + 1  # groups begin on reals: at these places, from 0
+        self._kind_at = np.zeros(places, np.int8)
+        self._row_at = np.zeros(places, np.int32)
         for kind in LISTED:
             self._enter(kind, self._main_list(kind))
         self.rings = self._take_rings()
@@ -154,16 +155,22 @@ class State:
             self._columns[key] = self.read(self.address[kind], name, i)
         return self._columns[key]
 
+    def forget(self) -> None:
+        """Keep no column: what comes now needs others, and room."""
+        self._columns.clear()
+
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
-        inside = (addresses > 0) & (addresses < self.free)
-        at = np.where(inside, addresses, 0)
-        return np.where(inside & (self._kind_at[at] == KIND_CODE[kind]), self._row_at[at], -1)
+        before = addresses - 1
+        place = before // self.ratio
+        inside = (addresses > 0) & (addresses < self.free) & (place * self.ratio == before)
+        place[~inside] = 0
+        return np.where(inside & (self._kind_at[place] == KIND_CODE[kind]), self._row_at[place], -1)
 
     def _enter(self, kind: str, at: Numbers) -> None:
         self.address[kind] = at
-        self._kind_at[at] = KIND_CODE[kind]
-        self._row_at[at] = np.arange(len(at))
+        self._kind_at[(at - 1) // self.ratio] = KIND_CODE[kind]
+        self._row_at[(at - 1) // self.ratio] = np.arange(len(at))
 
     def _kind(self, iad: int) -> str | None:
         """Kind of the group at `iad` by head code, if a whole group of that kind can stand there."""
@@ -228,10 +235,14 @@ class State:
             left -= len(found)
             corners.append(np.array(found, np.int64))
             owners.append(np.full(len(found), block))
-        at, once = np.unique(np.concatenate(corners), return_index=True)
-        order = np.argsort(once)
-        self._enter("corner", at[order])
-        self.owner["corner"] = np.concatenate(owners)[once[order]]
+        at, owner = np.concatenate(corners), np.concatenate(owners)
+        self._enter("corner", at)
+        once = self.rows("corner", at) == np.arange(len(at))
+        if not once.all():  # the first list that a corner stands in has it
+            once = np.sort(np.unique(at, return_index=True)[1])
+            at, owner = at[once], owner[once]
+            self._enter("corner", at)
+        self.owner["corner"] = owner
         rings.row[~rings.contact] = self.rows("corner", rings.item[~rings.contact])
         return rings
 
@@ -370,7 +381,7 @@ class State:
         found: dict[int, int] = {}
         for name, owner, iad in self._owners(kind):
             source = name
-            while 0 < iad <= last and not (iad - 1) % ratio and not known[iad]:
+            while 0 < iad <= last and not (iad - 1) % ratio and not known[(iad - 1) // ratio]:
                 if iad in found:
                     what = "two lists of the kind meet, or one is a circle" if link else "it has an owner"
                     self.report(2, f"{source} leads back to {kind}@{iad}: {what}")
@@ -421,7 +432,7 @@ def check_pointers(state: State) -> None:
                 continue
             targets = TARGETS[field.target]
             for i in range(field.count):
-                values = state.column(kind, field.name, i)
+                values = state.read(addresses, field.name, i)
                 good = (values == 0) & (field.allowed == OPTIONAL)
                 for target in targets:
                     good |= state.rows(target, values) >= 0

@@ -69,12 +69,14 @@ def check(array: MainArray) -> list[Violation]:
     with np.errstate(all="ignore"):
         state = State(array)
         _check_links(state)
+        state.forget()
         shapes = _check_shapes(state)
         if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
             check_pieces(state, shapes)
             touching = touches(state, shapes)
             check_contacts(state, shapes, touching)
             check_places(state, shapes, touching)
+            state.forget()
             check_complete(state, shapes, touching)
     return state.violations()
 

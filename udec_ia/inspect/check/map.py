@@ -90,7 +90,8 @@ def _check_contacts(state: State) -> None:
     for k in np.flatnonzero(one == two):
         state.report(4, f"contact@{contacts[k]} names block@{one[k]} in {HOSTS[0]} and in {HOSTS[1]}")
     for name, block, at in zip(HOSTS, (one, two), rings.at, strict=True):
-        for k in np.flatnonzero((at < 0) & (one != two) & np.isin(block, rings.block)):
+        out = np.flatnonzero((at < 0) & (one != two))
+        for k in out[np.isin(block[out], rings.block)]:
             state.report(
                 4,
                 f"contact@{contacts[k]} names block@{block[k]} in {name}, but stands not in the block's list",
@@ -216,7 +217,9 @@ def _check_domains(state: State, with_loop: Numbers, whole: bool) -> None:
         else:
             state.report(4, f"{what} contact@{contact[k]}, which does not stand on its loop")
     if whole:
-        for k in np.flatnonzero(~np.isin(domains, with_loop)):
+        without = np.ones(len(domains) + 1, bool)  # one more, for row -1
+        without[state.rows("domain", with_loop)] = False
+        for k in np.flatnonzero(without[:-1]):
             state.report(4, f"no loop of contacts is that of domain@{domains[k]}")
 
 
@@ -265,7 +268,9 @@ def neighbours(state: State, skipped: Numbers) -> tuple[Numbers, Numbers, Number
     skipped: rows of contacts that are left out.
     """
     rings = state.rings
-    out = rings.contact & ((rings.row < 0) | np.isin(rings.row, skipped))
+    out_of = np.zeros(len(state.address["contact"]) + 1, bool)
+    out_of[skipped] = out_of[-1] = True  # and for row -1
+    out = rings.contact & out_of[np.where(rings.contact, rings.row, -1)]
     index = np.flatnonzero(~out)
     one, two = index[:-1], index[1:]
     close = rings.contact[one] & rings.contact[two] & (rings.owner[one] == rings.owner[two])

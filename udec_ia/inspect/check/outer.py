@@ -65,9 +65,10 @@ def _exposed_to(state: State) -> np.ndarray:
     domain = np.full(len(rings.item), -1)
     if not len(index):
         return domain
-    number = np.searchsorted(index, np.arange(len(rings.item)), side="right")
+    number = np.cumsum(rings.contact)
     following = index[np.minimum(number, len(index) - 1)]
-    first = index[np.minimum(np.searchsorted(index, rings.first), len(index) - 1)][rings.owner]
+    before = number[rings.first] - rings.contact[rings.first]
+    first = index[np.minimum(before, len(index) - 1)][rings.owner]
     inside = (number < len(index)) & (rings.owner[following] == rings.owner)
     following = np.where(inside, following, first)
     known = rings.owner[following] == rings.owner

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot
+from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot, length
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.inspect.check.map import neighbours
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
@@ -49,33 +49,33 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     on_edge = touch.code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
     two_arcs = touch.code == g.CORNER_CORNER
-    touching = o.deepest(other, -o.e[k], on_edge)
-    from_start = dot(touching - o.p[o.before[k]], o.t[k])
-    to_other = o.c[other] - o.c[k]
+    touching = o.deepest(other, -o.e.take(k, 0), on_edge)
+    from_start = dot(touching - o.p.take(o.before[k], 0), o.t.take(k, 0))
+    to_other = o.c.take(other, 0) - o.c.take(k, 0)
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
     over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
     far = two_arcs & (o.r[other] > BLUNT * o.d)
-    facing = np.where(two_arcs[:, None], to_other, -o.e[other])
+    facing = np.where(two_arcs[:, None], to_other, -o.e.take(other, 0))
     turn = np.maximum(o.turn[k], 0.0)
-    angle = np.arctan2(-cross(o.e[k], facing), dot(o.e[k], facing))
+    angle = np.arctan2(-cross(o.e.take(k, 0), facing), dot(o.e.take(k, 0), facing))
     angle += 2 * np.pi * (angle < turn / 2 - np.pi)  # facing away, nearer to the end
     arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, turn)
     return Place(
         corner=k,
         on_edge=on_edge,
-        under=np.select([on_edge, two_arcs], [under, -dot(to_other, o.t[k])], -np.inf),
-        over=np.select([on_edge, two_arcs], [over, dot(to_other, o.t[o.after[k]])], -np.inf),
-        lever=np.where(far, np.maximum(o.r[k], o.d) / np.hypot(*to_other.T), 1.0),
+        under=np.select([on_edge, two_arcs], [under, -dot(to_other, o.t.take(k, 0))], -np.inf),
+        over=np.select([on_edge, two_arcs], [over, dot(to_other, o.t.take(o.after[k], 0))], -np.inf),
+        lever=np.where(far, np.maximum(o.r[k], o.d) / length(to_other), 1.0),
         along=np.where(on_edge, np.clip(from_start, o.start[k], np.maximum(o.end[k], o.start[k])), arc),
     )
 
 
 def _past(o: Outlines, k: Numbers, other: Numbers) -> Numbers:
     """How far what touches there of corners `other` has passed the bisectors at corners k, clockwise."""
-    mean = (o.t[k] + o.t[o.after[k]]) / 2
+    mean = (o.t.take(k, 0) + o.t.take(o.after[k], 0)) / 2
     inward = np.stack([mean[:, 1], -mean[:, 0]], axis=1)
     touching = o.deepest(other, inward, np.ones(len(k), bool))
-    return dot(touching - o.p[k], mean)
+    return dot(touching - o.p.take(k, 0), mean)
 
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:

@@ -51,11 +51,13 @@ class Compared(NamedTuple):
     """matching: which group is which. fields: those that differ, in the order of the table.
 
     alone: by kind the addresses of the groups that only the one (n,) and only the other (m,) has.
+    kinds: of groups that were compared, and COMMON if variables were.
     """
 
     matching: Matching
     fields: list[Differing]
     alone: dict[str, tuple[Any, Any]]
+    kinds: set[str]
 
     @property
     def differ(self) -> bool:
@@ -74,7 +76,7 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
     fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
     alone = {kind: matching.left(kind) for kind in KINDS if not only or (kind, "") in wanted}
-    return Compared(matching, fields, alone)
+    return Compared(matching, fields, alone, {kind for kind, _ in wanted})
 
 
 def chosen(only: Iterable[str]) -> set[tuple[str, str]]:

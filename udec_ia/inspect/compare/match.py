@@ -7,8 +7,8 @@
     contact    by the two corners that name its segments, else by the two blocks and one of these, else by the
                blocks alone; of several in the order of the contact list
     domain     by the contacts around it: the two that have most of them in common
-    bound      by what it acts on, a signal by its number, a history by what it records; of several in the
-               order of their list
+    bound      by what it acts on, a signal by its number, a history by what it records, a relaxation by
+               what it is of; of several in the order of their list
     tabpoint   by its place in its signal
 
 Where one state has more groups of one key than the other, these wait. What is left over matches if all
@@ -41,8 +41,9 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "signal": [("KTNUM",)],
     "bound": [("KUB", "KUG", "KUP", "KUQ")],
     "history": [("KHK", "KHF", "KHG")],
+    "relax": [("KRXB", "KRXG")],
 }
-OPTIONAL = ("signal", "bound", "history")  # kinds whose keys may be 0
+OPTIONAL = ("signal", "bound", "history", "relax")  # kinds whose keys may be 0
 
 
 class Matching:
@@ -68,6 +69,7 @@ class Matching:
         self._chains("tabpoint", "signal", "KTP", "KTPN")
         self._by_keys("bound")
         self._by_keys("history")
+        self._by_keys("relax")
         self._rest()
         for kind in KEYS:
             self._by_keys(kind, as_many=False)
@@ -81,7 +83,7 @@ class Matching:
     def _join(self, kind: str, one: Any, two: Any) -> None:
         """The groups at the addresses (n,) and (n,) match."""
         for side, at in zip(self.sides, (one, two), strict=True):
-            side.number[at] = np.arange(self._count + 1, self._count + 1 + len(at))
+            side.give_numbers(at, self._count + 1)
         self._count += len(one)
         before = self.pairs[kind]
         self.pairs[kind] = np.concatenate((before[0], one)), np.concatenate((before[1], two))
@@ -148,7 +150,7 @@ class Matching:
         lowest = 0 if kind in OPTIONAL else 1
         left = [side.listed(kind) for side in self.sides]
         for names in KEYS[kind]:
-            left = [at[side.number[at] == 0] for side, at in zip(self.sides, left, strict=True)]
+            left = [at[side.numbers(at) == 0] for side, at in zip(self.sides, left, strict=True)]
             keys: list[list[Any]] = []
             known: list[Any] = []
             for side, at in zip(self.sides, left, strict=True):

@@ -18,15 +18,12 @@ LOST = -1  # the number of a group that matches none, and of what is no group
 
 
 class Side:
-    """The groups that the lists of a heap reach, sound or damaged.
-
-    number: for each address below MFREE that of the pair of the group that begins there, 0 for none.
-    """
+    """The groups that the lists of a heap reach, sound or damaged."""
 
     def __init__(self, h: Memory) -> None:
         self.h = h
         self.atlas = Atlas(h)
-        self.number = np.zeros(self.atlas.free, np.int32)
+        self._number = np.zeros(self.atlas.free // self.atlas.ratio + 1, np.int32)  # groups begin on reals
 
     def word(self, kind: str, name: str) -> Word:
         """Where a field stands in a group at address 0, its first element."""
@@ -38,8 +35,14 @@ class Side:
 
     def numbers(self, addresses: Any) -> Any:
         """The numbers (n,) of the groups at the addresses (n,), which may be anything; 0 for none."""
-        within = (addresses >= 1) & (addresses < self.atlas.free)
-        return self.number[np.where(within, addresses, 0)]
+        before = addresses.astype(np.int64) - 1
+        place = before // self.atlas.ratio
+        within = (before >= 0) & (before < self.atlas.free - 1) & (place * self.atlas.ratio == before)
+        return np.where(within, self._number[np.where(within, place, 0)], 0)
+
+    def give_numbers(self, addresses: Any, first: int) -> None:
+        """Number the groups at the addresses (n,), from `first` on."""
+        self._number[(addresses - 1) // self.atlas.ratio] = np.arange(first, first + len(addresses))
 
     def meant(self, word: Word, at: Any) -> Any:
         """What a field of the groups at (n,) says in both heaps: a number, or that of the group it leads to.
@@ -56,7 +59,7 @@ class Side:
     def left(self, kind: str) -> Any:
         """Addresses of the groups of a kind that have no number yet, ascending."""
         at = self.atlas.groups[kind]
-        return at[self.number[at] == 0]
+        return at[self.numbers(at) == 0]
 
     def along(self, kind: str, heads: Any, link: str) -> tuple[Any, Any]:
         """Groups of a kind in the lists from `heads` (n,) by the field `link`, and how many each has (n,).

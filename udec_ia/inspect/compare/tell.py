@@ -54,11 +54,8 @@ def diff(
 def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -> list[str]:
     """How much differs, in sentences."""
     numbers = sum(len(one.one) for one in found.fields)
-    matched = sum(len(at) for at, _ in found.matching.pairs.values())
-    head = f"{called[0]} and {called[1]}: "
     differ = f"{numbers} numbers differ" if numbers > 1 else f"{numbers or 'no'} number differs"
-    said = [f"{head}{differ} in "]
-    said[0] += f"{_many(matched, 'group')} of both and the common block"
+    said = [f"{called[0]} and {called[1]}: {differ} in {_compared(found)}"]
     for k, what in enumerate(("deleted", "made")):
         counts = [_many(len(alone[k]), kind) for kind, alone in found.alone.items() if len(alone[k])]
         if counts:
@@ -71,6 +68,14 @@ def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -
     for side, name in zip(found.matching.sides, called, strict=True):
         said += [f"left out: {words} words of {name} that nothing leads to" for words in _lost(side.atlas)]
     return said
+
+
+def _compared(found: Compared) -> str:
+    """What was looked at."""
+    pairs = found.matching.pairs
+    matched = sum(len(at) for kind, (at, _) in pairs.items() if kind in found.kinds)
+    groups = [f"{_many(matched, 'group')} of both"] if found.kinds - {COMMON} else []
+    return " and ".join([*groups, *(["the common block"] if COMMON in found.kinds else [])])
 
 
 def _many(count: int, what: str) -> str:

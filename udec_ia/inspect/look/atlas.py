@@ -108,22 +108,24 @@ class Atlas:
     @cached_property
     def bounds(self) -> tuple[Any, Any, Any]:
         """First and last address and kind, by its place in NAMES, of all spans: ascending, without gaps."""
-        junk = np.array([one for chain in self.chains for one in chain], np.int64).reshape(-1, 2)
-        first = np.concatenate([*self.groups.values(), junk[:, 0]])
-        size = np.concatenate(
-            [*(np.full(len(at), self.layout[k].size) for k, at in self.groups.items()), junk[:, 1]]
-        )
-        kind = np.repeat(np.arange(len(KINDS) + 1), [*(len(at) for at in self.groups.values()), len(junk)])
+        wide = np.int32 if len(self.h.ia) < 2**30 else np.int64
+        junk = np.array([one for chain in self.chains for one in chain], wide).reshape(-1, 2)
+        first = np.concatenate([*(at.astype(wide) for at in self.groups.values()), junk[:, 0]])
+        sizes = (np.full(len(at), self.layout[kind].size, wide) for kind, at in self.groups.items())
+        size = np.concatenate([*sizes, junk[:, 1]])
+        many = [*(len(at) for at in self.groups.values()), len(junk)]
+        kind = np.repeat(np.arange(len(many), dtype=wide), many)
         first, once = np.unique(first, return_index=True)  # a group in use goes before junk at its address
         size, kind = size[once], kind[once]
         top = min(self.free, len(self.h.ia) + 1)
-        last = np.minimum(first + size, np.append(first[1:], top)) - 1
-        before, after = np.append(1, last + 1), np.append(first, top)  # what lies between
+        last = np.minimum(first + size, np.append(first[1:], wide(top))) - 1
+        before, after = np.append(wide(1), last + 1), np.append(first, wide(top))  # what lies between
         gap = np.flatnonzero(before < after)
         rest = [(top, len(self.h.ia), NAMES.index(UNUSED))] if top <= len(self.h.ia) else []
-        nothing = np.full(len(gap), NAMES.index(NOTHING))
+        nothing = np.full(len(gap), NAMES.index(NOTHING), wide)
         parts = [(first, last, kind), (before[gap], after[gap] - 1, nothing)]
-        rows = [np.concatenate([*(part[c] for part in parts), [one[c] for one in rest]]) for c in range(3)]
+        ends = [np.array([one[c] for one in rest], wide) for c in range(3)]
+        rows = [np.concatenate([*(part[c] for part in parts), ends[c]]) for c in range(3)]
         order = np.argsort(rows[0], kind="stable")
         begin, end, kinds = (row[order].astype(np.int64) for row in rows)
         return begin, end, kinds

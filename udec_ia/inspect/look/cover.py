@@ -12,6 +12,7 @@ from udec_ia.inspect.look.kinds import LETTERS
 from udec_ia.inspect.look.listing import Listing
 
 ACROSS, DOWN, WIDTH = 64, 24, 80  # characters of a map, and of a line
+PIECE = 2**20  # words that are counted together
 FINE = 4  # words of a character up to which a map shows where groups begin
 PICTURE = "map"  # the column whose characters are LETTERS
 
@@ -24,9 +25,16 @@ def cover(atlas: Atlas, step: int) -> Any:
     first, last, kind = atlas.bounds
     used = kind != NAMES.index(UNUSED)
     words = np.repeat(kind[used].astype(np.int8), (last - first + 1)[used])
+    piece = max(PIECE // step, 1) * step  # so many words are counted together
+    parts = [_majority(words[first : first + piece], step) for first in range(0, len(words), piece)]
+    return np.concatenate([np.zeros(0, np.int8), *parts])
+
+
+def _majority(words: Any, step: int) -> Any:
+    """For each stretch of `step` of the kinds `words` (n,) that which most of them are."""
     starts = np.arange(0, len(words), step)
     found, largest = np.zeros(len(starts), np.int8), np.zeros(len(starts), np.int64)
-    for number in np.unique(kind[used]).tolist():
+    for number in np.flatnonzero(np.bincount(words)).tolist():
         many = np.add.reduceat(words == number, starts, dtype=np.int64)
         found[many > largest] = number
         largest = np.maximum(many, largest)

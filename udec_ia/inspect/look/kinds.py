@@ -22,6 +22,7 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#4f74d9",
     "#43a9a3",
     "#a8577e",
+    "#b04de0",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

@@ -17,7 +17,8 @@ from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.drive.passes import BOUNDS, CHANGES, CONTACT, FORCES, STRESSES, THROUGH, UPDATE
+from udec_ia.kernels.drive.passes import BOUNDS, CHANGES, CONTACT, FORCES, RELAX, STRESSES, THROUGH, UPDATE
+from udec_ia.kernels.drive.relax import relaxes
 from udec_ia.layout import offsets as g
 
 
@@ -30,6 +31,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     drive.passes.
     """
     keeps = h.ci[g.LENER] != 0
+    searches = relaxes(h)
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
     while done < n:
@@ -38,6 +40,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 return done  # IA() grows between two cycles, where growing changes nothing
             if soft is not None:
                 call_entry(passes[BOUNDS], h)
+            if searches:
+                call_entry(passes[RELAX], h)
             if keeps:
                 call_entry(passes[FORCES], h)
             fastest = move_all(h, soft, laws)

@@ -15,12 +15,13 @@ from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.recording import record
+from udec_ia.kernels.drive.relax import relax, relaxes
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.kernels.energy.contacts import note_contact
 from udec_ia.kernels.energy.works import note_forces, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST = range(9)
+UPDATE, THROUGH, BOUNDS, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST = range(10)
 
 
 def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tuple[Any, ...]:
@@ -36,6 +37,7 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
         entry(apply_bounds, h) if soft is not None else 0,
+        entry(relax, h) if relaxes(h) else 0,
         entry(note_forces, h) if keeps else 0,
         entry(note_stresses, h) if keeps else 0,
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,

@@ -22,6 +22,7 @@ from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.bounds import load, push_load
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.sdef import straining_force
+from udec_ia.kernels.energy.inertial import energy_of_motion
 from udec_ia.kernels.energy.stored import liveliest, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 
@@ -196,10 +197,15 @@ def force_ratio(h: Memory, soft: Any) -> float:
 
 @kernel
 def motion_ratio(h: Memory, soft: Any) -> float:
-    """Kinetic over strain energy; 0 if nothing moves, infinite if something does and nothing is strained."""
+    """Kinetic over strain energy; 0 if nothing moves, infinite if something does and nothing is strained.
+
+    Scaled masses count as they are: they say what force it takes to stop them.
+    """
     moving, _, _ = liveliest(h, soft)
     if moving == 0:
         return 0.0
+    if h.ci[g.LSCALE] != 0:
+        moving = energy_of_motion(h)
     strained = strain_of_contacts(h) + strain_of_blocks(h, soft)
     return moving / strained if strained > 0 else np.inf
 

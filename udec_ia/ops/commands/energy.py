@@ -36,6 +36,7 @@ class Balance(NamedTuple):
     potential: float
     friction: float
     mass_damping: float
+    relaxation: float
     stiffness_damping: float
     yielding: float
     shape: float
@@ -57,11 +58,17 @@ class Balance(NamedTuple):
 
 
 def switch(array: MainArray, on: bool) -> None:
-    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends. Error 28 as `begin`."""
+    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends.
+
+    Error 26 if masses are scaled, 28 as `begin`.
+    """
     h = array.h
+    if on and h.ci[g.LSCALE]:
+        advice = "FRACTION without SCALED"
+        raise UdecError(26, "scaled masses have no energy that an account could tell of", advice)
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[g.LENER] = int(on)
-    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT):
+    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT):
         h.cd[name] = 0
     h.cd[g.EPUT] = h.cd[g.ESTOR] = energy
     h.cd[g.EREF] = reference
@@ -73,7 +80,7 @@ def balance(h: Memory) -> Balance:
         raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
     stored = _stored(h)
     commands = _put_in(h, sum(stored))
-    lost = (float(h.cd[name]) for name in (g.WFRIC, g.WMASS, g.WSTIF, g.WYIELD, g.WSHAPE))
+    lost = (float(h.cd[name]) for name in (g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE))
     return Balance(commands, float(h.cd[g.WBOUND]), *stored, float(h.cd[g.EPOT]), *lost)
 
 

@@ -19,6 +19,12 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.ranges import Range, blocks_in
 
 DEFAULT_FRACTION = 0.1
+RELAXATIONS = {  # argument of DAMPING: LREST
+    "local": g.LOCAL,
+    "combined": g.COMBINED,
+    "kinetic": g.KINETIC,
+    "adaptive": g.ADAPTIVE,
+}
 PROPERTIES = {  # argument of PROPERTY: array of the common block
     one.argument: getattr(g, one.array) for one in read_table().properties if one.keyword
 }
@@ -55,7 +61,8 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 
     ALPHA = fcrit 2 pi freq, BETA = fcrit/(2 pi freq). "mass" or "stiffness" drops the other half without
     rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
-    internal degrees of freedom of simply-deformable blocks instead.
+    internal degrees of freedom of simply-deformable blocks instead. What has mass damping has no other way
+    to rest (set_relaxation).
     """
     not_negative(array, fcrit=fcrit)
     positive(array, freq=freq)
@@ -68,19 +75,53 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     if only == "internal":
         cr[g.ALPB] = alpha
         return
-    cr[g.ALPHA] = 0 if only == "stiffness" else alpha
+    if only != "stiffness":
+        _end_relaxation(array.h)
+        cr[g.ALPHA] = alpha
+    elif array.h.ci[g.LREST] != g.ADAPTIVE:
+        cr[g.ALPHA] = 0
     cr[g.BETA] = 0 if only == "mass" else beta
 
 
-def set_fraction(array: MainArray, f: float, safe: bool = False) -> None:
-    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound."""
+def set_relaxation(array: MainArray, how: str, f: float = 1.0) -> None:
+    """DAMPING LOCAL f, COMBINED f, KINETIC and ADAPTIVE f: what leads to rest instead of mass damping.
+
+    f: fraction of the unbalanced force, or of the change of kinetic energy (kernels.drive.relax), up to 1.
+    All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
+    """
+    code = RELAXATIONS[how]
+    not_negative(array, **{how: f})
+    if f > 1:
+        raise UdecError(28, f"{f:g} is more than there is", f"{how.upper()} takes 0 to 1", parameter=how)
+    h = array.h
+    _end_relaxation(h)
+    h.cr[g.ALPHA] = h.cr[g.ALPB] = 0
+    h.ci[g.LREST], h.cr[g.RESTF] = code, f
+
+
+def _end_relaxation(h: Memory) -> None:
+    if h.ci[g.LREST] == g.ADAPTIVE:
+        h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # the program's own
+    h.ci[g.LREST], h.cr[g.RESTF], h.cd[g.EMOVES] = g.UNDAMPED, 0, 0
+
+
+def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = False) -> None:
+    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound.
+
+    scaled: inertial masses are scaled, and the fraction is of the safe bound with these (ops.run.scaling).
+    Error 26 while an account of the energy is kept: what scaled masses move with is no energy.
+    """
     positive(array, f=f)
-    if safe and f > 1:
+    if (safe or scaled) and f > 1:
         raise UdecError(
             28, f"{f:g} of the safe bound is not safe", "FRACTION f SAFE takes f up to 1", parameter="f"
         )
+    if scaled and array.h.ci[g.LENER]:
+        advice = "ENERGY OFF, or FRACTION without SCALED"
+        raise UdecError(26, "scaled masses have no energy that an account could tell of", advice)
     array.h.cr[g.FRAC] = f
-    array.h.ci[g.LSAFE] = int(safe)
+    array.h.ci[g.LSAFE] = int(safe or scaled)
+    array.h.ci[g.LSCALE] = int(scaled)
 
 
 def set_scale(array: MainArray, s: float) -> None:

@@ -30,6 +30,7 @@ from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
 from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
+from udec_ia.ops.run.scaling import RESCALE, renew_relaxations, scale_anew
 from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
@@ -59,6 +60,7 @@ def prepare(array: MainArray) -> None:
     settle_default(array)
     check_strained_edges(array)
     _check_deformable(array)
+    renew_relaxations(array)
     h.cr[g.TDEL] = time_step(array)
     for alpha, con1, con2, number in ((g.ALPHA, g.CON1, g.CON2, 13), (g.ALPB, g.C1B, g.C2B, 16)):
         half = h.cr[alpha] * h.cr[g.TDEL] / 2
@@ -160,12 +162,16 @@ def _run(
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
             cycles = min(target - done, runaway.ahead(array.h))
+            if array.h.ci[g.LSCALE]:
+                cycles = min(cycles, RESCALE - int(array.h.ci[g.MCTOT]) % RESCALE)
             given = soft(array), bound.blocks, bound.joints
             done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
             settled()
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
                 runaway.look(array)
+                if array.h.ci[g.MCTOT] % RESCALE == 0:
+                    scale_anew(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)

@@ -17,7 +17,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.limits import NMAT
+from udec_ia.ops.common.limits import NMAT, last_digit
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}
@@ -25,6 +25,7 @@ OF_LAWS = {  # properties that constitutive number 1 does not look at, by their 
     one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in OURS
 }
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
+RESOLVED = 0.005  # of what a block puts on a contact: force of a last digit from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
 
@@ -122,12 +123,39 @@ def on_rounding(array: MainArray) -> Iterator[str]:
         )
 
 
+def on_resolution(array: MainArray) -> Iterator[str]:
+    """CYCLE: a last digit of a coordinate that is a force worth speaking of, where the stiffest contact is.
+
+    It is compared with what free blocks put on a contact, half of their weight and of what loads them.
+    """
+    h = array.h
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    x, y, reach, mass = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO, g.KBM))
+    free = integers(h, blocks, g.KBFIX) != g.FIXED
+    weight = mass[free].sum() * math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    loads = np.hypot(*(np.asarray(getr(h, bounds, k), float) for k in (g.KUFX, g.KUFY))).sum()
+    usual = float(weight + loads) / 2 / max(int(free.sum()), 1)
+    materials = np.unique(integers(h, blocks, g.KMAT)) - 1
+    stiffness = float(max(h.cr[g.AKN + materials].max(), h.cr[g.AKS + materials].max()))
+    digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
+    force = stiffness * digit
+    if force > RESOLVED * usual > 0:
+        yield (
+            f"the last digit of coordinates, {digit:.2g} m with {array.scheme.real_bits}-bit reals, is a "
+            f"force of {force:.3g} N/m in joints of {stiffness:.3g} N/m2, {force / usual:.1%} of the "
+            f"{usual:.3g} N/m that a block puts on a contact: forces are off by so much, by several times "
+            "as much after many cycles, and SOLVE reaches no smaller ratio; take reals of 64 bits, a smaller "
+            "KN, or an origin within the model"
+        )
+
+
 def on_rest(array: MainArray) -> Iterator[str]:
     """SOLVE: nothing that brings a model to rest."""
     h = array.h
     bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
     viscous = any(np.any(getr(h, bounds, k)) for k in (g.KUCXX, g.KUCYY)) if len(bounds) else False
-    if not (h.cr[g.ALPHA] or h.cr[g.BETA] or h.cr[g.ALPB] or viscous):
+    if not (h.cr[g.ALPHA] or h.cr[g.BETA] or h.cr[g.ALPB] or h.ci[g.LREST] or viscous):
         yield (
             "there is no damping, and nothing but friction brings blocks to rest: "
             "DAMPING 0.5 f MASS, with f near the frequency (Hz) at which they would swing"

@@ -38,7 +38,8 @@ from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, s
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
-from udec_ia.ops.run.timestep import Limit, bound, damped, instability, kind_of, safe_fraction
+from udec_ia.ops.run.rows import Limit
+from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction
 
 OUT_OF_NOWHERE = 37
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected

@@ -20,6 +20,7 @@ from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.ops.commands.history import Definition, definitions, places
 
 ROWS = 1024  # rows that a compiled piece can fill
+SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
 NEVER = -1.0  # force ratio that is never reached
 NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 

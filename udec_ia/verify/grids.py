@@ -1,4 +1,4 @@
-"""Meshes of fully-deformable blocks for the tests: structured grids of quadrilaterals, each cut in two."""
+"""Meshes of fully-deformable blocks: structured grids of quadrilaterals, each cut in two."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia import Model
+from udec_ia.model import Model
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
@@ -32,7 +32,7 @@ def outline(nodes: Any) -> list[float]:
 
 def generate(model: Model, nodes: Any, mixed: bool = False) -> int:
     """GENERATE for the block under the nodes; the diagonals of neighbouring quadrilaterals alternate."""
-    ny, nx = nodes.shape[0] - 1, nodes.shape[1] - 1
+    nx, ny = int(nodes.shape[1]) - 1, int(nodes.shape[0]) - 1
     points = [(float(x), float(y)) for x, y in nodes.reshape(-1, 2)]
 
     def number(i: int, j: int) -> int:  # grid-points are numbered from the last one
@@ -60,8 +60,28 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
     for start, end in zip(ring, np.roll(ring, -1), strict=True):
         for k in range(edge_points + 1):
             s = k / (edge_points + 1)
-            outer.append(tuple(float((1 - s) * start[name] + s * end[name]) for name in ("KXP", "KYP")))
+            px, py = ((1 - s) * start[name] + s * end[name] for name in ("KXP", "KYP"))
+            outer.append((float(px), float(py)))
     n, cx, cy = len(outer), float(row["KX"]), float(row["KY"])
     zones = [(1, k + 2, (k + 1) % n + 2) for k in range(n)]  # the centroid, given last, is number 1
     at = cx - 1e-6, cx + 1e-6, cy - 1e-6, cy + 1e-6
     return model.generate(*at, "manual", [*reversed(outer), (cx, cy)], zones)
+
+
+def polar(model: Model) -> tuple[Any, Any, Any, Any]:
+    """Of all quadrilaterals: distance of the middle from the origin, radial and hoop stress, angle (rad).
+
+    The stress of one zone is exact to the first order of its size only: it is that of its middle and a
+    saw-tooth, which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the
+    second order.
+    """
+    points, zones = model.table("gridpoint"), model.table("zone")
+    at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}
+    middle = np.array([np.mean([at[i] for i in row], axis=0) for row in zones["KZG"].tolist()])
+    x, y, s11, s12, s22 = (
+        (one[0::2] + one[1::2]) / 2 for one in (*middle.T, zones["KZS11"], zones["KZS12"], zones["KZS22"])
+    )
+    r2 = x * x + y * y
+    radial = (s11 * x * x + s22 * y * y + 2 * s12 * x * y) / r2
+    hoop = (s11 * y * y + s22 * x * x - 2 * s12 * x * y) / r2
+    return np.sqrt(r2), radial, hoop, np.arctan2(y, x)

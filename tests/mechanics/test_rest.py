@@ -1,0 +1,238 @@
+"""To rest with fewer cycles: each way does what its formula says, and the state of rest is the exact one."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from kinds import every_kind
+from mechanics import G, block, box, model, on_base
+from naive.stiffness import Scene
+
+from udec_ia import Model, UdecError
+from udec_ia.layout import offsets as g
+
+KN, DENSITY = 1e8, 1000.0
+WAYS: list[dict[str, Any]] = [{"local": 0.8}, {"combined": 0.8}, {"kinetic": True}, {"adaptive": 0.5}]
+
+
+def sign(v: float) -> float:
+    return math.copysign(1.0, v) if v else 0.0
+
+
+def bounces(way: str, f: float, dt: float, cycles: int) -> list[float]:
+    """Velocities of a block of 1 x 1 m, dropped without a gap on two springs of KN, cycle by cycle."""
+    m, v, fall, before, kinetic, alpha = DENSITY, 0.0, 0.0, 0.0, 0.0, 0.0
+    found = []
+    for _ in range(cycles):
+        now = m * v * v / 2
+        if way == "kinetic":
+            if now < kinetic:
+                v, now = 0.0, 0.0
+            kinetic = now
+        elif way == "adaptive":
+            if alpha == 0:
+                alpha = 0.01 / dt
+            elif 2 * alpha * now * dt < f * abs(now - kinetic):
+                alpha = min(1.02 * alpha, 0.5 / dt)
+            else:
+                alpha = max(alpha / 1.02, 1e-8 / dt)
+            kinetic = now
+        force = 2 * KN * max(-fall, 0.0) - m * G
+        damped = force
+        if way == "local":
+            damped = force - f * abs(force) * sign(v)
+        elif way == "combined":
+            damped = force - f * abs(force) * (sign(v) - sign(force - before)) / 2
+        before = force
+        v = (v * (1 - alpha * dt / 2) + damped / m * dt) / (1 + alpha * dt / 2)
+        fall += v * dt
+        found.append(v)
+    return found
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: next(iter(way)))
+def test_a_block_on_springs_moves_as_the_formula_says(way: dict[str, Any]) -> None:
+    m = on_base(1.0, 1.0, 0.05, 4.0, density=DENSITY, stiffness=(KN, KN))
+    m.damping(**way)
+    speeds = []
+    for _ in range(60):
+        m.cycle(1)
+        speeds.append(float(block(m, 0, 0.5)["KYD"]))
+    name, f = next(iter(way.items()))
+    expected = bounces(name, float(f), float(m.h.cr[g.TDEL]), 60)
+    # an overlap is the difference of coordinates of 1 m: each cycle adds a last digit of these times KN dt/m
+    grain = 60 * 60 * np.finfo(float).eps * 2 * KN / DENSITY * float(m.h.cr[g.TDEL])
+    assert speeds == pytest.approx(expected, abs=grain)
+    assert max(map(abs, speeds)) > 1e3 * grain
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i16r32"])
+@pytest.mark.parametrize("way", [*WAYS, {}], ids=lambda way: next(iter(way), "static"))
+def test_a_column_comes_to_its_exact_overlaps(way: dict[str, Any], build: str) -> None:
+    """Level k carries k W on two contacts; what is out of balance may shift an overlap by as much."""
+    # 32-bit reals know the overlaps of 0.05 mm to a few thousandths only, and so the forces
+    n, ratio = 4, 1e-3 if "r64" in build else 2e-2
+    m = model(*box(0, 1, -1, n), d=0.05, density=DENSITY, stiffness=(KN, KN), friction=0.5, build=build)
+    for y in range(n):
+        m.split(-1, y, 2, y)
+    m.fix(0, 1, -1, 0)
+    if way:
+        m.damping(**way)
+    assert m.solve(ratio, 20000, static=not way)
+    overlaps = {round(float(c["KYC"])): float(c["KCN"]) for c in m.table("contact") if c["KCCOD"] != 4}
+    weight = DENSITY * G
+    mean = weight * (n + 1) / 2 / 2
+    grain = 4 * n * float(np.finfo(m.h.cr.dtype).eps)
+    for level in range(n):
+        expected = (n - level) * weight / (2 * KN)
+        assert overlaps[level] == pytest.approx(expected, abs=n * ratio * mean / KN + grain)
+
+
+def kinds_of_blocks() -> Model:
+    """Rigid, simply- and fully-deformable blocks, of which some are very stiff or very small."""
+    m = every_kind()
+    m.boundary(-1, 7, -2, 2, free=True)
+    m.split(-1, 0.2, 2.5, 0.2)
+    return m
+
+
+def spread(scene: Scene) -> float:
+    """The highest over the lowest frequency of a degree of freedom on its own."""
+    free = np.setdiff1d(np.arange(len(scene.mass)), scene.held)
+    own = (np.diag(scene.stiffness) / np.diag(scene.mass))[free]
+    return math.sqrt(own.max() / own[own > 0].min())
+
+
+def test_scaled_masses_are_safe_and_all_as_quick() -> None:
+    """By dense matrices: the step stays below the critical one, and slow blocks are quicker than before."""
+    m = kinds_of_blocks()
+    m.fraction(1.0, scaled=True)
+    m.cycle(1)
+    dt = float(m.h.cr[g.TDEL])
+    scene = Scene(m, (1e8, 5e7), (KN, KN))
+    true, before = scene.critical(), spread(scene)
+    relaxations = m.table("relax")
+    assert len(relaxations) == len(m.table("block")) - 2 + len(m.table("gridpoint"))
+    quickest = []
+    for row in relaxations:
+        at = scene.first[int(row["KRXG"] or row["KRXB"])]
+        factors = [row["KRXM"]] * 2 if row["KRXG"] else [row["KRXM"], row["KRXM"], row["KRXI"]]
+        if scene.blocks[int(row["KRXB"])]["HEAD"] == g.MSDEF:
+            factors += [row["KRXE"]] * 3
+        for k, factor in enumerate(factors, at):
+            scene.mass[k] /= float(factor)
+        held = set(range(at, at + 2)) & set(scene.held)
+        if not held:
+            quickest.append(float(row["KRXM"]))
+    assert dt <= scene.critical() * (1 + 1e-9)
+    assert dt <= true * (1 + 1e-9)
+    assert max(quickest) > 2 * min(quickest)
+    assert spread(scene) < before
+
+
+def test_cycles_divide_as_they_will() -> None:
+    """Scaled masses, COMBINED damping and contacts that are made: 7 and 293 cycles are 300."""
+    one, two = kinds_of_blocks(), kinds_of_blocks()
+    for m in (one, two):
+        m.damping(combined=0.6)
+        m.fraction(0.7, scaled=True)
+    one.cycle(300)
+    for n in (7, 90, 110, 93):
+        two.cycle(n)
+    used = int(one.h.ci[g.MFREE]) - 1
+    assert (one.h.ia[:used] == two.h.ia[:used]).all()
+
+
+@pytest.mark.parametrize("way", [{"local": 0.5}, {"combined": 0.5}, {"kinetic": True}])
+def test_the_account_of_the_energy_knows_what_it_takes(way: dict[str, Any]) -> None:
+    m = on_base(1.0, 1.0, 0.05, 4.0, density=DENSITY, stiffness=(KN, KN))
+    m.energy()
+    m.damping(**way)
+    m.cycle(200)
+    balance = m.balance()
+    assert balance.relaxation > 0.3 * balance.throughput
+    # linear springs that stay closed: only rounding is left, of overlaps that are differences of 1 m
+    assert abs(balance.residual) < 1e-9 * balance.throughput
+
+
+def test_static_leaves_all_as_it_was_but_the_state() -> None:
+    m = kinds_of_blocks()
+    m.damping(0.3, 12)
+    m.fraction(0.05)
+    m.cycle(5)
+    kept = [g.ALPHA, g.BETA, g.ALPB, g.FRAC, g.RESTF]
+    before = m.h.cr[kept].tolist(), int(m.h.ci[g.LREST]), int(m.h.ci[g.LSCALE]), int(m.h.ci[g.LSAFE])
+    solution = m.solve(1e-3, 5000, static=True)
+    assert solution
+    assert (m.h.cr[kept].tolist(), *(int(m.h.ci[k]) for k in (g.LREST, g.LSCALE, g.LSAFE))) == before
+    assert not len(m.table("relax"))
+    assert not m.table("block")["KXD"].any()
+    assert not m.table("gridpoint")["KYDG"].any()
+    assert not m.check()
+    assert "SOLVE 0.001 LIMIT 5000 STATIC" in m.deck()
+
+
+def test_an_error_on_the_way_leaves_the_settings_as_they_were() -> None:
+    m = on_base(1.0, 1.0, 0.05, 4.0, density=DENSITY, stiffness=(10 * G, 10 * G))  # far too soft
+    m.damping(0.1, 1.0, "mass")
+    with pytest.raises(UdecError) as caught:
+        m.solve(1e-6, 10000, static=True)
+    assert caught.value.number == 15
+    assert int(m.h.ci[g.LREST]) == int(m.h.ci[g.LSCALE]) == int(m.h.ci[g.IRXPNT]) == 0
+    assert float(m.h.cr[g.ALPHA]) == pytest.approx(0.1 * 2 * math.pi)
+    assert "STATIC" in m.deck()
+
+
+def test_a_command_gives_relaxations_back() -> None:
+    m = kinds_of_blocks()
+    m.damping(combined=0.5)
+    m.cycle(3)
+    assert len(m.table("relax"))
+    m.delete(0, 1, 0.2, 1)
+    assert not len(m.table("relax"))
+    assert not m.check()
+    m.cycle(3)
+    hosts = [(int(r["KRXB"]), int(r["KRXG"])) for r in m.table("relax")]
+    assert len(set(hosts)) == len(hosts) > 0
+    assert not m.check()
+
+
+def test_what_does_not_go_together_is_said() -> None:
+    m = on_base(1.0, 1.0, 0.05, 4.0)
+    for call, number in (
+        (lambda: m.damping(), 7),
+        (lambda: m.damping(0.1, 3.0, local=0.5), 7),
+        (lambda: m.damping(local=1.5), 28),
+        (lambda: m.damping(combined=-0.1), 28),
+        (lambda: m.fraction(1.5, scaled=True), 28),
+    ):
+        with pytest.raises(UdecError) as caught:
+            call()
+        assert caught.value.number == number
+    m.energy()
+    for scaled in (lambda: m.fraction(0.5, scaled=True), lambda: m.solve(1e-3, static=True)):
+        with pytest.raises(UdecError) as caught:
+            scaled()
+        assert caught.value.number == 26
+    m.energy("off")
+    m.fraction(0.5, scaled=True)
+    with pytest.raises(UdecError) as caught:
+        m.energy()
+    assert caught.value.number == 26
+
+
+def test_one_way_takes_the_place_of_another() -> None:
+    m = on_base(1.0, 1.0, 0.05, 4.0)
+    m.damping(0.5, 10)
+    ways = [{"adaptive": 0.5}, {"local": 0.8}, {"adaptive": 0.5}, {"kinetic": True}, {"combined": 0.8}]
+    for way in ways:
+        m.damping(**way)
+        m.cycle(3)
+        assert (float(m.h.cr[g.ALPHA]) > 0) == ("adaptive" in way)
+        assert float(m.h.cr[g.BETA]) > 0
+    m.damping(0.5, 10, "mass")
+    assert int(m.h.ci[g.LREST]) == g.UNDAMPED
+    assert float(m.h.cr[g.BETA]) == 0

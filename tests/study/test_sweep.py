@@ -1,0 +1,176 @@
+"""udec sweep and sweep(): the table, its files and pictures, what is said, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from studies import PILE
+
+from udec_ia import UdecError, sweep
+from udec_ia.cli import main
+from udec_ia.study.sweep import name_of
+
+QUANTITIES = ("time", "v = block(1, 2.5).KYD", "solve.ratio")
+
+
+@pytest.fixture
+def pile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder to work in, with a deck."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pile.dat").write_text(PILE)
+    return tmp_path
+
+
+def test_the_table_in_all_its_forms(pile: Path) -> None:
+    """Python, CSV and HDF5 have the same numbers, bit for bit; a failed run is a line."""
+    found = sweep("pile.dat", {"F": [0.1, -1], "n": "10:20:2"}, quantities=QUANTITIES, jobs=0)
+    table = found.table
+    assert [*table.columns] == [
+        *("run", "F", "N", "time", "v", "solve.ratio"),
+        *("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory", "message"),
+    ]
+    assert table.columns["F"].tolist() == [0.1, 0.1, -1, -1]
+    assert table.columns["N"].tolist() == [10, 20, 10, 20]
+    assert table.columns["cycles"].tolist() == [10, 20, 0, 0]
+    assert table.columns["status"] == ["ended", "ended", "error", "error"]
+    assert np.isnan(table.columns["v"][2:]).all()
+    assert table.columns["v"].tolist()[:2] == [one.quantities["v"] for one in found.results[:2]]
+    names = ["pile.csv", "pile.h5", "pile.png", "pile.svg"]
+    assert found.files == [Path("pile-sweep") / name for name in names]
+    with (pile / "pile-sweep" / "pile.csv").open(newline="") as file:
+        rows = [*csv.DictReader(file)]
+    assert [float(row["v"]) for row in rows[:2]] == table.columns["v"].tolist()[:2]
+    assert [row["run"] for row in rows] == ["F=0.1,N=10", "F=0.1,N=20", "F=-1,N=10", "F=-1,N=20"]
+    with h5py.File(pile / "pile-sweep" / "pile.h5") as file:
+        stored = file["table"]
+        assert stored.attrs["deck"] == PILE
+        assert np.array_equal(stored["v"], table.columns["v"], equal_nan=True)
+        assert stored["status"][3] == b"error"
+    assert found.said == ["4 of 4 runs: 2 ended, 2 error"]
+
+
+def test_a_second_sweep_takes_what_is_there(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """More values are only added; another deck, or another quantity, begins anew, and that is said."""
+    command = ["sweep", "pile.dat", "--jobs", "0", "--set", "N=10", "--set"]
+    assert main([*command, "F=0.1,0.2"]) == 0
+    assert main([*command, "F=0.1,0.2,0.3"]) == 0
+    printed = capsys.readouterr().out
+    assert "3 of 3 runs: 3 ended\n2 were there already, made of the same\n" in printed
+    assert "2 of 3: N=10,F=0.2 ended, 10 cycles" in printed
+    Path("pile.dat").write_text(PILE + "*\n")
+    assert main([*command, "F=0.1,0.2", "--quantity", "time"]) == 0
+    printed = capsys.readouterr().out
+    assert "2 that were there are made anew: another deck and quantities\n" in printed
+    assert "(anew: another deck and quantities)" in printed
+    assert "kept" not in printed
+
+
+@pytest.mark.parametrize(
+    ("values", "drawn"),
+    [
+        ({"F": [0.1, 0.2, -1]}, True),
+        ({"F": 0.1, "N": [10, 20]}, True),
+        ({"F": [0.1, 0.2], "N": [5, 10]}, True),
+        ({"F": 0.1}, False),
+        ({"KIND": ["ON", "OFF"]}, False),
+        ({"F": [0.1, 0.2], "N": [5, 10], "KIND": ["ON", "OFF"]}, False),
+    ],
+)
+def test_pictures_of_one_variable_and_of_two(values: dict[str, object], drawn: bool, pile: Path) -> None:
+    deck = PILE.replace("F=0.5 N=200", "F=0.5 N=5 KIND=ON").replace("HISTORY", "ENERGY $KIND\nHISTORY")
+    found = sweep(deck, values, quantities=("time", "x = max block.KX"), jobs=0, out="here")  # type: ignore[arg-type]
+    kinds = {path.suffix for path in found.files}
+    assert kinds == ({".csv", ".h5", ".png", ".svg"} if drawn else {".csv", ".h5"})
+    if drawn:
+        assert "x" in (pile / "here" / "deck.svg").read_text()
+        assert (pile / "here" / "deck.png").stat().st_size > 5000
+
+
+def test_the_command_prints_what_programs_can_read(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = [
+        "sweep",
+        "pile.dat",
+        "--set",
+        "F=0.1",
+        "--set",
+        "N=10",
+        "--jobs",
+        "0",
+        "--quantity",
+        "v = time",
+    ]
+    assert main([*command, "--json"]) == 0
+    printed, progress = capsys.readouterr()
+    (row,) = json.loads(printed)["rows"]
+    assert (row["F"], row["status"], row["cycles"]) == (0.1, "ended", 10)
+    assert "1 of 1: F=0.1,N=10 ended" in progress
+    assert main([*command, "--python"]) == 0
+    script = capsys.readouterr().out
+    exec(compile(script, "script", "exec"), {})
+    assert "'v'" in capsys.readouterr().out
+
+
+def test_a_rule_and_a_limit(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = [
+        "sweep",
+        "pile.dat",
+        "--set",
+        "F=0.1",
+        "--jobs",
+        "0",
+        "--stop",
+        "cycles >= 30",
+        "--every",
+        "10",
+    ]
+    assert main([*command, "--limit", "1m"]) == 0
+    assert "F=0.1 stopped, cycles >= 30, 30 cycles" in capsys.readouterr().out
+    assert json.loads((pile / "pile-sweep" / "runs" / "F=0.1" / "result.json").read_text())["limit"] == 60
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "told"),
+    [
+        ([], 2, "give at least one variable its values"),
+        (["--set", "F"], 2, "--set F: give a name and a value"),
+        (["--set", "F=1:2"], 2, "a range is first:last:number"),
+        (["--set", "F=1", "--quantity", "KYD"], 2, "KYD of which block?"),
+        (["--set", "F=1", "--quantity", "F = time"], 2, "the table has another column F"),
+        (["--set", "F=1", "--quantity", "status = time"], 2, "the table has another column status"),
+        (["--set", "F=1", "--quantity", "cycles"], 2, "the table has another column cycles"),
+        (["--set", "F=1", "--stop", "time"], 2, "a rule ends with a comparison and a number"),
+        (["--set", "F=1", "--limit", "soon"], 2, "give a time as in 60s, 5m or 1h"),
+        (["--set", "F=1", "--every", "0"], 2, "every 0 cycles"),
+        (["--set", "F=1", "--jobs", "-2"], 2, "-2 jobs"),
+        (["--set", "FX=1"], 1, "pile.dat has no $FX\ndid you mean F?"),
+    ],
+)
+def test_what_is_refused_before_anything_runs(
+    arguments: list[str], status: int, told: str, pile: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["sweep", "pile.dat", *arguments]) == status
+    assert told in capsys.readouterr().err
+    assert not Path("pile-sweep").exists()
+
+
+def test_files_that_are_not_there_or_not_ours(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", "no.dat", "--set", "F=1"]) == 1
+    assert "udec: no.dat: No such file or directory" in capsys.readouterr().err
+    (pile / "pile-sweep").mkdir()
+    (pile / "pile-sweep" / "pile.csv").write_text("a table of mine\n")
+    with pytest.raises(UdecError, match="31"):
+        sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0)
+    assert (pile / "pile-sweep" / "pile.csv").read_text() == "a table of mine\n"
+
+
+def test_names_of_folders() -> None:
+    assert name_of({"F": 0.1, "N": 5}) == "F=0.1,N=5"
+    long = name_of({f"V{k}": math.pi for k in range(30)})
+    assert len(long) < 140
+    assert long != name_of({f"V{k}": math.pi for k in range(29)} | {"V29": 1})

@@ -1,0 +1,149 @@
+"""To rest with fewer cycles: a pass before the block pass that changes what the law of motion is given.
+
+With F the unbalanced force on a degree of freedom, weight and loads included, F' that of the cycle before, v
+its velocity and f the fraction RESTF, the law of motion gets, instead of F,
+
+    LOCAL     F - f |F| sign(v)                               Cundall (1987)
+    COMBINED  F - f |F| (sign(v) - sign(F - F'))/2
+    SCALED    s F, and so the inertial mass m/s, while the weight stays m g
+
+LOCAL takes nothing where forces are balanced. Where all moves one way under a steady force it is slow, and
+there COMBINED does better: it damps what swings, and half as strongly. KINETIC and ADAPTIVE: drive.peaks.
+
+The motion on the way is not that of the model: only where it comes to rest, and only as far as that does not
+depend on the way. The factors s stand in relaxations (links.relaxations); ops/run/scaling.py finds them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
+from udec_ia.heap.jit import apart, inlined, kernel
+from udec_ia.kernels.body.fdef import next_point_velocity
+from udec_ia.kernels.body.motion import next_velocity
+from udec_ia.kernels.body.sdef import strain, straining_force
+from udec_ia.kernels.drive.peaks import look_at_motion
+from udec_ia.kernels.links.relaxations import following
+from udec_ia.layout import offsets as g
+
+
+@kernel
+def relaxes(h: Memory) -> bool:
+    """True if something beside ALPHA, BETA and INTERNAL leads to rest."""
+    return bool(h.ci[g.LREST] != g.UNDAMPED or h.ci[g.LSCALE] != 0)
+
+
+@inlined
+def sign(h: Memory, v: float) -> float:
+    """1, 0 or -1."""
+    if v > 0:
+        return real(h, 1.0)
+    return real(h, -1.0) if v < 0 else real(h, 0.0)
+
+
+@kernel
+def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: float) -> float:
+    """What stands for the force `f` on a degree of freedom of velocity `v`.
+
+    ir: its relaxation, 0 if there is none; before, scale: fields there, of the force of the cycle before and
+    of the factor.
+    """
+    part, damped = h.cr[g.RESTF] * abs(f), f
+    if h.ci[g.LREST] == g.LOCAL:
+        damped = f - part * sign(h, v)
+    elif h.ci[g.LREST] == g.COMBINED:
+        damped = f - part * (sign(h, v) - sign(h, f - getr(h, ir, before))) * real(h, 0.5)
+        putr(h, ir, before, f)
+    if h.ci[g.LSCALE] != 0:
+        return damped * getr(h, ir, scale)
+    return damped
+
+
+@kernel
+def relax_point(h: Memory, ig: int, ir: int) -> None:
+    """The force sums of grid-point `ig`; what damping takes goes to WREST."""
+    m, fix = getr(h, ig, g.KGPM), iget(h, ig, g.KGFIX)
+    wx, wy = m * h.cr[g.GRAVX], m * h.cr[g.GRAVY]
+    xd, yd = getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)
+    fx, fy = getr(h, ig, g.KGFX) + wx, getr(h, ig, g.KGFY) + wy
+    if fix & g.ALONG_X == 0:
+        putr(h, ig, g.KGFX, relaxed(h, ir, g.KRXFX, g.KRXM, fx, xd) - wx)
+    if fix & g.ALONG_Y == 0:
+        putr(h, ig, g.KGFY, relaxed(h, ir, g.KRXFY, g.KRXM, fy, yd) - wy)
+    if h.ci[g.LENER] != 0:
+        lx, ly = fx - wx - getr(h, ig, g.KGFX), fy - wy - getr(h, ig, g.KGFY)
+        ux, uy = next_point_velocity(h, ig)
+        h.cd[g.WREST] += (np.float64(lx) * (xd + ux) + ly * (yd + uy)) * h.cr[g.TDEL] * 0.5
+
+
+@kernel
+def relax_body(h: Memory, ib: int, ir: int) -> None:
+    """The force sums of block `ib` as a rigid body; what damping takes goes to WREST."""
+    bm, fix = getr(h, ib, g.KBM), iget(h, ib, g.KBFIX)
+    wx, wy = bm * h.cr[g.GRAVX], bm * h.cr[g.GRAVY]
+    xd, yd, td = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD)
+    fx, fy, ft = getr(h, ib, g.KBFX) + wx, getr(h, ib, g.KBFY) + wy, getr(h, ib, g.KBFT)
+    if fix & g.GIVEN_X == 0:
+        putr(h, ib, g.KBFX, relaxed(h, ir, g.KRXFX, g.KRXM, fx, xd) - wx)
+    if fix & g.GIVEN_Y == 0:
+        putr(h, ib, g.KBFY, relaxed(h, ir, g.KRXFY, g.KRXM, fy, yd) - wy)
+    if fix != g.GIVEN_X + g.GIVEN_Y:
+        putr(h, ib, g.KBFT, relaxed(h, ir, g.KRXFT, g.KRXI, ft, td))
+    if h.ci[g.LENER] != 0:
+        lx, ly = fx - wx - getr(h, ib, g.KBFX), fy - wy - getr(h, ib, g.KBFY)
+        ux, uy, ut = next_velocity(h, ib)
+        work = np.float64(lx) * (xd + ux) + ly * (yd + uy) + (ft - getr(h, ib, g.KBFT)) * (td + ut)
+        h.cd[g.WREST] += work * h.cr[g.TDEL] * 0.5
+
+
+@kernel
+def relax_strain(h: Memory, ie: int, ir: int) -> None:
+    """What strains extension `ie`; what damping takes goes to WREST."""
+    f11, f12, f22 = straining_force(h, ie)
+    e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
+    l11 = f11 - relaxed(h, ir, g.KRXS11, g.KRXE, f11, e11)
+    l12 = f12 - relaxed(h, ir, g.KRXS12, g.KRXE, f12, e12)
+    l22 = f22 - relaxed(h, ir, g.KRXS22, g.KRXE, f22, e22)
+    putr(h, ie, g.KSA11, getr(h, ie, g.KSA11) - l11)
+    putr(h, ie, g.KSA12, getr(h, ie, g.KSA12) - l12)
+    putr(h, ie, g.KSA21, getr(h, ie, g.KSA21) - l12)
+    putr(h, ie, g.KSA22, getr(h, ie, g.KSA22) - l22)
+    if h.ci[g.LENER] != 0:
+        u11, u12, u22 = strain(h, ie)
+        work = np.float64(l11) * (e11 + u11) + l12 * (e12 + u12) * 2.0 + l22 * (e22 + u22)
+        h.cd[g.WREST] += work * h.cr[g.TDEL] * 0.5
+
+
+@kernel
+def relax_all(h: Memory) -> None:
+    """LOCAL and COMBINED damping and scaled masses of all that moves."""
+    ir = int64(h.ci[g.IRXPNT])
+    ib = int64(h.ci[g.IBPNT])
+    while ib != 0:
+        free, kind = iget(h, ib, g.KBFIX) != g.FIXED, iget(h, ib, HEAD)
+        if kind == g.MFDEF:
+            ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+            while ig != 0:
+                if free:
+                    relax_point(h, ig, ir)
+                ir = following(h, ir)
+                ig = iget(h, ig, g.KG)
+        else:
+            if free:
+                relax_body(h, ib, ir)
+                if kind == g.MSDEF:
+                    relax_strain(h, iget(h, ib, g.KBEX), ir)
+            ir = following(h, ir)
+        ib = iget(h, ib, g.KB)
+
+
+@apart
+def relax(h: Memory) -> bool:
+    """All that leads to rest, for the step that begins."""
+    how = h.ci[g.LREST]
+    if how == g.KINETIC or how == g.ADAPTIVE:
+        look_at_motion(h)
+    if how == g.LOCAL or how == g.COMBINED or h.ci[g.LSCALE] != 0:
+        relax_all(h)
+    return True

@@ -1,0 +1,185 @@
+"""The rows of the stiffness matrix: what bounds the frequency of any mode (report 4.6).
+
+The safe bound of the time-step is 2 min sqrt(m_i / sum_j |K_ij|), with the row sums of the whole stiffness
+matrix over all degrees of freedom (Gershgorin): no mode is faster. A contact's stiffness is the greater of KN
+and KS in every direction. Degrees of freedom are x and y of blocks and grid-points, the rotation of a block
+and the three strains of a simply-deformable one times its radius of gyration. What is fixed has none.
+
+A viscous boundary takes the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
+negative eigenvalue, so that with w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
+from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+
+Array = Any  # of addresses, or of the reals found there
+# A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
+OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A critical time-step (s) and the address of the block, contact or grid-point that sets it."""
+
+    step: float
+    address: int
+
+
+class Rows:
+    """Row sums of the stiffness matrix, one row for each address of a block or grid-point."""
+
+    def __init__(self, h: Memory) -> None:
+        self.h = h
+        blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+        meshed = blocks[integers(h, blocks, HEAD) == g.MFDEF]
+        firsts = integers(h, integers(h, meshed, g.KBEX), g.KFG)
+        points = [addresses(h, int(first), g.KG) for first in firsts]
+        self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
+        words = len(self.address)
+        self.sum = np.zeros((words, DOFS))
+        self.mass = np.full((words, DOFS), np.inf)
+        self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
+        self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
+        self.length = np.ones(words)  # radius of gyration of a block
+        self._enter_blocks(blocks[integers(h, blocks, HEAD) != g.MFDEF])
+        if len(meshed):
+            self._enter_points(meshed, points)
+            self._enter_zones(meshed)
+        self._enter_contacts()
+        if h.ci[g.IBNPNT]:
+            self._enter_dashpots()
+
+    def row(self, addresses: Array) -> Array:
+        """Rows of blocks and grid-points."""
+        return np.searchsorted(self.address, addresses)
+
+    def _enter_blocks(self, blocks: Array) -> None:
+        """Masses of rigid and simply-deformable blocks, and the inner stiffness of the latter."""
+        h = self.h
+        mass = reals(h, blocks, g.KBM)
+        rows = self.row(blocks)
+        self.length[rows] = np.sqrt(reals(h, blocks, g.KBI) / mass)
+        self.mass[rows] = mass[:, None]
+        fix = integers(h, blocks, g.KBFIX)
+        self.free[rows, 0] = fix & (g.FIXED | g.GIVEN_X) == 0
+        self.free[rows, 1] = fix & (g.FIXED | g.GIVEN_Y) == 0
+        self.free[rows, 2] = (fix != g.FIXED) & (fix != g.GIVEN_X | g.GIVEN_Y)
+        soft = blocks[(integers(h, blocks, HEAD) == g.MSDEF) & (fix != g.FIXED)]
+        if not len(soft):
+            return
+        rows, ext, mat = self.row(soft), integers(h, soft, g.KBEX), integers(h, soft, g.KMAT) - 1
+        j11, j12, j22, area = (reals(h, ext, k) for k in (g.KSJ11, g.KSJ12, g.KSJ22, g.KSAREA))
+        zero = np.zeros_like(j11)
+        tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
+        square = self.length[rows] ** 2
+        known = np.isfinite(tensor).all(axis=(1, 2))  # the others have no eigenvalues, and no safe step
+        smallest = np.full(len(rows), np.nan)
+        smallest[known] = np.linalg.eigvalsh(tensor[known])[:, 0]
+        self.mass[rows, 3:] = (smallest / square)[:, None]
+        self.free[rows, 3:] = 1
+        one, two, area = h.cr[g.ALAM1 + mat], h.cr[g.ALAM2 + mat], np.abs(area)
+        self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
+        self.sum[rows, 5] = area * 2 * (one - two) / square
+
+    def _enter_points(self, blocks: Array, points: list[Array]) -> None:
+        """Masses of the grid-points of `blocks`, those of each block in a row."""
+        h, own = self.h, np.concatenate(points)
+        rows, fix = self.row(own), integers(h, own, g.KGFIX)
+        held = np.repeat(integers(h, blocks, g.KBFIX) == g.FIXED, [len(row) for row in points])
+        self.mass[rows] = reals(h, own, g.KGPM)[:, None]
+        self.free[rows, 0] = (fix & g.ALONG_X == 0) & ~held
+        self.free[rows, 1] = (fix & g.ALONG_Y == 0) & ~held
+
+    def _enter_zones(self, blocks: Array) -> None:
+        """The stiffness of the zones of `blocks`."""
+        h = self.h
+        chains = [addresses(h, int(first), g.KZ) for first in integers(h, integers(h, blocks, g.KBEX), g.KFZ)]
+        zones = np.concatenate(chains)
+        mat = np.repeat(integers(h, blocks, g.KMAT) - 1, [len(chain) for chain in chains])
+        corner = np.stack([integers(h, zones, g.KZG, i) for i in (2, 1, 0)], axis=1)
+        x, y = (reals(h, corner, k) for k in (g.KXG, g.KYG))
+        b, c = np.roll(y, -1, 1) - np.roll(y, 1, 1), np.roll(x, 1, 1) - np.roll(x, -1, 1)
+        corner = self.row(corner)
+        twice = np.abs(b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])  # a zone may have turned inside out
+        one, two = (h.cr[k + mat].astype(float) for k in (g.ALAM1, g.ALAM2))
+        shear = (one - two) / 2
+        free = self.free[corner, :2]
+        for i in range(3):
+            for j in range(3):
+                bb, cc = b[:, i] * b[:, j], c[:, i] * c[:, j]
+                bc, cb = b[:, i] * c[:, j], c[:, i] * b[:, j]
+                fx, fy = free[:, j].T
+                row_x = np.abs(one * bb + shear * cc) * fx + np.abs(two * bc + shear * cb) * fy
+                row_y = np.abs(two * cb + shear * bc) * fx + np.abs(one * cc + shear * bb) * fy
+                np.add.at(self.sum[:, 0], corner[:, i], _over(row_x, 2 * twice))
+                np.add.at(self.sum[:, 1], corner[:, i], _over(row_y, 2 * twice))
+
+    def _enter_contacts(self) -> None:
+        """The stiffness of all contacts that are not virtual."""
+        row = np.zeros(int(self.h.ci[g.MFREE]) + 1, np.int32)
+        row[self.address] = np.arange(len(self.address))
+        add_contacts(self.h, row, self.length, self.free, self.sum)
+
+    def _body(self, blocks: Array, x: Array, y: Array) -> Array:
+        """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
+        length = self.length[self.row(blocks)]
+        rx, ry = (np.abs(p - reals(self.h, blocks, k)) / length for p, k in ((x, g.KX), (y, g.KY)))
+        one, zero = np.ones_like(rx), np.zeros_like(rx)
+        return np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
+
+    def _enter_dashpots(self) -> None:
+        """The dashpots of all viscous boundaries."""
+        h = self.h
+        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+        cxx, cxy, cyy = (np.abs(reals(h, bounds, k)) for k in (g.KUCXX, g.KUCXY, g.KUCYY))
+        blocks, points, corners = (integers(h, bounds, k) for k in (g.KUB, g.KUG, g.KUP))
+        x, y = (
+            np.where(corners > 0, reals(h, corners, kp), reals(h, blocks, k))
+            for kp, k in ((g.KXP, g.KX), (g.KYP, g.KY))
+        )
+        at = self.row(np.where(points > 0, points, blocks))
+        share: Array = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
+        total = (share * self.free[at]).sum(axis=2)
+        for axis, (along, across) in enumerate(((cxx, cxy), (cyy, cxy))):
+            rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
+            np.add.at(self.drag, at, rows)
+
+    def limit(self) -> Limit:
+        """The bound, and who sets it: 0 where a mass or a stiffness is not a number."""
+        rate = np.where(self.free > 0, rate_of(self.sum, self.drag, self.mass), 0.0)
+        rate[np.isnan(rate)] = np.inf
+        at = int(rate.max(axis=1).argmax())
+        fastest = float(rate[at].max())
+        return Limit(2 / fastest if fastest else math.inf, int(self.address[at]))
+
+
+def _point(n: int) -> Array:
+    """How far a unit of each degree of freedom of a grid-point moves it, shape (2, n, DOFS)."""
+    moves = np.zeros((2, n, DOFS))
+    moves[0, :, 0] = moves[1, :, 1] = 1
+    return moves
+
+
+def _over(total: Array, mass: Array) -> Array:
+    """`total` over `mass`; infinite where something acts on what has been squashed flat, and has no mass."""
+    return np.divide(total, mass, out=np.where(total > 0, np.inf, 0.0), where=mass > 0)
+
+
+def rate_of(stiffness: Array, drag: Array, mass: Array) -> Array:
+    """2 over the greatest stable step (1/s). A negative stiffness, of a zone inside out, makes no wave."""
+    square, half = _over(np.maximum(stiffness, 0), mass), _over(drag, mass) / 2
+    return np.sqrt(square + half * half) + half
+
+
+def reals(h: Memory, at: Array, k: Offset) -> Array:
+    return np.asarray(getr(h, at, k), np.float64)
