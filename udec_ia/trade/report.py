@@ -10,6 +10,7 @@ from udec_ia.trade.levers import Setting
 from udec_ia.trade.limit import Limit
 from udec_ia.trade.trade import Price
 
+NEAR = 0.1  # of the tolerance: share of the time that does not count
 COLUMNS = ("setting", "error", "seconds", "predicted", "measured", "MB", "cycles", "what")
 
 
@@ -71,17 +72,17 @@ def _order(one: Limit) -> str:
 
 
 def _of_times(price: Price) -> Iterator[str]:
-    """Settings that do not end when the deck does."""
+    """Settings that do not end when the deck does, for want of a whole cycle or as their steps came out."""
     ends = [row.result.time for row in price.levels if row.result]
     if not ends or price.deck.has("solve"):
         return
     off = [
         f"{row.setting.name} by {row.result.time - ends[0]:.2g} s"
         for row in price.rows
-        if row.result and row.ran and abs(row.result.time - ends[0]) > 1e-6 * abs(ends[0])
+        if row.result and row.ran and abs(row.result.time - ends[0]) > NEAR * price.tolerance * abs(ends[0])
     ]
     if off:
-        yield f"ends at another time, for want of a whole cycle: {', '.join(off)}"
+        yield f"do not end when the deck does: {', '.join(off)}"
 
 
 def _of_partings(price: Price) -> Iterator[str]:
