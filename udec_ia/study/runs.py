@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
@@ -22,6 +22,7 @@ from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.ops.run.watch import Watch
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.version import __version__
 
@@ -63,6 +64,10 @@ class Run:
             raise ValueError(f"a limit of {self.limit} s: give more than 0")
         laws = tuple(str(Path(law).absolute()) if Path(law).is_file() else law for law in self.constitutive)
         object.__setattr__(self, "constitutive", laws)
+
+    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
+        """Gives another one for the watch of each CYCLE or SOLVE of its model: other studies see more."""
+        return lambda watch: watch
 
     @property
     def made_of(self) -> dict[str, str]:

@@ -33,6 +33,7 @@ class Observer:
         self._named, self._rules = read(run.quantities), [read_rule(text) for text in run.stop]
         asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
         self._start = Start(frozenset(one.place for one in asked if one.place is not None))
+        self._watched = run.watcher(model)
         self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
         self._clock, self._compiled = thread_time(), compile_seconds()
 
@@ -41,9 +42,14 @@ class Observer:
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.around = lambda watch: _Eye(self, watch or Watch(self.model.array, []))
+        self.model.around = self._around
         monitor.run(text.splitlines(), name)
         monitor.stop()
+
+    def _around(self, watch: Watch | None) -> Watch:
+        """What watches a CYCLE or SOLVE that begins, around what does so anyway."""
+        inner = watch or Watch(self.model.array, [])
+        return _Eye(self, inner if self.rehearsal else self._watched(inner))
 
     @property
     def seconds(self) -> float:

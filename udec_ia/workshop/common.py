@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing, Tables
 
 MISUSE = 2
+SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
 Look = Callable[[argparse.Namespace], "Listing | Tables"]
 Script = Callable[[argparse.Namespace], str]
 
@@ -57,6 +59,14 @@ def given(texts: Sequence[str]) -> dict[str, str]:
             raise ValueError(f"--set {text}: {name} has a value already")
         found[name.upper()] = value
     return found
+
+
+def seconds(option: str, text: str) -> float:
+    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
+    found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
+    if found is None:
+        raise ValueError(f"{option} {text}: give a time as in 60s, 5m or 1h")
+    return float(found[1]) * SECONDS[found[2]]
 
 
 def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:

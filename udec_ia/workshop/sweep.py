@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.workshop.common import command, given
+from udec_ia.workshop.common import command, given, seconds
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
 VERBS = ("sweep",)
 TEXT = "run a deck for all combinations of values of its variables: a folder and a line of a table each"
-SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
 REPEATED = (
     (
         "--set",
@@ -78,7 +76,7 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
         "quantities": args.quantity,
         "stop": args.stop,
         "every": args.every,
-        "limit": None if args.limit is None else _seconds(args.limit),
+        "limit": None if args.limit is None else seconds("--limit", args.limit),
         "build": args.build,
         "constitutive": args.constitutive,
         "out": args.out,
@@ -86,14 +84,6 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
         "dask": args.dask,
     }
     return {name: value for name, value in options.items() if value not in (None, [], "")}
-
-
-def _seconds(text: str) -> float:
-    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
-    found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
-    if found is None:
-        raise ValueError(f"--limit {text}: give a time as in 60s, 5m or 1h")
-    return float(found[1]) * SECONDS[found[2]]
 
 
 def _script(args: argparse.Namespace) -> str:

@@ -1,0 +1,183 @@
+"""Price lists of models that can be solved by hand, and digits that are lost on the way.
+
+A block that falls freely from rest has moved by g dt^2 n(n + 1)/2 after n cycles, as velocities are those
+of half steps: 1 + 1/n times g t^2/2. The error goes with the step itself, and is 1/n.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from udec_ia import Model
+from udec_ia.cli import main
+from udec_ia.study.many import RUNS, run_all
+from udec_ia.trade.blame import Blame
+from udec_ia.trade.digits import measure
+from udec_ia.trade.noise import Noisy
+from udec_ia.trade.parting import parting
+from udec_ia.trade.report import changes, half_step, sentences
+from udec_ia.trade.surveyed import segments
+from udec_ia.trade.trade import SURVEYED, Options, Price, trade
+
+PROPERTIES = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 FRICTION=0.5\n"
+FALL = (
+    f"{PROPERTIES}BLOCK 0 0 0 1 1 1 1 0\nGRAVITY 0 -10\nFRAC 0.1\n"
+    "CYCLE 120\nPRINT BLOCKS\nCYCLE 80\nSTOP\nEND\n"
+)
+FELL = ("way = block(0.5, 0.5).YDISPLACEMENT",)
+STEP = 0.1 * 2 * math.sqrt(2000 / 1e8)
+WALL = (
+    f"{PROPERTIES}BLOCK 0 0 0 3 3 3 3 0\nSPLIT -1 1 4 1\nSPLIT 1 0.5 1 4\nSPLIT 2 0.5 2 4\nROUND 0.1\n"
+    "FIX 0 3 0 1\nGRAVITY 0 -10\nFRAC 0.1\nDAMP 0.5 10 MASS\n"
+)
+
+
+def priced(text: str, folder: Path, **named: object) -> Price:
+    options = Options(builds=("i32r64",), jobs=0, **named)  # type: ignore[arg-type]
+    return trade(text, "x.dat", {}, folder, options)
+
+
+@pytest.fixture(scope="module")
+def fall(tmp_path_factory: pytest.TempPathFactory) -> Price:
+    return priced(FALL, tmp_path_factory.mktemp("fall"), quantities=FELL)
+
+
+def test_the_reference_is_the_exact_way(fall: Price) -> None:
+    limit = fall.limits["way"]
+    assert limit is not None
+    assert limit.value == pytest.approx(-0.5 * 10 * (200 * STEP) ** 2, rel=1e-9)
+    assert limit.order == pytest.approx(1, abs=1e-6)
+
+
+def test_errors_are_those_of_the_formula(fall: Price) -> None:
+    ran = [row for row in fall.rows if row.result and row.ran]
+    assert len(ran) > 8
+    for row in ran:
+        assert row.result is not None
+        n, time = row.result.cycles, row.result.time / (200 * STEP)
+        assert abs(time - 1) * n <= 0.5 + 1e-9  # half a step of what the deck has
+        assert row.error == pytest.approx(abs(time**2 * (1 + 1 / n) - 1), abs=1e-9)
+
+
+def test_the_cheapest_within_the_tolerance_is_recommended(fall: Price) -> None:
+    best = fall.best
+    assert best is not None
+    assert best.result is not None
+    assert best.error <= 1e-3
+    assert 1000 <= best.result.cycles <= 1000 * 2**0.5 * 1.06
+    told = " ".join(sentences(fall))
+    assert "line 5: FRAC 0.1 -> FRACTION" in told
+    assert "power 1.00 of the step" in told
+
+
+def test_the_lines_to_change_make_the_recommended_run(fall: Price, tmp_path: Path) -> None:
+    assert fall.best is not None
+    assert fall.best.result is not None
+    lines = FALL.splitlines()
+    for change in changes(fall, fall.best)[1:]:
+        where, new = change.removeprefix("line ").split(": ", 1)
+        lines[int(where) - 1] = new.split(" -> ")[1]
+    model = Model(out=tmp_path)
+    model.run("\n".join(lines))
+    way = model.table("block")["KY"][0] - 0.5
+    assert way == pytest.approx(fall.best.result.quantities["way"], rel=1e-12)
+
+
+def test_the_survey_knows_the_time_steps(fall: Price) -> None:
+    found = segments(fall.folder / RUNS / SURVEYED)
+    assert [one.asked for one in found] == [120, 80]
+    assert [one.step for one in found] == pytest.approx([STEP] * 2)
+    assert found[1].began == pytest.approx(120 * STEP)
+
+
+def test_half_the_step(tmp_path: Path) -> None:
+    found = priced(FALL, tmp_path, quantities=FELL, half_step=True)
+    assert len(found.rows) == 2
+    (said,) = half_step(found)
+    assert "off by 2.5e-03" in said  # 1/200 and 1/400
+    assert "TOO LARGE" in said
+
+
+def test_rest_is_sought_more_closely(tmp_path: Path) -> None:
+    force = ("force = sum contact.KCFN",)
+    found = priced(f"{WALL}SOLVE 1E-2\n", tmp_path, quantities=force, tolerance=1e-2)
+    limit = found.limits["force"]
+    assert limit is not None
+    assert limit.value == pytest.approx(
+        2 * 3 * 2000 * 10, rel=1e-3
+    )  # the weight of six blocks above the joint
+    assert found.best is not None
+
+
+def test_a_budget_that_is_too_small_says_so(tmp_path: Path) -> None:
+    found = priced(FALL, tmp_path, quantities=FELL, budget=1e-6)
+    assert not found.rows
+    assert "more than the budget" in found.said[0]
+
+
+def test_a_deck_that_fails_is_a_result(tmp_path: Path) -> None:
+    found = priced(FALL.replace("CYCLE 80", "DELETE 0 1 0 1"), tmp_path, quantities=FELL)
+    assert "gives nothing to compare" in sentences(found)[-1]
+
+
+def test_runs_that_go_apart_part_somewhere(tmp_path: Path) -> None:
+    price = priced(FALL, tmp_path, quantities=FELL, half_step=True)
+    one, two = (price.path(row) for row in price.levels)
+    found = parting(one, two, 1e-3)
+    assert found is not None
+    assert (found.x, found.y) == (0.5, 0.5)
+    assert found.apart == pytest.approx(0.5 * 10 * (200 * STEP) ** 2 * (1 / 200 - 1 / 400))
+    assert parting(one, one, 1e-3) is None
+
+
+# ---- digits
+
+
+def noisy(folder: Path, name: str, **named: object) -> float:
+    run = Noisy(name, f"{WALL}CYCLE 50\n", quantities=("x = mean block.KY",), cycles=50, **named)  # type: ignore[arg-type]
+    (result,) = run_all([run], folder, jobs=0)
+    assert result.status == "ended"
+    return result.quantities["x"]
+
+
+def test_noise_is_in_the_last_digits_and_repeats_itself(tmp_path: Path) -> None:
+    plain, one, two = (noisy(tmp_path, f"s{seed}", seed=seed) for seed in (0, 1, 2))
+    assert len({plain, one, two}) == 3
+    assert noisy(tmp_path, "again", seed=1) == one
+    # fifty kicks of a unit of numbers below 4, passed on by a motion that is damped
+    assert max(abs(one - plain), abs(two - plain)) < 50 * 4 * 2.0**-52 * 10
+    assert noisy(tmp_path, "nowhere", seed=1, fields=("zone.KZS11",)) == plain
+
+
+def test_rounding_takes_the_same_digits_of_words_of_any_length(tmp_path: Path) -> None:
+    quantities = ("x = mean block.KY", "force = max contact.KCFN")
+    found = measure(f"{WALL}CYCLE 100\n", "x.dat", {}, tmp_path, Options(quantities=quantities, jobs=0), 6)
+    wide, narrow = (found.digits(build, "force") for build in found.results)
+    assert wide is not None
+    assert narrow is not None
+    assert wide.digits - narrow.digits == pytest.approx(29 * math.log10(2), abs=1.5)
+    assert "rounding takes" in str(found.rows()[1][-1])
+    blame = Blame(found, "force")
+    assert blame.explains(["contact.KCFN", "contact.KCN", "corner.KXCP", "corner.KYCP", "block.KY"])
+    assert not blame.explains(["zone.KZS11"])
+
+
+# ---- command line
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    deck = tmp_path / "fall.dat"
+    deck.write_text(FALL)
+    out = tmp_path / "out"
+    asked = ["--quantity", FELL[0], "--builds", "i32r64", "--jobs", "0", "--out", str(out)]
+    assert main(["trade", str(deck), *asked]) == 0
+    told = capsys.readouterr().out
+    assert "recommended for 0.001" in told
+    names = {f"fall-trade.{kind}" for kind in ("csv", "h5", "png", "svg")}
+    assert {path.name for path in out.glob("fall-trade.*")} == names
+    assert main(["trade", str(deck), *asked, "--half-step"]) == 0
+    assert "TOO LARGE" in capsys.readouterr().out
+    assert main(["trade", str(deck), "--tolerance", "0"]) == 2

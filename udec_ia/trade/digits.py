@@ -1,0 +1,148 @@
+"""How many digits of each quantity a deck determines, and what takes the others: chaos, rounding, or the
+step.
+
+Noise of the last place is passed on. As long as it is small it grows in proportion: it costs as many digits
+in words of any length, and longer words have all the more left: that is rounding. If 64-bit reals have less
+than half of the digits more that they should have, the spread is not set by the words, but by how far
+results can be apart at all: that is chaos. What changes with half the step by more than the spread is the
+error of the step.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from udec_ia.deck.variables import Values
+from udec_ia.heap.words import scheme
+from udec_ia.study.many import run_all
+from udec_ia.study.progress import Told
+from udec_ia.study.runs import ENDED, Result
+from udec_ia.trade.levers import Deck, Setting
+from udec_ia.trade.noise import KICKS, Noisy
+from udec_ia.trade.significant import FEWEST, Digits, digits
+from udec_ia.trade.trade import Options, Shop
+
+ENSEMBLE = 16
+KICK = 4e-4  # seconds, about
+SHARE = 0.5  # of the digits that longer words have more, which rounding leaves and chaos does not
+COLUMNS = ("quantity", "value", "digits", "at least", "32-bit", "at least 32", "step", "what limits it")
+
+
+@dataclass
+class Ensemble:
+    """What --digits has found. results: by word scheme. half: with half the step. said: sentences."""
+
+    shop: Shop
+    names: list[str] = field(default_factory=list)
+    plain: Result | None = None
+    half: Result | None = None
+    results: dict[str, list[Result]] = field(default_factory=dict)
+    said: list[str] = field(default_factory=list)
+
+    def digits(self, build: str, name: str) -> Digits | None:
+        """Of one quantity."""
+        values = [one.quantities[name] for one in self.results[build] if one.status == ENDED]
+        return digits(values, _bits(build))
+
+    def step(self, name: str) -> float:
+        """Digits that a run with half the step shares."""
+        if self.plain is None or self.half is None or self.half.status != ENDED:
+            return math.nan
+        a, b = self.plain.quantities[name], self.half.quantities[name]
+        return math.inf if a == b else -math.log10(abs(a - b) / abs(b)) if b else 0.0
+
+    def rows(self) -> list[tuple[object, ...]]:
+        """A line for each quantity."""
+        wide, narrow = self.results
+        found: list[tuple[object, ...]] = []
+        for name in self.names:
+            one, two = self.digits(wide, name), self.digits(narrow, name)
+            numbers = [
+                getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")
+            ]
+            shown = [round(number, 1) for number in (*numbers, self.step(name))]
+            value = one.mean if one else math.nan
+            found.append((name, value, *shown, verdict(one, two, self.step(name))))
+        return found
+
+
+def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
+    """What limits a quantity."""
+    if wide is None or narrow is None:
+        return "too few runs came to their end"
+    if wide.digits - narrow.digits < SHARE * (wide.full - narrow.full):
+        return "chaos: longer words give no more digits"
+    lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
+    if step < wide.lower:
+        return f"the time-step; {lost}"
+    return lost
+
+
+def measure(
+    text: str,
+    name: str,
+    values: Values | None,
+    folder: Path,
+    options: Options,
+    runs: int,
+    where: Path | None = None,
+) -> Ensemble:
+    """Run the ensembles. runs: of each word scheme. Else as trade.trade."""
+    deck = Deck(text, name, values, where)
+    shop = Shop(deck, options, folder)
+    found = Ensemble(shop)
+    shop.rehearse()
+    found.plain = shop.look()
+    if found.plain.status != ENDED or not shop.survey:
+        found.said.append(f"the deck as it is gives no digits: {found.plain.message or 'it has no CYCLE'}")
+        return found
+    found.names = [*found.plain.quantities][1:]
+    row = shop.row(Setting(shop.wide, 0.5))
+    shop.do([row])
+    found.half = row.result
+    cycles = sum(one.done for one in shop.survey)
+    seconds = found.plain.seconds + KICK * min(cycles, KICKS)
+    runs = max(FEWEST, min(runs, int(shop.left * (options.jobs or 1) / (2 * seconds))))
+    options.tell(f"{runs} runs of {seconds:.3g} s in each of {' and '.join(shop.builds[:2])}")
+    for build in shop.builds[:2]:
+        found.results[build] = perturbed(shop, build, cycles, range(1, runs + 1))
+    kicks = f"a kick for {max(1, cycles // KICKS)} cycles"
+    found.said.append(
+        f"{runs} runs in each word scheme, {cycles} cycles, {kicks}; confidence and probability 95 %"
+    )
+    return found
+
+
+def perturbed(
+    shop: Shop, build: str, cycles: int, seeds: range, fields: tuple[str, ...] = (), label: str = "noise"
+) -> list[Result]:
+    """Perturbed runs of the deck as it is."""
+    text = shop.deck.written(Setting(build), None, shop.fraction)
+    asked, laws = shop.options.quantities, shop.options.constitutive
+    runs = [
+        Noisy(
+            f"{build},{label}={seed}",
+            text,
+            quantities=("end of time = time", *asked),
+            build=build,
+            constitutive=laws,
+            seed=seed,
+            fields=fields,
+            cycles=cycles,
+        )
+        for seed in seeds
+    ]
+    told = Told(shop.options.stream, len(runs))
+    try:
+        return run_all(runs, shop.folder, jobs=shop.options.jobs, timed=True, told=told)
+    finally:
+        told.close()
+
+
+def _bits(build: str) -> int:
+    """Bits of the fraction of a real."""
+    return int(np.finfo(scheme(build).real_type).nmant)

@@ -1,0 +1,92 @@
+"""What a quantity tends to as the time-step is halved again and again, and how far that is known.
+
+Three values v1, v2, v3 of a step, a half and a quarter of it. If the differences d1 = v2 - v1 and d2 = v3 -
+v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the power p of the step, and
+
+    v = v3 + d2 / (2^p - 1)
+
+(Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
+studies, J. Fluids Eng. 116, 1994, asks for).
+The error of v is taken to be the whole correction or, with four values, what the fourth has moved it by, if
+that is less: an extrapolation is no farther off than the one before it; both with a factor of safety. Else
+v3 is what there is, and twice the greatest of the last differences its error: of an error that goes with the
+step as much is left as the last difference.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+LOWEST, HIGHEST = 0.5, 3.0  # orders that are one
+SAFETY = 1.25  # on errors that an extrapolation tells of, as Roache takes it for three grids
+LEFT = 2  # times the last differences: what may be left where there is no order
+
+
+@dataclass(frozen=True)
+class Limit:
+    """value, and its error, both in the unit of the quantity. order: observed, NaN if there is none."""
+
+    value: float
+    error: float
+    order: float = math.nan
+
+    @property
+    def share(self) -> float:
+        """The error as a share of the value."""
+        return share(self.error, self.value)
+
+    def error_of(self, value: float) -> float:
+        """How far `value` is off, as a share of the limit; infinite for what is no number."""
+        return share(abs(value - self.value), self.value) if math.isfinite(value) else math.inf
+
+
+def share(error: float, value: float) -> float:
+    """`error` over the size of `value`: 0 if there is no error, infinite if there is one of 0."""
+    if error == 0:
+        return 0.0
+    return error / abs(value) if value else math.inf
+
+
+def limit(values: Sequence[float], highest: float = HIGHEST) -> Limit | None:
+    """The limit of values whose steps are halved from one to the next; None if the last is no number.
+
+    highest: the greatest order that is one.
+    """
+    finite = [value for value in values if math.isfinite(value)]
+    if not finite or not math.isfinite(values[-1]):
+        return None
+    if len(finite) == 1:
+        return Limit(finite[0], math.inf)
+    extrapolated = _extrapolated(finite[-3:], highest)
+    if extrapolated is not None:
+        before = _extrapolated(finite[-4:-1], highest)
+        if before is None:
+            return extrapolated
+        moved = abs(extrapolated.value - before.value)
+        return replace(extrapolated, error=min(extrapolated.error, SAFETY * moved))
+    differences = [b - a for a, b in pairwise(finite)]
+    return Limit(finite[-1], LEFT * max(map(abs, differences[-2:])))
+
+
+def _extrapolated(values: Sequence[float], highest: float) -> Limit | None:
+    """What three values tend to, None if they have no order."""
+    if len(values) < 3:
+        return None
+    one, two = (b - a for a, b in pairwise(values))
+    if one == two == 0:
+        return Limit(values[-1], 0.0)
+    if one * two > 0 and LOWEST <= (order := math.log2(one / two)) <= highest:
+        correction = two / (2**order - 1)
+        return Limit(values[-1] + correction, SAFETY * abs(correction), order)
+    return None
+
+
+def shrinks(values: Sequence[float]) -> bool:
+    """True if the last difference is smaller than the one before by a quarter or more."""
+    if len(values) < 3:
+        return True
+    one, two = abs(values[-2] - values[-3]), abs(values[-1] - values[-2])
+    return two <= 0.75 * one

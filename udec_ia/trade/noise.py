@@ -1,0 +1,151 @@
+"""Runs whose last digits are perturbed: every real that a cycle has changed is moved at random.
+
+Between two cycles each real of a block, corner, contact, domain, grid-point, zone or simply-deformable
+block that has changed since the last kick is moved by xi units in the last place, xi uniform in [-1, 1],
+and rounded to the nearest: one half of them stays, a quarter goes up by one unit, a quarter down. That is
+what the last rounding of each number would do if it were done once more, upwards or downwards at random;
+Verrou and CADNA do it to every operation, here it is done to what an operation leaves for the next cycle.
+Roundings inside a cycle, which only differences of nearly equal numbers make worse than that, are not
+repeated. Numbers that nothing changes, a mass or the place of a fixed block, stay: nothing rounds them.
+
+To bound the cost there are KICKS at most. If a kick stands for k cycles it is sqrt(k) units high: random
+steps, each as likely up as down, add up so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from udec_ia.inspect.table import addresses as listed
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import layouts, read_table
+from udec_ia.ops.run.watch import Watch
+from udec_ia.study.runs import Run
+
+KICKS = 1000
+STAYING = ("block", "corner", "gridpoint", "zone", "sdef")  # groups that come and go by commands only
+PASSING = {"contact": (g.ICPNT, g.KC), "domain": (g.IDPNT, g.KD)}  # those of cycles: head and link
+KINDS = (*STAYING, *PASSING)
+
+
+@dataclass(frozen=True)
+class Noisy(Run):
+    """A perturbed run. seed: of the noise, 0 for none. fields: "block.KX" ..., all if there are none.
+
+    cycles: of the whole run, about.
+    """
+
+    seed: int = 1
+    fields: tuple[str, ...] = ()
+    cycles: int = 0
+
+    @property
+    def made_of(self) -> dict[str, str]:
+        """See Run."""
+        return super().made_of | {"noise": f"{self.seed} {self.fields} {self.cycles}"}
+
+    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
+        """See Run."""
+        noise = Noise(model, self)
+        return lambda watch: _Kicked(noise, watch) if self.seed else watch
+
+
+class Noise:
+    """Kicks the reals of `model`, as `run` asks for."""
+
+    def __init__(self, model: Any, run: Noisy) -> None:
+        self.model = model
+        self.every = max(1, run.cycles // KICKS)
+        self._random = np.random.default_rng(run.seed)
+        ratio = model.array.scheme.ratio
+        shapes = {
+            group.name: [
+                layouts(ratio)[group.name].offset[field.name] - 1
+                for field in group.fields
+                if field.real and (not run.fields or f"{group.name}.{field.name}" in run.fields)
+            ]
+            for group in read_table().groups
+            if group.name in KINDS
+        }
+        self._fields = {kind: np.array(found, np.int64) for kind, found in shapes.items() if found}
+        self._staying = np.zeros(0, np.int64)
+
+    def begin(self) -> None:
+        """A CYCLE begins: groups are where they will stay."""
+        array = self.model.array
+        parts = [self._cells(kind, listed(array, kind)) for kind in self._fields if kind in STAYING]
+        self._staying = np.concatenate([np.zeros(0, np.int64), *parts])
+
+    def reals(self) -> Any:
+        """A copy of all words as reals."""
+        h = self.model.array.h
+        return h.ra[: int(h.ci[g.MFREE]) // self.model.array.scheme.ratio + 1].copy()
+
+    def kick(self, before: Any) -> None:
+        """Move what has changed since `before`."""
+        h = self.model.array.h
+        parts = [
+            self._cells(kind, addresses(h, int(h.ci[head]), link))
+            for kind, (head, link) in PASSING.items()
+            if kind in self._fields
+        ]
+        cells = np.concatenate([self._staying, *parts])
+        cells = cells[cells < len(before)]
+        now = h.ra[cells]
+        moved = np.isfinite(now) & (now != before[cells]) & (now != 0)
+        cells, now = cells[moved], now[moved]
+        xi = self._random.uniform(-1, 1, len(now)) * self.every**0.5
+        h.ra[cells] = now + (xi * np.spacing(np.abs(now))).astype(now.dtype)
+
+    def _cells(self, kind: str, at: Any) -> Any:
+        """Where the reals of groups stand, as numbers of reals."""
+        first = (np.asarray(at, np.int64) - 1) // self.model.array.scheme.ratio
+        return (first[:, None] + self._fields[kind]).ravel()
+
+
+class _Kicked(Watch):
+    """Runs a CYCLE or SOLVE in pieces, with a kick after each. inner: what watches the run else."""
+
+    def __init__(self, noise: Noise, inner: Watch) -> None:
+        self.noise, self.inner = noise, inner
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    @property
+    def reached(self) -> bool:  # type: ignore[override]
+        """As of the inner one."""
+        return self.inner.reached
+
+    def begin(self) -> None:
+        """As Watch.begin."""
+        self.inner.begin()
+        self.noise.begin()
+
+    def run(self, n: int, laws: Any) -> int:
+        """As Watch.run."""
+        done, every = 0, self.noise.every
+        h = self.noise.model.array.h
+        while done < n and not self.inner.reached:
+            before = self.noise.reals()
+            ahead = min(n - done, every - int(h.ci[g.MCTOT]) % every)
+            completed = self.inner.run(ahead, laws)
+            done += completed
+            if completed < ahead or h.ci[g.NERR] != 0 or h.ci[g.JPHASE] != g.AT_BLOCKS:
+                break
+            if h.ci[g.MCTOT] % every == 0:
+                self.noise.kick(before)
+        return done
+
+    def look(self) -> None:
+        """As Watch.look."""
+        self.inner.look()
+
+    def hand_on(self) -> int:
+        """As Watch.hand_on."""
+        return self.inner.hand_on()

@@ -1,0 +1,180 @@
+"""A run that is watched CYCLE by CYCLE: time-steps, seconds, and where blocks are on the way.
+
+What is found goes to two files in the folder of the run. How a CYCLE is cut into pieces changes no digit of
+it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import thread_time
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import getr
+from udec_ia.heap.compiling import compile_seconds
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.timestep import bound, damped, estimate
+from udec_ia.ops.run.watch import Watch
+from udec_ia.study.runs import Run
+
+SURVEY, TRACKS = "survey.json", "tracks.npz"
+MARKS = 8  # looks at where blocks are, in each CYCLE
+REHEARSED = 256  # cycles of a piece of a rehearsal, at most
+
+
+@dataclass
+class Segment:
+    """One CYCLE or SOLVE.
+
+    asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the
+    estimate, or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0
+    if not asked for. seconds: of the processor, without compiling.
+    """
+
+    asked: int
+    solve: bool
+    began: float
+    step: float
+    fraction: float
+    safe: bool
+    estimate: float
+    bound: float
+    done: int = 0
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Surveyed(Run):
+    """A run that leaves a survey. rehearsed: seconds after which each CYCLE or SOLVE ends, 0 for never.
+
+    limits: ask for estimate and bound.
+    """
+
+    rehearsed: float = 0.0
+    limits: bool = False
+
+    @property
+    def made_of(self) -> dict[str, str]:
+        """See Run."""
+        return super().made_of | {"survey": f"{self.rehearsed} {self.limits}"}
+
+    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
+        """See Run."""
+        found = Found(model)
+        return lambda watch: Survey(self, found, watch)
+
+
+class Found:
+    """What is found of one model."""
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+        self.segments: list[Segment] = []
+        self.tracks: list[tuple[float, Any]] = []
+
+    def look(self) -> None:
+        """Note where blocks are."""
+        h = self.model.array.h
+        blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+        rows = np.column_stack([blocks, getr(h, blocks, g.KX), getr(h, blocks, g.KY)])
+        self.tracks.append((float(h.cd[g.TIME]), rows))
+
+    def write(self) -> None:
+        """Write the files."""
+        self.model.out.mkdir(parents=True, exist_ok=True)
+        text = json.dumps([asdict(one) for one in self.segments], indent=1)
+        (self.model.out / SURVEY).write_text(text + "\n", encoding="utf-8")
+        if self.tracks:
+            arrays = {f"at{k}": rows for k, (_, rows) in enumerate(self.tracks)}
+            np.savez(self.model.out / TRACKS, times=np.array([time for time, _ in self.tracks]), **arrays)
+
+
+class Survey(Watch):
+    """Watches one CYCLE or SOLVE for `run`. inner: what watches it else."""
+
+    def __init__(self, run: Surveyed, found: Found, inner: Watch) -> None:
+        self.asked_for, self.found, self.inner = run, found, inner
+        self._made = not found.model.array.h.ci[g.LREADY]  # the time-step is made anew
+        self._segment: Segment | None = None
+        self._marks: list[int] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    @property
+    def reached(self) -> bool:  # type: ignore[override]
+        """True when there are to be no more cycles."""
+        one, limit = self._segment, self.asked_for.rehearsed
+        return self.inner.reached or (one is not None and one.done > 1 and 0 < limit < one.seconds)
+
+    def begin(self) -> None:
+        """As Watch.begin."""
+        self.inner.begin()
+        array, found = self.found.model.array, self.found.segments
+        h = array.h
+        limits = (found[-1].estimate, found[-1].bound) if found else (0.0, 0.0)
+        if self.asked_for.limits and (self._made or not found):
+            safe = damped(bound(array).step, float(h.cr[g.BETA]))
+            limits = estimate(array).step, safe
+        asked, step = int(h.ci[g.NCYC]), float(h.cr[g.TDEL])
+        one = Segment(
+            asked,
+            self.inner.ratio >= 0,
+            float(h.cd[g.TIME]),
+            step,
+            float(h.cr[g.FRAC]),
+            bool(h.ci[g.LSAFE]),
+            *limits,
+        )
+        found.append(one)
+        self._segment = one
+        self._marks = [] if one.solve else sorted({round(asked * k / MARKS) for k in range(1, MARKS + 1)})
+        self.found.look()
+
+    def run(self, n: int, laws: Any) -> int:
+        """As Watch.run: up to the next mark."""
+        one = self._segment
+        assert one is not None
+        ahead = [mark - one.done for mark in self._marks if mark > one.done]
+        if self.asked_for.rehearsed:
+            n = min(n, REHEARSED)
+        clock, compiled = thread_time(), compile_seconds()
+        completed = self.inner.run(min(n, *ahead[:1]), laws) if ahead else self.inner.run(n, laws)
+        one.seconds += max(thread_time() - clock - (compile_seconds() - compiled), 0.0)
+        one.done += completed
+        if one.done in self._marks:
+            self.found.look()
+        return completed
+
+    def look(self) -> None:
+        """As Watch.look."""
+        self.inner.look()
+
+    def hand_on(self) -> int:
+        """As Watch.hand_on, at the end of the CYCLE."""
+        self.found.write()
+        return self.inner.hand_on()
+
+
+def segments(folder: Path) -> list[Segment]:
+    """The CYCLEs and SOLVEs of the run in a folder, as far as it came."""
+    try:
+        found = json.loads((folder / SURVEY).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return []
+    return [Segment(**one) for one in found]
+
+
+def tracks(folder: Path) -> list[tuple[float, Any]]:
+    """Times, and address and place of each block then, (n, 3), of the run in a folder."""
+    try:
+        with np.load(folder / TRACKS) as found:
+            return [(float(time), found[f"at{k}"]) for k, time in enumerate(found["times"])]
+    except FileNotFoundError:
+        return []

@@ -1,0 +1,169 @@
+"""`udec trade DECK`: what accuracy costs, for this deck; with --digits, how many digits it determines."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.workshop.common import command, given, seconds, variables
+
+if TYPE_CHECKING:
+    from udec_ia.inspect.look.listing import Listing, Tables
+    from udec_ia.trade.trade import Options, Price
+
+VERBS = ("trade",)
+TEXT = "find the cheapest time-step and word scheme for a deck that keep to a tolerance"
+REPEATED = (
+    ("--quantity", "QUANTITY", 'what must be right, as in "max contact.KCFN"'),
+    ("--constitutive", "LAW", "as for udec run"),
+)
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser = command(commands, "trade", TEXT, _trade, _script)
+    parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
+    variables(parser)
+    for name, form, text in REPEATED:
+        parser.add_argument(name, action="append", default=[], metavar=form, help=f"{text}; repeatable")
+    parser.add_argument("--tolerance", type=float, metavar="SHARE", help="greatest error (default: 1e-3)")
+    parser.add_argument(
+        "--budget", default="5m", metavar="TIME", help="time it all may take: 60s, 5m, 1h (5m)"
+    )
+    parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
+    parser.add_argument("--builds", metavar="A,B", help="word schemes to try (default: with half the reals)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-trade)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--half-step", action="store_true", help="only compare with half the step (report 4.6)")
+    what.add_argument("--digits", action="store_true", help="how many digits the deck determines at all")
+    what.add_argument(
+        "--blame", action="store_true", help="the same, and which fields the others are lost in"
+    )
+    what.add_argument(
+        "--levers",
+        metavar="A,B",
+        help="levers of the model and their refinement: round,zones,stiffness,types",
+    )
+    parser.add_argument("--runs", type=int, metavar="N", help="perturbed runs of --digits (default: 16)")
+
+
+def _trade(args: argparse.Namespace) -> Listing | Tables:
+    from udec_ia.inspect.look.listing import Listing
+    from udec_ia.trade.report import COLUMNS, half_step, sentences, table
+    from udec_ia.trade.trade import trade
+
+    if args.digits or args.blame:
+        return _digits(args)
+    if args.levers:
+        return _levers(args)
+    price = trade(
+        _text(args), args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent
+    )
+    if args.half_step:
+        return Listing(price.said if len(price.levels) < 2 else half_step(price))
+    files = _files(price, args)
+    written = [f"written: {', '.join(map(str, files))}"] if files else []
+    return Listing([*sentences(price), *written], COLUMNS, table(price), 0 if price.rows else 1)
+
+
+def _text(args: argparse.Namespace) -> str:
+    return str(args.deck.read_text(encoding="utf-8-sig", errors="replace"))
+
+
+def _digits(args: argparse.Namespace) -> Listing | Tables:
+    from udec_ia.inspect.look.listing import Listing, Tables
+    from udec_ia.trade import blame
+    from udec_ia.trade.digits import COLUMNS, ENSEMBLE, measure
+
+    runs, options = args.runs if args.runs is not None else ENSEMBLE, _options(args)
+    if runs < 3:
+        raise ValueError(f"--runs {runs}: give 3 or more")
+    found = measure(
+        _text(args), args.deck.name, given(args.set), _folder(args), options, runs, args.deck.parent
+    )
+    if not found.results:
+        return Listing(found.said, status=1)
+    listing = Listing(found.said, COLUMNS, found.rows())
+    if not args.blame:
+        return listing
+    said, rows = blame.Blame(found).search()
+    return Tables({"digits": listing, "blame": Listing(said, blame.COLUMNS, rows)})
+
+
+def _levers(args: argparse.Namespace) -> Listing:
+    from udec_ia.inspect.look.listing import Listing
+    from udec_ia.trade import model
+    from udec_ia.trade.levers import Deck
+    from udec_ia.trade.trade import Shop
+
+    levers = [one.strip() for one in args.levers.split(",")]
+    unknown = [one for one in levers if one not in model.LEVERS]
+    if unknown:
+        raise ValueError(f"--levers {unknown[0]}: there are {', '.join(model.LEVERS)}")
+    deck = Deck(_text(args), args.deck.name, given(args.set), args.deck.parent)
+    shop = Shop(deck, _options(args), _folder(args))
+    result = shop.look()
+    if result.status != "ended" or not shop.survey:
+        return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
+    rows = [row for lever in levers for row in model.refine(shop, lever)]
+    return Listing([], model.COLUMNS, rows)
+
+
+def _files(price: Price, args: argparse.Namespace) -> list[Path]:
+    from udec_ia.study.table import Table
+    from udec_ia.trade.picture import draw
+    from udec_ia.trade.report import COLUMNS, table
+
+    rows = table(price)
+    if not rows:
+        return []
+    base = _folder(args) / f"{args.deck.stem}-trade"
+    columns = dict(zip(("run", *COLUMNS[1:]), zip(*rows, strict=True), strict=True))
+    files = Table(columns).write(base, {"deck": price.deck.text})
+    return files + draw(price, f"{args.deck.name}: what accuracy costs", base)
+
+
+def _folder(args: argparse.Namespace) -> Path:
+    return args.out or Path(f"{args.deck.stem}-trade")
+
+
+def _options(args: argparse.Namespace) -> Options:
+    from udec_ia.heap.words import scheme
+    from udec_ia.trade.trade import Options
+
+    if args.tolerance is not None and not args.tolerance > 0:
+        raise ValueError(f"--tolerance {args.tolerance:g}: give more than 0")
+    builds = tuple(one.strip() for one in (args.builds or "").split(",") if one.strip())
+    for build in builds:
+        scheme(build)
+    named: dict[str, Any] = {
+        "quantities": tuple(args.quantity),
+        "tolerance": args.tolerance,
+        "budget": seconds("--budget", args.budget),
+        "build": args.build,
+        "builds": builds,
+        "constitutive": tuple(args.constitutive),
+        "jobs": args.jobs,
+        "half_step": args.half_step,
+        "stream": sys.stderr,
+    }
+    return Options(**{name: value for name, value in named.items() if value not in (None, ())})
+
+
+def _script(args: argparse.Namespace) -> str:
+    asked = f", quantities={tuple(args.quantity)!r}" if args.quantity else ""
+    where = f"{given(args.set)!r}, Path({str(_folder(args))!r}), options"
+    return (
+        "from pathlib import Path\n\n"
+        "from udec_ia.trade.report import sentences\n"
+        "from udec_ia.trade.trade import Options, trade\n\n"
+        f"options = Options(tolerance={args.tolerance or 1e-3!r}{asked})\n"
+        f"deck = Path({str(args.deck)!r})\n"
+        f"price = trade(deck.read_text(), deck.name, {where}, deck.parent)\n"
+        "print(*sentences(price), sep='\\n')"
+    )
