@@ -38,7 +38,7 @@ from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio,
 from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.keywords import takes
 from udec_ia.layout.material import Properties
-from udec_ia.layout.offsets import DTOL, LREADY, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
+from udec_ia.layout.offsets import DTOL, LREADY, MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME, WFRIC
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
 from udec_ia.ops.commands.change import change
@@ -70,7 +70,7 @@ from udec_ia.ops.run.remarks import (
 )
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.scaling import relaxations_due
-from udec_ia.ops.run.static import STATIC, statically
+from udec_ia.ops.run.static import STATIC, statically, way_taken
 from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Solution, Watch
 from udec_ia.output.dump import dump
@@ -626,9 +626,13 @@ class Model(Session):
         begun = self.undo.before
         try:
             with statically(self.array):
-                return self._to_rest(
+                friction = float(self.array.h.cd[WFRIC])
+                solution = self._to_rest(
                     ratio, limit, lambda n: self.log_call(Model.solve, (ratio, n), {"static": True})
                 )
+            if said := way_taken(self.array, friction):
+                self.inform(said)
+            return solution
         finally:
             if self.undo.before is not begun:  # cycles are to stay, and with them what stood before
                 self.undo.afresh(self)
