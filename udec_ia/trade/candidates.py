@@ -45,7 +45,7 @@ def tighter(deck: Deck, settings: Sequence[Setting]) -> list[Setting]:
     """The same settings closer to rest."""
     if not deck.has("solve"):
         return []
-    return [replace(one, ratio=one.ratio * TIGHTER**k) for k in (1, 2) for one in settings]
+    return [replace(one, ratio=one.ratio * TIGHTER) for one in settings]
 
 
 def shorter(builds: Sequence[str], finest: float) -> list[Setting]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from udec_ia.trade.judge import Row, pareto, within
 from udec_ia.trade.levers import Setting
@@ -121,7 +122,8 @@ def changes(price: Price, row: Row) -> list[str]:
     """What to change in the deck and on the command line for a setting."""
     fraction = price.fraction
     before = price.deck.written(Setting(row.setting.build), None, fraction).splitlines()
-    after = price.deck.written(row.setting, row.numbers, fraction).splitlines()
+    numbers = replace(row.numbers, limits=())  # a SOLVE may take as long as it does
+    after = price.deck.written(row.setting, numbers, fraction).splitlines()
     own = price.deck.text.splitlines()
     found, number = [f"--build {row.setting.build}"], 0
     for old, new in zip(before, after, strict=True):

@@ -15,7 +15,7 @@ from udec_ia.trade.surveyed import Segment
 
 FIT = 0.06  # the greatest share by which a time-step may be smaller than it was asked for
 TRIED = 60  # fractions that are tried at most
-PATIENCE = 5  # times the cycles that a SOLVE is expected to take
+PATIENCE = 3  # times the cycles that a SOLVE is expected to take
 SAME = 1e-9  # of the time: what does not count as left
 
 

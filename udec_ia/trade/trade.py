@@ -33,6 +33,7 @@ WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
 SURVEYED, WARM, REHEARSAL = "survey", "warm", "rehearsal"
 REHEARSED = 0.03  # seconds of each CYCLE in a rehearsal
 WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
+LATE, SHORT = 5.0, 5.0  # a run ends after so many times what was predicted, and so many seconds at least
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
 REST_ORDER = (
     12.0  # order with which values may converge where rest is sought more closely from level to level
@@ -171,12 +172,16 @@ class Shop:
             dropped.append(taken.pop())
         for build in dict.fromkeys(row.setting.build for row in taken):
             some = [row for row in taken if row.setting.build == build]
-            results = self.results([self.run(row.setting, row.numbers) for row in some])
+            limits = [max(SHORT, LATE * row.predicted) for row in some]
+            runs = [
+                self.run(row.setting, row.numbers, limit=last) for row, last in zip(some, limits, strict=True)
+            ]
+            results = self.results(runs)
             for row, result in zip(some, results, strict=True):
                 row.result = result
             self._done[build] = self._done.get(build, []) + [row for row in some if row.ran]
             self._learn(build)
-        self.left -= self.price(taken)
+        self.left -= sum(row.result.seconds for row in taken if row.result) / (self.options.jobs or 1)
         return dropped
 
     def _learn(self, build: str) -> None:
