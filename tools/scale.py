@@ -1,7 +1,7 @@
 """What the commands of the workshop, SAVE and RESTART cost, at models of growing size.
 
     python tools/scale.py                                 with 1000, 10,000 and 100,000 blocks
-    python tools/scale.py --blocks 1000000                with these; a million takes 6 GB of memory
+    python tools/scale.py --blocks 1000000                with these
     python tools/scale.py check diff --blocks 100000      these commands alone
 
 Each command is a process of its own, as a user starts it. Times are processor times of the whole process, the

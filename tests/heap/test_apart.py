@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from unchecked import without_groups
 
 from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.heap.apart import call_entry, entry, entry_if
@@ -38,6 +39,7 @@ def takes_it_in(h: Memory, iad: int) -> bool:
     return count_down(h, iad)
 
 
+@without_groups
 @pytest.mark.parametrize("scheme", ALL_SCHEMES.values(), ids=list(ALL_SCHEMES))
 def test_it_is_called_with_the_memory_and_what_it_returns_comes_back(scheme: Scheme) -> None:
     h = MainArray(scheme).h
@@ -70,6 +72,7 @@ def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
     assert entry_if(False, seldom, other, 0) == 0
 
 
+@without_groups
 def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The machine code of the caller has no copy of it. Of what it finds on disk numba shows nothing."""
     if not hasattr(calls, "whole"):

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 from naive.memory import Memory as NaiveMemory
+from unchecked import with_any_offset, without_groups
 
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import LINE, MainArray
@@ -192,6 +193,7 @@ def _real_then_words(h: Memory, iad: int, kr: Offset, v: float, ki: Offset) -> i
     return iget(h, iad, ki)
 
 
+@without_groups
 @pytest.mark.parametrize("name", SCHEMES)
 def test_accessors_compiled_and_interpreted_agree(name: str) -> None:
     """Every field of every group: written by one, read by the other, at the first and at a later address."""
@@ -214,6 +216,7 @@ def test_accessors_compiled_and_interpreted_agree(name: str) -> None:
             assert _get_both(h, iad, ki, kr) == (iget(h, iad, ki), getr(h, iad, kr))
 
 
+@with_any_offset
 @pytest.mark.parametrize("name", SCHEMES)
 def test_a_compiled_load_sees_a_store_through_the_other_view(name: str) -> None:
     array = MainArray(scheme(name))

@@ -9,6 +9,7 @@ import pytest
 import scenes
 import soft_scenes
 from interpreted import both_ways
+from unchecked import without_groups
 
 from udec_ia import Model
 from udec_ia.heap.accessors import Memory, iget, int64, puti
@@ -45,6 +46,7 @@ def words(h: Memory) -> list[bytes]:
     return [np.asarray(part).tobytes() for part in (h.ia, h.ci, h.cr, h.cd)]
 
 
+@without_groups
 def test_what_a_kernel_calls_is_interpreted_too_and_all_is_told() -> None:
     array = MainArray(ALL_SCHEMES["i32r64"])
     puti(array.h, 10, g.KB, 5)

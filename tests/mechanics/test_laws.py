@@ -106,7 +106,8 @@ for build in ("i32r64", "i32r32"):
     for state in states.astype(a.scheme.real_type):
         print(*(float(x).hex() for x in kernels.stress_increment(a.h, laws, 2, 1, 1, *state)))
 whole = getattr(kernels.stress_increment, "whole", None)
-hits = whole and [sum(whole.stats.cache_hits.values()), sum(whole.stats.cache_misses.values())]
+found = getattr(whole, "stats", None)
+hits = found and [sum(found.cache_hits.values()), sum(found.cache_misses.values())]
 print(*(hits or []), file=sys.stderr)
 """
 
