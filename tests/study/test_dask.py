@@ -66,7 +66,7 @@ def test_a_worker_that_is_killed_is_made_up_for(
 ) -> None:
     """It is killed while both workers have a run; the results are those of a single process, bit for bit."""
     address, workers = cluster
-    runs = piles(*FRICTIONS, cycles=6000)
+    runs = piles(*FRICTIONS, cycles=30000)
     killed: list[str] = []
 
     def told(result: Result, _: str) -> None:

@@ -42,12 +42,14 @@ def test_the_page_shows_what_is_printed(
         assert without_seconds(capsys.readouterr().out) == without_seconds(expected)
 
 
-def test_the_velocities_are_those_of_a_sliding_block(folder: Path) -> None:
+def test_the_velocities_are_those_of_a_sliding_block(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What gravity leaves, for 600 time-steps; and on top of it the block swings on the springs of its joint.
 
     These let go at most the weight along the slope, m g / sqrt(5): a speed of that over the circular
     frequency, sqrt(2 KS / m), where m = 8000 kg per m stands on two contacts.
     """
+    monkeypatch.chdir(folder)
+    assert main(shlex.split(SHOWN[0][0])) == 0
     swing = 10 / 5**0.5 / (2 * 1e8 / 8000) ** 0.5
     rows = (folder / "incline-sweep" / "incline.csv").read_text().splitlines()[1:]
     assert len(rows) == 3
