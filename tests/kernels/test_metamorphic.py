@@ -38,10 +38,6 @@ STEPS: list[Callable[[Model], Any]] = [
     lambda m: m.delete(1, 1.4, 0, 1),
     lambda m: m.split(-1, 0.6, 1.2, 0.6),
     *[lambda m: m.cycle(7)] * 4,
-    lambda m: m.energy("off"),
-    lambda m: m.damping(combined=0.4),
-    lambda m: m.fraction(0.3, scaled=True),
-    *[lambda m: m.cycle(7)] * 2,
 ]
 Between = Callable[[Model], None]
 
@@ -57,7 +53,7 @@ def play(build: str, between: Between, folder: Any) -> tuple[dict[str, Any], lis
         m.undo.release()
         step(m)
     assert int(m.h.ci[g.NBROKE]) > 0
-    assert [len(one.numbers) for one in m.histories()] == [8, 8, 8, 26]
+    assert [len(one.numbers) for one in m.histories()] == [7, 7, 7, 22]
     return essence(m.array), [one.numbers for one in m.histories()]
 
 
