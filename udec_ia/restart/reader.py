@@ -2,7 +2,7 @@
 
 Nothing in the file is believed before it is tested: seal, format, completeness, field table, word
 widths, types and shapes, checksums, bounds, and at last the lists and pointers of the heap itself.
-A file that was written with another field table is read by the names of that table (inspect/translate.py).
+A file that was written with another field table is read by the names of that table (inspect/translate).
 """
 
 from __future__ import annotations

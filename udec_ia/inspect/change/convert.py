@@ -14,9 +14,10 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import Scheme
 from udec_ia.inspect.change.movable import junk_words
 from udec_ia.inspect.change.prove import prove, too_coarse
-from udec_ia.inspect.change.rewrite import Rewritten, rewrite
+from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.change.settle import settle
 from udec_ia.inspect.check import Violation
+from udec_ia.inspect.translate.fit import Fit
 from udec_ia.layout import offsets as g
 
 
@@ -49,12 +50,12 @@ def convert(array: MainArray, to: Scheme) -> Converted:
         )
         broken = prove(made.array)
     if narrower:
-        said.insert(1, _rounding(made))
+        said.insert(1, _rounding(made.fit))
         broken += too_coarse(made.array)
     return Converted(made.array, said, broken)
 
 
-def _rounding(made: Rewritten) -> str:
+def _rounding(made: Fit) -> str:
     """What narrower reals have cost."""
     if not made.rounded:
         return f"none of {made.reals} reals has lost a digit"
