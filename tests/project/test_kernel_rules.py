@@ -26,7 +26,7 @@ IN_DOUBLES = {  # they sum up over a whole run, or solve for what is the same in
     "energy/stored.py",
     "energy/works.py",
 }
-LINES_OF_A_FUNCTION, LINES_OF_A_FILE = 65, 500
+LINES_OF_A_FUNCTION, LINES_OF_A_FILE = 60, 500
 
 
 def parsed(text: str) -> ast.Module:
@@ -87,7 +87,7 @@ def test_kernels_do_not_index_the_array() -> None:
 def test_a_function_fits_a_screen_and_a_file_a_reader() -> None:
     for path in SOURCES:
         text = path.read_text()
-        if path.name not in ("model.py", "offsets.py"):  # one method a command; generated
+        if path.name != "offsets.py":  # generated
             assert text.count("\n") <= LINES_OF_A_FILE, path
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.FunctionDef):

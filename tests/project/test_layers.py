@@ -69,6 +69,21 @@ BELOW = {  # layers that a layer imports
         "view",
     },
     "verify": {"errors", "files", "heap", "layout", "model", "output", "printable"},
+    "methods": {
+        "deck",
+        "errors",
+        "heap",
+        "inspect",
+        "keywords",
+        "layout",
+        "ops",
+        "output",
+        "printable",
+        "restart",
+        "session",
+        "transaction",
+        "view",
+    },
     "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
 }
 

@@ -19,8 +19,9 @@ from udec_ia.trade.digits import measure
 from udec_ia.trade.noise import Noisy
 from udec_ia.trade.parting import parting
 from udec_ia.trade.report import changes, half_step, sentences
+from udec_ia.trade.shop import SURVEYED, Options
 from udec_ia.trade.surveyed import segments
-from udec_ia.trade.trade import SURVEYED, Options, Price, trade
+from udec_ia.trade.trade import Price, trade
 
 PROPERTIES = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 FRICTION=0.5\n"
 FALL = (

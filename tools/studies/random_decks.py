@@ -23,8 +23,9 @@ from pathlib import Path
 from udec_ia.trade.candidates import BEYOND, rounded
 from udec_ia.trade.levers import Setting
 from udec_ia.trade.limit import limit
+from udec_ia.trade.shop import Options, Shop
 from udec_ia.trade.steps import share_of_bound
-from udec_ia.trade.trade import Options, Price, Shop, trade
+from udec_ia.trade.trade import Price, trade
 
 FINE = 2 ** (1 / 4)
 TOLERANCES = (1e-2, 3e-3, 1e-3)

@@ -21,7 +21,7 @@ NOTES = 5  # what an access that was refused leaves behind: routine, address, fi
 MARKS = g.MFREE, g.JUNK, g.IBPNT, g.ICPNT, g.IDPNT  # what only kernels change
 HEADS = {(head.group, head.value) for head in TABLE.heads}
 HEADED = {kind for kind, _ in HEADS}
-SOFT = {g.MSDEF: ("sdef",), g.MFDEF: ("fdef",)}
+SOFT = {head.value: (head.extension,) for head in TABLE.heads if head.extension}
 CHOICES = {"item": ("corner", "contact"), "any": ()}  # what is of any kind is reached by its own lists
 
 

@@ -28,7 +28,7 @@ CHOICES = {
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
 }  # kinds that such a pointer can lead to
-SOFT_NAMES = {head.name: SOFT[head.value] for head in TABLE.heads if head.value in SOFT}
+SOFT_NAMES = {head.name: head.extension for head in TABLE.heads if head.extension}
 
 
 class Shape(NamedTuple):

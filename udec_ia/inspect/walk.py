@@ -27,7 +27,9 @@ HEADS: dict[str, tuple[int, ...]] = {  # kinds with a head code, and what it may
     for kind in dict.fromkeys(head.group for head in TABLE.heads)
 }
 SIZES: dict[str, Offset] = {kind: getattr(g, TABLE.group(kind).size_name) for kind in HEADS}
-SOFT = {g.MSDEF: "sdef", g.MFDEF: "fdef"}  # kind of the extension of a block with this head code
+SOFT = {  # kind of the extension of a group with this head code
+    head.value: head.extension for head in TABLE.heads if head.extension
+}
 
 
 class Unsound(UdecError):

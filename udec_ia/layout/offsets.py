@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "54ef7793cdfdaf391f5ffc217e07eb7a0ea8fd441cc3b3e88f615cff1b12fc1b"
+DIGEST = "b341a0a5ddf3a6b9d0f1823ba9ba38bc872b0e9849db73dc0eca89c935607553"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

@@ -78,12 +78,13 @@ class Group:
 
 @dataclass(frozen=True)
 class HeadCode:
-    """The first integer of a group that says what the group is."""
+    """The first integer of a group that says what the group is, and what extends it, "" for nothing."""
 
     name: str
     value: int
     group: str
     text: str
+    extension: str = ""
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,8 @@ def parse(text: str) -> Table:
             elif words[0] == "COMMON":
                 fields = common
             elif words[0] == "HEAD" and words[2].isdigit():
-                heads.append(HeadCode(words[1], int(words[2]), words[3], doc))
+                group, _, extension = words[3].partition("/")
+                heads.append(HeadCode(words[1], int(words[2]), group, doc, extension))
             elif words[0] == "CODE":
                 codes.append(Code(words[1], int(words[2]), words[3], doc))
             elif fields is None:

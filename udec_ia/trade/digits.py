@@ -23,8 +23,8 @@ from udec_ia.study.progress import Told
 from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.levers import Deck, Setting
 from udec_ia.trade.noise import KICKS, Noisy
+from udec_ia.trade.shop import Options, Shop
 from udec_ia.trade.significant import FEWEST, Digits, digits
-from udec_ia.trade.trade import Options, Shop
 
 ENSEMBLE = 16
 KICK = 4e-4  # seconds, about

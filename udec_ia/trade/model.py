@@ -16,9 +16,9 @@ from dataclasses import replace
 from udec_ia.study.runs import Result
 from udec_ia.trade.levers import Deck, Numbers, Setting
 from udec_ia.trade.limit import limit, share
+from udec_ia.trade.shop import Shop
 from udec_ia.trade.steps import cycles_for
 from udec_ia.trade.surveyed import Segment
-from udec_ia.trade.trade import Shop
 
 FACTORS = {"round": (1.0, 0.5, 0.25), "zones": (1.0, 0.5, 0.25), "stiffness": (1.0, 2.0, 4.0)}
 PARTS = {"round": "rounding", "zones": "edge", "stiffness": "stiffness"}

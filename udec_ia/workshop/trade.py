@@ -11,7 +11,8 @@ from udec_ia.workshop.common import command, given, seconds, variables
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing, Tables
-    from udec_ia.trade.trade import Options, Price
+    from udec_ia.trade.shop import Options
+    from udec_ia.trade.trade import Price
 
 VERBS = ("trade",)
 TEXT = "find the cheapest time-step and word scheme for a deck that keep to a tolerance"
@@ -99,7 +100,7 @@ def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.inspect.look.listing import Listing
     from udec_ia.trade import model
     from udec_ia.trade.levers import Deck
-    from udec_ia.trade.trade import Shop
+    from udec_ia.trade.shop import Shop
 
     levers = [one.strip() for one in args.levers.split(",")]
     unknown = [one for one in levers if one not in model.LEVERS]
@@ -134,7 +135,7 @@ def _folder(args: argparse.Namespace) -> Path:
 
 def _options(args: argparse.Namespace) -> Options:
     from udec_ia.heap.words import scheme
-    from udec_ia.trade.trade import Options
+    from udec_ia.trade.shop import Options
 
     if args.tolerance is not None and not args.tolerance > 0:
         raise ValueError(f"--tolerance {args.tolerance:g}: give more than 0")
@@ -161,7 +162,8 @@ def _script(args: argparse.Namespace) -> str:
     return (
         "from pathlib import Path\n\n"
         "from udec_ia.trade.report import sentences\n"
-        "from udec_ia.trade.trade import Options, trade\n\n"
+        "from udec_ia.trade.shop import Options\n"
+        "from udec_ia.trade.trade import trade\n\n"
         f"options = Options(tolerance={args.tolerance or 1e-3!r}{asked})\n"
         f"deck = Path({str(args.deck)!r})\n"
         f"price = trade(deck.read_text(), deck.name, {where}, deck.parent)\n"

@@ -31,7 +31,7 @@ KIND_CODE = {group.name: code for code, group in enumerate(TABLE.groups, 1)}
 TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
 SHORT = 64  # items of a list that is walked together with others
 OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
-TARGETS |= {"item": ("corner", "contact"), "soft": ("sdef", "fdef"), "any": tuple(KIND_CODE)}
+TARGETS |= {"item": ("corner", "contact"), "soft": tuple(SOFT.values()), "any": tuple(KIND_CODE)}
 
 
 @cache
