@@ -7,9 +7,11 @@ float freely far above a fixed one (a block system needs a contact, so one block
 from __future__ import annotations
 
 from itertools import chain
+from pathlib import Path
 from typing import Any
 
 from udec_ia import Model
+from udec_ia.heap.accessors import putr
 from udec_ia.layout.offsets import KTD, KXD, KYD, TDEL
 
 G = 10.0
@@ -97,3 +99,18 @@ def sound(m: Model) -> None:
     """The map and its numbers are as they must be."""
     found = m.check()
     assert not found, found
+
+
+def colliding(out: Path) -> Model:
+    """A block that two joint sets cut into 25, each of which flies against its neighbours."""
+    m = Model(out=out)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 10, 10, 10, 10, 0)
+    for k in range(1, 5):
+        m.split(-1, 2 * k, 11, 2 * k + 0.3)
+        m.split(2 * k, -1, 2 * k + 0.3, 11)
+    m.round(0.05)
+    m.cycle(0)
+    for k, row in enumerate(m.table("block")):
+        putr(m.array.h, int(row["address"]), KXD, float(0.3 * (-1) ** k))
+    return m

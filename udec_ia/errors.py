@@ -150,7 +150,7 @@ ERRORS = {  # number: message, and what to do about it
         "look for what the law divides by or takes a root of, and at the properties of the material",
     ),
     36: (
-        "place or force beyond the reals",
+        "coordinate or force beyond the precision",
         "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
     ),
     37: (

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mechanics import colliding
 
 from udec_ia import Model, UdecError
-from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
-from udec_ia.layout.offsets import AT_BLOCKS, JPHASE, KXD, MCTOT, MFREE, MTOP, NSPARE
+from udec_ia.layout.offsets import AT_BLOCKS, JPHASE, MCTOT, MFREE, MTOP, NSPARE
 
 CYCLES = 2000
 SCENE = """START
@@ -109,16 +109,7 @@ def test_what_was_computed_before_the_memory_ended_goes_on_without_mtop(tmp_path
 def test_a_cycle_that_stops_half_way_leaves_a_sound_state(tmp_path: Path) -> None:
     """Blocks have moved and their contacts have not: that is no violation, and with memory it goes on."""
 
-    whole = Model(out=tmp_path)
-    whole.property(1, density=2000, kn=1e8, ks=1e8)
-    whole.block(0, 0, 0, 10, 10, 10, 10, 0)
-    for k in range(1, 5):
-        whole.split(-1, 2 * k, 11, 2 * k + 0.3)
-        whole.split(2 * k, -1, 2 * k + 0.3, 11)
-    whole.round(0.05)
-    whole.cycle(0)
-    for k, row in enumerate(whole.table("block")):
-        putr(whole.array.h, int(row["address"]), KXD, float(0.3 * (-1) ** k))
+    whole = colliding(tmp_path)
     start, used = whole.save(), int(whole.h.ci[MFREE]) - 1
     whole.cycle(CYCLES)
     phases = set()

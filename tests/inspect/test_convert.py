@@ -14,6 +14,7 @@ import soft_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from kinds import every_kind
+from mechanics import colliding
 from naive.census import census
 from naive.convert import common, put_together, take_apart
 from naive.relocate import differences, essence
@@ -175,16 +176,7 @@ def test_a_run_in_integers_of_another_width_goes_on_to_the_last_bit(to: str, tmp
 
 def test_a_cycle_that_stopped_half_way_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     """For want of memory, in any of its passes: in other words and in another order."""
-    whole = Model(out=tmp_path)
-    whole.property(1, density=2000, kn=1e8, ks=1e8)
-    whole.block(0, 0, 0, 10, 10, 10, 10, 0)
-    for k in range(1, 5):
-        whole.split(-1, 2 * k, 11, 2 * k + 0.3)
-        whole.split(2 * k, -1, 2 * k + 0.3, 11)
-    whole.round(0.05)
-    whole.cycle(0)
-    for k, row in enumerate(whole.table("block")):
-        putr(whole.array.h, int(row["address"]), g.KXD, float(0.3 * (-1) ** k))
+    whole = colliding(tmp_path)
     start, words, cycles = whole.save(), int(whole.h.ci[g.MFREE]) - 1, 2000
     whole.cycle(cycles)
     phases = set()

@@ -1,10 +1,11 @@
 // What both canvases need: their size in pixels, the colours of the style sheet, hatching and rings.
 
-/** The colours that the style sheet gives, by name: kinds of groups, ink, paper and the rest. */
+/** The colours that the style sheet gives, by name: kinds of groups (muted if it has none), ink, paper ... */
 export function colours(table) {
   const style = getComputedStyle(document.documentElement);
   const names = [...table.spans.map(styleName), "ink", "paper", "muted", "rule", "fault"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  const given = (name) => style.getPropertyValue(`--${name}`).trim();
+  return Object.fromEntries(names.map((name) => [name, given(name) || given("muted")]));
 }
 
 /** The name of a kind of span as the style sheet spells it. */

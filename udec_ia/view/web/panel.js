@@ -29,7 +29,7 @@ export function link(address, text, state) {
 /** A small square in the colour of a kind. */
 export function cell(kind) {
   const made = element("span", { className: `cell ${styleName(kind)}` });
-  made.style.backgroundColor = `var(--${styleName(kind)})`;
+  made.style.backgroundColor = `var(--${styleName(kind)}, var(--muted))`;
   return made;
 }
 
