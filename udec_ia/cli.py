@@ -28,7 +28,7 @@ from udec_ia.workshop import add_commands
 from udec_ia.workshop.common import given, variables
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", "info", *LOOKS)
+VERBS = ("run", *LOOKS)
 
 
 def arguments() -> argparse.ArgumentParser:
@@ -66,9 +66,6 @@ def arguments() -> argparse.ArgumentParser:
     variables(run)
     run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
     run.set_defaults(action=_run)
-    info = commands.add_parser("info", help="say what is in a restart file")
-    info.add_argument("file", type=Path)
-    info.set_defaults(action=_info)
     add_commands(commands)
     return parser
 
@@ -103,13 +100,6 @@ def _run(args: argparse.Namespace) -> int:
             converse(model, sys.stdout, values=values)
     else:
         run_deck(model, sys.stdin, sys.stdout, values, "stdin").stop()
-    return 0
-
-
-def _info(args: argparse.Namespace) -> int:
-    from udec_ia.restart import info  # h5py: not needed to run a deck that neither saves nor restarts
-
-    print(info(args.file))
     return 0
 
 

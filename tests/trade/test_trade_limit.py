@@ -21,6 +21,15 @@ def test_what_converges_is_extrapolated(order: int) -> None:
     assert found.error == pytest.approx(1.25 * 0.1 * 4.0**-order)
 
 
+def test_an_order_above_that_of_the_formulation_is_not_believed() -> None:
+    values = [1 + 0.1 * 2.0 ** (-2.7 * k) for k in range(4)]
+    found, sought = limit(values), limit(values, 12.0)
+    assert found is not None
+    assert sought is not None
+    assert found.error == pytest.approx(abs(values[3] - values[2]))
+    assert abs(sought.value - 1) < 1e-12 < abs(found.value - 1) < found.error
+
+
 def test_the_error_is_a_bound_where_the_first_order_leads() -> None:
     for seed in range(200):
         r = random.Random(seed)

@@ -8,7 +8,11 @@ v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes with the p
 (Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
 studies, J. Fluids Eng. 116, 1994, asks for).
 The error of v is taken to be the whole correction or, with four values, what the fourth has moved it by, if
-that is less: an extrapolation is no farther off than the one before it; both with a factor of safety. Else
+that is less: an extrapolation is no farther off than the one before it; both with a factor of safety. A p of
+more than 2.2 is not that of the formulation, whose errors go with the first or second power of the step, but
+of chance: v is found with 2 then, and the whole of d2 is its error, three times the correction (Oberkampf and
+Roy, Verification and validation in scientific computing, 2010, 8.6). Where rest is sought more closely from
+value to value as well (`highest`), p may be more. Else
 v3 is what there is, and twice the greatest of the last differences its error: of an error that goes with the
 step as much is left as the last difference.
 """
@@ -21,6 +25,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 LOWEST, HIGHEST = 0.5, 3.0  # orders that are one
+FORMAL, DOUBTFUL = 2.0, 2.2  # order of the formulation, and from which on an observed one is chance
 SAFETY = 1.25  # on errors that an extrapolation tells of, as Roache takes it for three grids
 LEFT = 2  # times the last differences: what may be left where there is no order
 
@@ -63,7 +68,7 @@ def limit(values: Sequence[float], highest: float = HIGHEST) -> Limit | None:
     extrapolated = _extrapolated(finite[-3:], highest)
     if extrapolated is not None:
         before = _extrapolated(finite[-4:-1], highest)
-        if before is None:
+        if before is None or _doubtful(extrapolated.order, highest):
             return extrapolated
         moved = abs(extrapolated.value - before.value)
         return replace(extrapolated, error=min(extrapolated.error, SAFETY * moved))
@@ -79,9 +84,16 @@ def _extrapolated(values: Sequence[float], highest: float) -> Limit | None:
     if one == two == 0:
         return Limit(values[-1], 0.0)
     if one * two > 0 and LOWEST <= (order := math.log2(one / two)) <= highest:
+        if _doubtful(order, highest):
+            return Limit(values[-1] + two / (2**FORMAL - 1), abs(two), order)
         correction = two / (2**order - 1)
         return Limit(values[-1] + correction, SAFETY * abs(correction), order)
     return None
+
+
+def _doubtful(order: float, highest: float) -> bool:
+    """True if values converge faster than the formulation lets them."""
+    return highest == HIGHEST and order > DOUBTFUL
 
 
 def shrinks(values: Sequence[float]) -> bool:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.workshop import change, check, compare, debug, diverge, look, sweep, trade, verify, view
+from udec_ia.workshop import change, check, compare, debug, diverge, info, look, sweep, trade, verify, view
 
-PARTS = (check, look, compare, change, debug, diverge, sweep, trade, view, verify)
+PARTS = (info, check, look, compare, change, debug, diverge, sweep, trade, view, verify)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 
 

@@ -17,8 +17,17 @@ from udec_ia.heap.memory import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.drive.passes import BOUNDS, CHANGES, CONTACT, FORCES, RELAX, STRESSES, THROUGH, UPDATE
-from udec_ia.kernels.drive.relax import relaxes
+from udec_ia.kernels.drive.passes import (
+    BOUNDS,
+    CHANGES,
+    CONTACT,
+    FORCES,
+    MOTION,
+    RELAX,
+    STRESSES,
+    THROUGH,
+    UPDATE,
+)
 from udec_ia.layout import offsets as g
 
 
@@ -30,22 +39,22 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). passes: see
     drive.passes.
     """
-    keeps = h.ci[g.LENER] != 0
-    searches = relaxes(h)
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
     while done < n:
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where growing changes nothing
-            if soft is not None:
+            if passes[BOUNDS] != 0:
                 call_entry(passes[BOUNDS], h)
-            if searches:
+            if passes[MOTION] != 0:
+                call_entry(passes[MOTION], h)
+            if passes[RELAX] != 0:
                 call_entry(passes[RELAX], h)
-            if keeps:
+            if passes[FORCES] != 0:
                 call_entry(passes[FORCES], h)
             fastest = move_all(h, soft, laws)
-            if keeps:
+            if passes[STRESSES] != 0:
                 call_entry(passes[STRESSES], h)
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
         if h.ci[g.JPHASE] == g.AT_WAYS:

@@ -14,14 +14,15 @@ from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.peaks import look_at_motion
 from udec_ia.kernels.drive.recording import record
-from udec_ia.kernels.drive.relax import relax, relaxes
+from udec_ia.kernels.drive.relax import relax
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.kernels.energy.contacts import note_contact
-from udec_ia.kernels.energy.works import note_forces, note_stresses
+from udec_ia.kernels.energy.works import note_forces, note_rigid, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST = range(10)
+UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST = range(11)
 
 
 def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tuple[Any, ...]:
@@ -30,16 +31,17 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
     soft: as in run_cycles. recorded: what `record` is called with beside `h`, () if nothing is recorded.
     ratio: as in run_watched. A run of slow blocks does not need THROUGH; one that does stops before it.
     """
-    keeps = h.ci[g.LENER] != 0
+    keeps, strains, how = h.ci[g.LENER] != 0, h.ci[g.NSOFT] > 0, h.ci[g.LREST]
     none = h.cr.dtype.type(0)
     pair = none, none
     return (
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
-        entry(apply_bounds, h) if soft is not None else 0,
-        entry(relax, h) if relaxes(h) else 0,
-        entry(note_forces, h) if keeps else 0,
-        entry(note_stresses, h) if keeps else 0,
+        entry(apply_bounds, h) if h.ci[g.IBNPNT] else 0,
+        entry(look_at_motion, h) if how in (g.KINETIC, g.ADAPTIVE) else 0,
+        entry(relax, h) if how in (g.LOCAL, g.COMBINED) or h.ci[g.LSCALE] else 0,
+        entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
+        entry(note_stresses, h) if keeps and strains else 0,
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
         entry(change_map, h, NOBODY, 0, 0),
         entry(record, h, *recorded) if recorded else 0,

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.inertial import energy_of_motion
@@ -128,15 +128,16 @@ def adapt(h: Memory) -> None:
     h.cr[g.CON2] = h.cr[g.C2B] = 1.0 / (1.0 + half)
 
 
-@kernel
-def look_at_motion(h: Memory) -> None:
+@apart
+def look_at_motion(h: Memory) -> bool:
     """What KINETIC or ADAPTIVE does before the step that begins."""
     if h.ci[g.LREST] == g.ADAPTIVE:
         adapt(h)
-        return
+        return True
     energy = energy_of_motion(h)
     fallen = energy < h.cd[g.EMOVES]
     h.cd[g.EMOVES] = energy
     if fallen:
         halt_all(h)
         h.cd[g.EMOVES] = 0.0
+    return True

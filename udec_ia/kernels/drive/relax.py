@@ -23,15 +23,8 @@ from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.fdef import next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain, straining_force
-from udec_ia.kernels.drive.peaks import look_at_motion
 from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
-
-
-@kernel
-def relaxes(h: Memory) -> bool:
-    """True if something beside ALPHA, BETA and INTERNAL leads to rest."""
-    return bool(h.ci[g.LREST] != g.UNDAMPED or h.ci[g.LSCALE] != 0)
 
 
 @inlined
@@ -115,9 +108,9 @@ def relax_strain(h: Memory, ie: int, ir: int) -> None:
         h.cd[g.WREST] += work * h.cr[g.TDEL] * 0.5
 
 
-@kernel
-def relax_all(h: Memory) -> None:
-    """LOCAL and COMBINED damping and scaled masses of all that moves."""
+@apart
+def relax(h: Memory) -> bool:
+    """LOCAL and COMBINED damping and scaled masses of all that moves, for the step that begins."""
     ir = int64(h.ci[g.IRXPNT])
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
@@ -136,14 +129,4 @@ def relax_all(h: Memory) -> None:
                     relax_strain(h, iget(h, ib, g.KBEX), ir)
             ir = following(h, ir)
         ib = iget(h, ib, g.KB)
-
-
-@apart
-def relax(h: Memory) -> bool:
-    """All that leads to rest, for the step that begins."""
-    how = h.ci[g.LREST]
-    if how == g.KINETIC or how == g.ADAPTIVE:
-        look_at_motion(h)
-    if how == g.LOCAL or how == g.COMBINED or h.ci[g.LSCALE] != 0:
-        relax_all(h)
     return True

@@ -178,6 +178,17 @@ def note_forces(h: Memory) -> bool:
 
 
 @apart
+def note_rigid(h: Memory) -> bool:
+    """The same where all blocks are rigid and no condition acts on them."""
+    ib = int64(h.ci[g.IBPNT])
+    while ib != 0:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
+            note_block(h, ib)
+        ib = iget(h, ib, g.KB)
+    return True
+
+
+@apart
 def note_stresses(h: Memory) -> bool:
     """After the block pass, when grid-points feel the zones only: what is done with the stresses of now."""
     ib = int64(h.ci[g.IBPNT])

@@ -44,7 +44,8 @@ def _needed(array: MainArray) -> bool:
 def renew_relaxations(array: MainArray) -> None:
     """Have one relaxation for each block or grid-point if something needs them, else none."""
     h = array.h
-    lose_relaxations(h)
+    if h.ci[g.IRXPNT]:
+        lose_relaxations(h)
     if _needed(array):
         points = int(integers(h, _meshes(array), g.KFNG).sum())
         require(array, size_of(h, g.NVRX) * (int(h.ci[g.NBLK]) + points))

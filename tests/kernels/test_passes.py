@@ -1,0 +1,71 @@
+"""What a cycle calls by its address is asked for, and so compiled, where the scene has a use for it only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from mechanics import on_base
+
+from udec_ia import Model
+from udec_ia.kernels.drive import passes as module
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.soft import soft
+
+ALWAYS = {"change_map"}
+
+
+def rigid() -> Model:
+    return on_base(2.0, 1.0, 0.1, 12.0)
+
+
+def strained() -> Model:
+    m = rigid()
+    m.change(-1, 1, 0, 1, type="sdef")
+    return m
+
+
+def loaded() -> Model:
+    m = rigid()
+    m.boundary(-1, 1, 0, 1, xforce=1.0)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("make", "command", "wanted"),
+    [
+        (rigid, None, set()),
+        (rigid, lambda m: m.damping(0.5, 10.0), set()),
+        (rigid, lambda m: m.energy("on"), {"note_rigid", "note_contact"}),
+        (rigid, lambda m: m.damping(local=0.8), {"relax"}),
+        (rigid, lambda m: m.damping(kinetic=True), {"look_at_motion"}),
+        (rigid, lambda m: m.damping(adaptive=1.0), {"look_at_motion"}),
+        (rigid, lambda m: m.fraction(0.9, scaled=True), {"relax"}),
+        (strained, None, set()),
+        (strained, lambda m: m.energy("on"), {"note_forces", "note_stresses", "note_contact"}),
+        (loaded, None, {"apply_bounds"}),
+        (loaded, lambda m: m.energy("on"), {"apply_bounds", "note_forces", "note_contact"}),
+    ],
+)
+def test_a_cycle_asks_for_what_it_runs(
+    make: Callable[[], Model],
+    command: Callable[[Model], None] | None,
+    wanted: set[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: set[str] = set()
+
+    def entry(kernel: Any, *_: Any) -> int:
+        asked.add(kernel.__name__)
+        return 1
+
+    m = make()
+    if command is not None:
+        command(m)
+    monkeypatch.setattr(module, "entry", entry)
+    monkeypatch.setattr(module, "updating", lambda h: 1)
+    found = module.passes(m.array.h, soft(m.array), (), -1.0)
+    assert asked == ALWAYS | wanted
+    assert sum(1 for one in found if one) == len(asked) + 1  # and the update
+    assert m.array.h.ci[g.JPHASE] == g.AT_BLOCKS
