@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "54ef7793cdfdaf391f5ffc217e07eb7a0ea8fd441cc3b3e88f615cff1b12fc1b"
+DIGEST = "1e536888396dbc8a5eaaa75b6c1818c14c5f6fc259dd109d014d2d0f5b52ccc2"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -258,7 +258,7 @@ LSAFE = 22  # 1 if the time-step is a fraction of the safe bound, 0 of the estim
 LENER = 23  # 1 if an account of the energy is kept (ENERGY ON), else 0
 LREST = 24  # how unbalanced forces or velocities are damped beside ALPHA and BETA
 LSCALE = 25  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 26  # contacts made, NMADE, when masses were scaled last
+MSCALE = 26  # contacts made, NMADE, when a safe step or masses were found last
 LROUND = 27  # 1 if the rounding length was given by ROUND, 0 if it is our default
 IERAD = 28  # address of the group that raised error NERR; 0 when there is none
 NWANT = 29  # words that the interrupted routine asks for; 0 when there are enough
