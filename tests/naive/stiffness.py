@@ -12,17 +12,32 @@ from typing import Any
 
 import numpy as np
 
-from naive.bodies import FULLY, ON_CORNERS, SIMPLY, by_address, zone_area
+from naive.bodies import FULLY, ON_CORNERS, SIMPLY, by_address, zone_area, zones_of
 from udec_ia.layout import offsets as g
 
 Model = Any
-Moduli = tuple[float, float]  # bulk and shear modulus
+Pair = tuple[float, float]
+Materials = Pair | dict[int, Pair]  # two numbers of a material, of all or by its number
+
+
+def of(given: Materials, material: int) -> Pair:
+    """The two numbers of a material."""
+    return given[material] if isinstance(given, dict) else given
+
+
+def elastic(bulk: float, shear: float) -> Any:
+    """Stresses 11, 22, 12 of strains 11, 22 and twice 12 in plane strain."""
+    one, two = bulk + 4 * shear / 3, bulk - 2 * shear / 3
+    return np.array([[one, two, 0], [two, one, 0], [0, 0, shear]])
 
 
 class Scene:
-    """A model taken apart. first: row of the first degree of freedom of a block or grid-point."""
+    """A model taken apart. first: row of the first degree of freedom of a block or grid-point.
 
-    def __init__(self, model: Model, moduli: Moduli, joints: tuple[float, float]) -> None:
+    moduli: bulk and shear modulus. joints: KN and KS.
+    """
+
+    def __init__(self, model: Model, moduli: Materials, joints: Materials) -> None:
         self.blocks, self.corners = by_address(model.table("block")), by_address(model.table("corner"))
         self.points, self.soft = by_address(model.table("gridpoint")), by_address(model.table("sdef"))
         self.first: dict[int, int] = {}
@@ -38,8 +53,8 @@ class Scene:
         self.mass, self.stiffness, self.drag = (np.zeros((n, n)) for _ in range(3))
         self._masses()
         self._hold(model)
-        self._zones(model, *moduli)
-        self._contacts(model, *joints)
+        self._zones(model, moduli)
+        self._contacts(model, joints)
         self._dashpots(model)
 
     def _masses(self) -> None:
@@ -82,10 +97,10 @@ class Scene:
             else:
                 self.held += [k] * bool(fix & 2) + [k + 1] * bool(fix & 4) + [k + 2] * (fix == 6)
 
-    def _zones(self, model: Model, bulk: float, shear: float) -> None:
-        one, two = bulk + 4 * shear / 3, bulk - 2 * shear / 3
-        law = np.array([[one, two, 0], [two, one, 0], [0, 0, shear]])  # of 11, 22 and twice 12
-        for zone in model.table("zone"):
+    def _zones(self, model: Model, moduli: Materials) -> None:
+        hosts = zones_of(model)
+        for ib, zone in [(ib, zone) for ib, zones in hosts.items() for zone in zones]:
+            law = elastic(*of(moduli, int(self.blocks[ib]["KMAT"])))
             ring = [int(ig) for ig in zone["KZG"]]
             at = np.array(
                 [(1.0, float(self.points[ig]["KXG"]), float(self.points[ig]["KYG"])) for ig in ring]
@@ -99,6 +114,7 @@ class Scene:
             self.stiffness[np.ix_(rows, rows)] += zone_area(self.points, zone) * strain.T @ law @ strain
         for ib, row in self.blocks.items():
             if row["HEAD"] == SIMPLY:
+                law = elastic(*of(moduli, int(row["KMAT"])))
                 area = float(self.soft[int(row["KBEX"])]["KSAREA"])
                 k = self.first[ib] + 3
                 scale = np.diag([1.0, 1.0, 2.0])
@@ -123,8 +139,9 @@ class Scene:
             found[:, k + 3 : k + 6] = [[rx, 0, ry], [0, ry, rx]]
         return found
 
-    def _contacts(self, model: Model, kn: float, ks: float) -> None:
+    def _contacts(self, model: Model, joints: Materials) -> None:
         for row in model.table("contact"):
+            kn, ks = of(joints, int(row["KCM"]))
             code = int(row["KCCOD"])
             if code == g.VIRTUAL:
                 continue

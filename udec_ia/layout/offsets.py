@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "b341a0a5ddf3a6b9d0f1823ba9ba38bc872b0e9849db73dc0eca89c935607553"
+DIGEST = "ce7939c84beb2e568b8a4c0994837a8ba8c56084504b684661402ff0b61669ff"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -258,7 +258,7 @@ LSAFE = 22  # 1 if the time-step is a fraction of the safe bound, 0 of the estim
 LENER = 23  # 1 if an account of the energy is kept (ENERGY ON), else 0
 LREST = 24  # how unbalanced forces or velocities are damped beside ALPHA and BETA
 LSCALE = 25  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 26  # contacts made, NMADE, when masses were scaled last
+MSCALE = 26  # contacts made, NMADE, when a safe step or masses were found last
 LROUND = 27  # 1 if the rounding length was given by ROUND, 0 if it is our default
 IERAD = 28  # address of the group that raised error NERR; 0 when there is none
 NWANT = 29  # words that the interrupted routine asks for; 0 when there are enough

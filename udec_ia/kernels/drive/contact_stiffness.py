@@ -1,8 +1,13 @@
-"""What the contacts add to the row sums of the stiffness matrix (ops.run.timestep: the bound).
+"""What the contacts add to the row sums of the stiffness matrix (ops.run.rows).
 
-A contact of the stiffness k with the displacement u = sum_j s_j q_j of its point, q_j the degrees of freedom
-of both sides and s_j how far a unit of each moves the point, has |K_ij| = k |s_i| |s_j|: row i gets k |s_i|
-times the sum of |s_j| over what is free. This for x and for y.
+A contact has KN along its normal n and KS along its tangent t. With the displacement u = sum_j s_j q_j of its
+point, q_j the degrees of freedom of both sides and s_j how far a unit of each moves the point, it has
+
+    K_ij = KN (s_i n)(s_j n) + KS (s_i t)(s_j t)
+
+What couples degrees of freedom of the same body is added up with its sign over all contacts, and much of it
+cancels; what couples two bodies counts with its size. A contact of a law of the user's may be as stiff as the
+greater of KN and KS in every direction.
 
 What moves with one side: a body that is not meshed with all its degrees of freedom, or the two grid-points at
 the ends of the edge, or the one at the corner, of a fully-deformable block.
@@ -18,10 +23,11 @@ import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.jit import kernel
+from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 
-DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12; a grid-point has the first two
-X, Y = 0, 1
+DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12 along its principal axes; a grid-point: the first two
+NORMAL, TANGENT = 0, 1
 
 
 @kernel
@@ -37,63 +43,81 @@ def _part(h: Memory, ip: int, x: float, y: float) -> float:
 
 
 @kernel
-def _enter_body(h: Memory, ib: int, x: float, y: float, row: Any, length: Any, at: Any, moves: Any) -> None:
-    """Row of block `ib`, and how far a unit of each of its degrees of freedom moves the point (x, y)."""
-    at[0] = row[ib]
-    rx = abs(x - np.float64(getr(h, ib, g.KX))) / length[at[0]]
-    ry = abs(y - np.float64(getr(h, ib, g.KY))) / length[at[0]]
-    moves[0, X, 0] = moves[0, Y, 1] = 1.0
-    moves[0, X, 2] = moves[0, X, 5] = moves[0, Y, 4] = ry
-    moves[0, Y, 2] = moves[0, Y, 5] = moves[0, X, 3] = rx
+def _enter_body(h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any) -> None:
+    """How far a unit of each degree of freedom of block `ib`, in row `k`, moves the point (x, y) along (nx, ny).
 
-
-@kernel
-def _enter_edge(h: Memory, ip: int, part: float, row: Any, at: Any, moves: Any) -> None:
-    """Rows of the grid-points at the ends of the edge of corner `ip`, and how far they move its point."""
-    at[0], at[1] = row[iget(h, ip, g.KGP)], row[iget(h, iget(h, ip, g.KR), g.KGP)]
-    moves[0, X, 0] = moves[0, Y, 1] = part
-    moves[1, X, 0] = moves[1, Y, 1] = 1.0 - part
-
-
-@kernel
-def _add(k: float, at: Any, moves: Any, free: Any, total: Any) -> None:
-    """Add what a contact of the stiffness `k` gives to the row sums of both its sides."""
-    for axis in range(2):
-        moved = 0.0
-        for side in range(2):
-            for j in range(2):
-                for i in range(DOFS):
-                    moved += moves[side, j, axis, i] * free[at[side, j], i]
-        for side in range(2):
-            for j in range(2):
-                for i in range(DOFS):
-                    total[at[side, j], i] += moves[side, j, axis, i] * (k * moved)
-
-
-@kernel
-def add_contacts(h: Memory, row: Any, length: Any, free: Any, total: Any) -> None:
-    """Add the stiffness of all contacts that are not virtual to the row sums `total`, n by 6.
-
-    row: of the block or grid-point at each address; row 0 stands for nothing. length: radii of gyration of
-    the rows. free: n by 6, 1 for a degree of freedom and 0 for what is held.
+    frame: radius of gyration and direction of the first principal axis of each row.
     """
-    at, moves = np.zeros((2, 2), np.int64), np.zeros((2, 2, 2, DOFS))  # of both sides
+    length, c, d = frame[k, 0], frame[k, 1], frame[k, 2]
+    rx = (x - np.float64(getr(h, ib, g.KX))) / length
+    ry = (y - np.float64(getr(h, ib, g.KY))) / length
+    p, q = c * rx + d * ry, c * ry - d * rx
+    along, across = c * nx + d * ny, c * ny - d * nx
+    s[0], s[1], s[2] = nx, ny, rx * ny - ry * nx
+    s[3], s[4], s[5] = p * along, q * across, q * along + p * across
+
+
+@kernel
+def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, at: Any, moves: Any) -> None:
+    """Rows of what moves with one side of contact `ic`, and how far it moves the contact along `way`."""
+    ib, ip = iget(h, ic, g.KB1 if side == 0 else g.KB2), iget(h, ic, g.KCP1 if side == 0 else g.KCP2)
+    x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
+    if iget(h, ib, HEAD) != g.MFDEF:
+        at[0] = row[ib]
+        for axis in range(2):
+            _enter_body(h, ib, x, y, way[axis, 0], way[axis, 1], at[0], frame, moves[0, axis])
+        return
+    on_edge = iget(h, ic, g.KCCOD) == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
+    part = _part(h, ip, x, y) if on_edge else 1.0
+    at[0], at[1] = row[iget(h, ip, g.KGP)], row[iget(h, iget(h, ip, g.KR), g.KGP)]
+    for axis in range(2):
+        for i in range(2):
+            moves[0, axis, i] = way[axis, i] * part
+            moves[1, axis, i] = way[axis, i] * (1.0 - part)
+
+
+@kernel
+def _add(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total: Any) -> None:
+    """Add what a contact gives to the matrices of the rows `at`, and between them to the row sums.
+
+    moves: how far each degree of freedom of the four rows moves its point, along normal and tangent.
+    """
+    for a in range(4):
+        for b in range(4):
+            if at[a] == 0 or at[b] == 0:
+                continue
+            for i in range(DOFS):
+                n, t = kn * moves[a, NORMAL, i], ks * moves[a, TANGENT, i]
+                for j in range(DOFS):
+                    k = n * moves[b, NORMAL, j] + t * moves[b, TANGENT, j]
+                    if at[a] == at[b]:
+                        own[at[a], i, j] += k
+                    else:
+                        total[at[a], i] += abs(k) * weight[at[b], j]
+
+
+@kernel
+def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: Any) -> None:
+    """Add the stiffness of all contacts that are not virtual: `own`, n by 6 by 6, within, `total` between rows.
+
+    row: of the block or grid-point at each address; row 0 stands for nothing. frame: n by 3, radii of gyration
+    and directions of the first principal axes. weight: n by 6, what a column counts for; 0 for what is held.
+    """
+    at, moves, way = np.zeros(4, np.int64), np.zeros((4, 2, DOFS)), np.zeros((2, 2))
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        code = iget(h, ic, g.KCCOD)
-        if code != g.VIRTUAL:
-            x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            found = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
+            nx, ny = np.float64(found[0]), np.float64(found[1])
+            way[NORMAL, 0], way[NORMAL, 1], way[TANGENT, 0], way[TANGENT, 1] = nx, ny, ny, -nx
             moves[:] = 0.0
             at[:] = 0
             for side in range(2):
-                ib = iget(h, ic, g.KB1 if side == 0 else g.KB2)
-                if iget(h, ib, HEAD) == g.MFDEF:
-                    ip = iget(h, ic, g.KCP1 if side == 0 else g.KCP2)
-                    on_edge = code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
-                    part = _part(h, ip, x, y) if on_edge else 1.0
-                    _enter_edge(h, ip, part, row, at[side], moves[side])
-                else:
-                    _enter_body(h, ib, x, y, row, length, at[side], moves[side])
+                first = 2 * side
+                _enter_side(h, ic, side, row, frame, way, at[first : first + 2], moves[first : first + 2])
             m = iget(h, ic, g.KCM) - 1
-            _add(np.float64(max(h.cr[g.AKN + m], h.cr[g.AKS + m])), at, moves, free, total)
+            kn, ks = np.float64(h.cr[g.AKN + m]), np.float64(h.cr[g.AKS + m])
+            if iget(h, ic, g.KCC) > 1:
+                kn = ks = max(kn, ks)
+            _add(kn, ks, at, moves, weight, own, total)
         ic = iget(h, ic, g.KC)

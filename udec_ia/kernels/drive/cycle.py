@@ -30,6 +30,20 @@ from udec_ia.kernels.drive.passes import (
 )
 from udec_ia.layout import offsets as g
 
+CONTACTS = 1000  # for each of which a safe time-step may wait a cycle to be judged again
+
+
+@kernel
+def has_to_judge(h: Memory) -> bool:
+    """True if contacts have been made since a SAFE time-step was found: it may be too long for them.
+
+    In a large model that waits for a cycle whose number is a multiple of its thousands of contacts. Where
+    masses are scaled the step stays.
+    """
+    if h.ci[g.LSAFE] == 0 or h.ci[g.LSCALE] != 0 or h.ci[g.NMADE] == h.ci[g.MSCALE]:
+        return False
+    return bool(h.ci[g.MCTOT] % (1 + h.ci[g.NCON] // CONTACTS) == 0)
+
 
 @kernel
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
@@ -37,7 +51,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
 
     soft: None if all blocks are rigid and free of boundary conditions, else True. laws: of blocks, None if
     `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). passes: see
-    drive.passes.
+    drive.passes. Stops early, too, when a safe time-step has to be judged.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
@@ -79,6 +93,6 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1
-        if h.ci[g.NERR] != 0:
+        if h.ci[g.NERR] != 0 or has_to_judge(h):
             return done
     return done

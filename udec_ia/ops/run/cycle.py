@@ -29,8 +29,9 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
+from udec_ia.ops.run.renewal import ahead, put_step, renew
 from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
-from udec_ia.ops.run.scaling import RESCALE, renew_relaxations, scale_anew
+from udec_ia.ops.run.scaling import renew_relaxations
 from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
@@ -61,16 +62,8 @@ def prepare(array: MainArray) -> None:
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)
-    h.cr[g.TDEL] = time_step(array)
-    for alpha, con1, con2, number in ((g.ALPHA, g.CON1, g.CON2, 13), (g.ALPB, g.C1B, g.C2B, 16)):
-        half = h.cr[alpha] * h.cr[g.TDEL] / 2
-        if half >= 1:
-            detail = (
-                f"the damping coefficient {h.cr[alpha]:g} times the time-step {h.cr[g.TDEL]:g} is not below 2"
-            )
-            raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
-        h.cr[con1] = 1 - half
-        h.cr[con2] = 1 / (1 + half)
+    put_step(array, time_step(array))
+    h.ci[g.MSCALE] = h.ci[g.NMADE]
     h.ci[g.LREADY] = 1
 
 
@@ -161,17 +154,14 @@ def _run(
         start = working_time()
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
-            cycles = min(target - done, runaway.ahead(array.h))
-            if array.h.ci[g.LSCALE]:
-                cycles = min(cycles, RESCALE - int(array.h.ci[g.MCTOT]) % RESCALE)
+            cycles = ahead(array, min(target - done, runaway.ahead(array.h)))
             given = soft(array), bound.blocks, bound.joints
             done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
             settled()
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
                 runaway.look(array)
-                if array.h.ci[g.MCTOT] % RESCALE == 0:
-                    scale_anew(array)
+                renew(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)

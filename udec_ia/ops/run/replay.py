@@ -13,6 +13,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import raise_error
+from udec_ia.ops.run.renewal import ahead, renew
 from udec_ia.ops.run.watch import NEVER, nothing_recorded
 
 
@@ -31,8 +32,11 @@ class Replay:
         done = 0
         while done < n:
             h = self.array.h
-            completed, _ = run_watched(h, n - done, self._given, NEVER, *self._recorded, self._passes)
+            cycles = ahead(self.array, n - done)
+            completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, self._passes)
             done += int(completed)
             raise_error(self.array, self._bound.book)
+            if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
+                renew(self.array)
             if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[THROUGH] == 0:
                 self._passes = passes(self.array.h, self._given[0], (), NEVER)

@@ -1,9 +1,11 @@
 """The rows of the stiffness matrix: what bounds the frequency of any mode (report 4.6).
 
-The safe bound of the time-step is 2 min sqrt(m_i / sum_j |K_ij|), with the row sums of the whole stiffness
-matrix over all degrees of freedom (Gershgorin): no mode is faster. A contact's stiffness is the greater of KN
-and KS in every direction. Degrees of freedom are x and y of blocks and grid-points, the rotation of a block
-and the three strains of a simply-deformable one times its radius of gyration. What is fixed has none.
+The safe bound of the time-step is 2 min sqrt(d_i m_i / sum_j |K_ij| d_j), with the row sums of the stiffness
+matrix over all degrees of freedom (Gershgorin): no mode is faster, whatever weights d > 0 are taken. With
+d = 1/sqrt(m) what is light is not charged for heavy neighbours. Contacts count as closed and sticking
+(kernels.drive.contact_stiffness). Degrees of freedom are x and y of blocks and grid-points, the rotation of a
+block and the three strains of a simply-deformable one along its principal axes, where its Euler tensor has no
+product, both times its radius of gyration. What is fixed has none.
 
 A viscous boundary takes the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
 negative eigenvalue, so that with w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
@@ -36,9 +38,12 @@ class Limit:
 
 
 class Rows:
-    """Row sums of the stiffness matrix, one row for each address of a block or grid-point."""
+    """Row sums of the stiffness matrix, one row for each address of a block or grid-point.
 
-    def __init__(self, h: Memory) -> None:
+    even: with equal weights, as is due where the masses are those that the sums ask for; else 1/sqrt(m).
+    """
+
+    def __init__(self, h: Memory, even: bool = False) -> None:
         self.h = h
         blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
         meshed = blocks[integers(h, blocks, HEAD) == g.MFDEF]
@@ -47,15 +52,19 @@ class Rows:
         self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
         words = len(self.address)
         self.sum = np.zeros((words, DOFS))
+        self.own = np.zeros((words, DOFS, DOFS))  # the matrix of each row by itself
         self.mass = np.full((words, DOFS), np.inf)
         self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
         self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
-        self.length = np.ones(words)  # radius of gyration of a block
+        self.frame = np.tile([1.0, 1.0, 0.0], (words, 1))  # radius of gyration, direction of the first axis
         self._enter_blocks(blocks[integers(h, blocks, HEAD) != g.MFDEF])
         if len(meshed):
             self._enter_points(meshed, points)
+        self.weight = self.free / np.sqrt(np.where((self.mass > 0) & (not even), self.mass, 1.0))
+        if len(meshed):
             self._enter_zones(meshed)
         self._enter_contacts()
+        self.sum += (np.abs(self.own) * self.weight[:, None, :]).sum(axis=2)
         if h.ci[g.IBNPNT]:
             self._enter_dashpots()
 
@@ -68,7 +77,7 @@ class Rows:
         h = self.h
         mass = reals(h, blocks, g.KBM)
         rows = self.row(blocks)
-        self.length[rows] = np.sqrt(reals(h, blocks, g.KBI) / mass)
+        self.frame[rows, 0] = np.sqrt(reals(h, blocks, g.KBI) / mass)
         self.mass[rows] = mass[:, None]
         fix = integers(h, blocks, g.KBFIX)
         self.free[rows, 0] = fix & (g.FIXED | g.GIVEN_X) == 0
@@ -79,17 +88,15 @@ class Rows:
             return
         rows, ext, mat = self.row(soft), integers(h, soft, g.KBEX), integers(h, soft, g.KMAT) - 1
         j11, j12, j22, area = (reals(h, ext, k) for k in (g.KSJ11, g.KSJ12, g.KSJ22, g.KSAREA))
-        zero = np.zeros_like(j11)
-        tensor = np.array([[j11, zero, j12], [zero, j22, j12], [j12, j12, j11 + j22]]).transpose(2, 0, 1)
-        square = self.length[rows] ** 2
-        known = np.isfinite(tensor).all(axis=(1, 2))  # the others have no eigenvalues, and no safe step
-        smallest = np.full(len(rows), np.nan)
-        smallest[known] = np.linalg.eigvalsh(tensor[known])[:, 0]
-        self.mass[rows, 3:] = (smallest / square)[:, None]
+        square, angle = self.frame[rows, 0] ** 2, np.arctan2(2 * j12, j11 - j22) / 2
+        self.frame[rows, 1], self.frame[rows, 2] = np.cos(angle), np.sin(angle)
+        half, mean = np.hypot((j11 - j22) / 2, j12), (j11 + j22) / 2
+        self.mass[rows, 3:] = (np.stack([mean + half, mean - half, 2 * mean]) / square).T
         self.free[rows, 3:] = 1
         one, two, area = h.cr[g.ALAM1 + mat], h.cr[g.ALAM2 + mat], np.abs(area)
-        self.sum[rows, 3] = self.sum[rows, 4] = area * (one + np.abs(two)) / square
-        self.sum[rows, 5] = area * 2 * (one - two) / square
+        self.own[rows, 3, 3] = self.own[rows, 4, 4] = area * one / square
+        self.own[rows, 3, 4] = self.own[rows, 4, 3] = area * two / square
+        self.own[rows, 5, 5] = area * 2 * (one - two) / square
 
     def _enter_points(self, blocks: Array, points: list[Array]) -> None:
         """Masses of the grid-points of `blocks`, those of each block in a row."""
@@ -113,29 +120,35 @@ class Rows:
         twice = np.abs(b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])  # a zone may have turned inside out
         one, two = (h.cr[k + mat].astype(float) for k in (g.ALAM1, g.ALAM2))
         shear = (one - two) / 2
-        free = self.free[corner, :2]
+        weight = self.weight[corner, :2]
         for i in range(3):
             for j in range(3):
                 bb, cc = b[:, i] * b[:, j], c[:, i] * c[:, j]
                 bc, cb = b[:, i] * c[:, j], c[:, i] * b[:, j]
-                fx, fy = free[:, j].T
-                row_x = np.abs(one * bb + shear * cc) * fx + np.abs(two * bc + shear * cb) * fy
-                row_y = np.abs(two * cb + shear * bc) * fx + np.abs(one * cc + shear * bb) * fy
-                np.add.at(self.sum[:, 0], corner[:, i], _over(row_x, 2 * twice))
-                np.add.at(self.sum[:, 1], corner[:, i], _over(row_y, 2 * twice))
+                along = one * bb + shear * cc, two * bc + shear * cb
+                across = two * cb + shear * bc, one * cc + shear * bb
+                for axis, pair in enumerate((along, across)):
+                    if i == j:
+                        for other, k in enumerate(pair):
+                            np.add.at(self.own[:, axis, other], corner[:, i], _over(k, 2 * twice))
+                    else:
+                        row = np.abs(pair[0]) * weight[:, j, 0] + np.abs(pair[1]) * weight[:, j, 1]
+                        np.add.at(self.sum[:, axis], corner[:, i], _over(row, 2 * twice))
 
     def _enter_contacts(self) -> None:
         """The stiffness of all contacts that are not virtual."""
         row = np.zeros(int(self.h.ci[g.MFREE]) + 1, np.int32)
         row[self.address] = np.arange(len(self.address))
-        add_contacts(self.h, row, self.length, self.free, self.sum)
+        add_contacts(self.h, row, self.frame, self.weight, self.own, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
-        length = self.length[self.row(blocks)]
-        rx, ry = (np.abs(p - reals(self.h, blocks, k)) / length for p, k in ((x, g.KX), (y, g.KY)))
-        one, zero = np.ones_like(rx), np.zeros_like(rx)
-        return np.array([[one, zero, ry, rx, zero, ry], [zero, one, rx, zero, ry, rx]]).transpose(0, 2, 1)
+        length, c, s = self.frame[self.row(blocks)].T
+        rx, ry = ((p - reals(self.h, blocks, k)) / length for p, k in ((x, g.KX), (y, g.KY)))
+        p, q, one, zero = c * rx + s * ry, c * ry - s * rx, np.ones_like(rx), np.zeros_like(rx)
+        along_x = [one, zero, -ry, p * c, -q * s, q * c - p * s]
+        along_y = [zero, one, rx, p * s, q * c, q * s + p * c]
+        return np.abs([along_x, along_y]).transpose(0, 2, 1)
 
     def _enter_dashpots(self) -> None:
         """The dashpots of all viscous boundaries."""
@@ -149,14 +162,15 @@ class Rows:
         )
         at = self.row(np.where(points > 0, points, blocks))
         share: Array = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
-        total = (share * self.free[at]).sum(axis=2)
+        total = (share * self.weight[at]).sum(axis=2)
         for axis, (along, across) in enumerate(((cxx, cxy), (cyy, cxy))):
             rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
             np.add.at(self.drag, at, rows)
 
     def limit(self) -> Limit:
         """The bound, and who sets it: 0 where a mass or a stiffness is not a number."""
-        rate = np.where(self.free > 0, rate_of(self.sum, self.drag, self.mass), 0.0)
+        mass = np.where(self.free > 0, self.mass, 1.0) * self.weight
+        rate = np.where(self.free > 0, rate_of(self.sum, self.drag, mass), 0.0)
         rate[np.isnan(rate)] = np.inf
         at = int(rate.max(axis=1).argmax())
         fastest = float(rate[at].max())

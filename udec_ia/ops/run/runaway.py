@@ -4,8 +4,8 @@ No mode is faster than the safe bound, so a step below it makes no vibration gro
 block that strikes another may leave faster than it came: a mass m that meets a stiffness K at the very
 beginning of a step dt has lost K v dt dt/m of its velocity v by the next one, and leaves with v (K dt dt/m -
 1). That is more than v for a step above 0.7 of the critical one. So a step up to 0.7 of the bound is not
-suspected of anything, and costs nothing but the bound, once for each step, and again when contacts have grown
-in number.
+suspected of anything, and costs nothing but the bound, once for each step, and again when contacts have been
+made.
 
 Of a suspected run the energy is looked at every 100 cycles. What there can be is what there was, what
 commands and boundary conditions have put in (WDRIVE), and what gravity has given. Damping and friction only
@@ -44,8 +44,8 @@ from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_f
 OUT_OF_NOWHERE = 37
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
-LOOK, JUDGE = 100, 1000  # cycles between two looks at the energy, and at the number of contacts
-GROWN, OTHER_STEP = 1.1, 1.05  # contacts and steps that the bound is found anew for, over those of before
+LOOK, JUDGE = 100, 1000  # cycles between two looks at the energy, and at the contacts made
+OTHER_STEP = 1.05  # step that the bound is found anew for, over that of before
 
 
 class Stock(NamedTuple):
@@ -75,7 +75,7 @@ class Runaway:
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = Limit(np.inf, 0)
-        self._judged = (0.0, 0.0, 0)  # step, BETA and contacts at that time
+        self._judged = (0.0, 0.0, -1)  # step, BETA and contacts made at that time
         self._warned = (0.0, 0.0)  # step and BETA
         self._suspected = self._own_laws = False
         self._account: Account | None = None
@@ -83,10 +83,10 @@ class Runaway:
     def judge(self, array: MainArray, anew: bool = False) -> None:
         """Find the safe bound if it may have changed, or `anew`; warn of a step above it, once for each."""
         h = array.h
-        step, beta, contacts = float(h.cr[g.TDEL]), float(h.cr[g.BETA]), int(h.ci[g.NCON] - h.ci[g.NVIRT])
-        if alike(step, beta, *self._judged[:2]) and contacts <= GROWN * self._judged[2] and not anew:
+        step, beta, made = float(h.cr[g.TDEL]), float(h.cr[g.BETA]), int(h.ci[g.NMADE])
+        if alike(step, beta, *self._judged[:2]) and made == self._judged[2] and not anew:
             return
-        self._judged = step, beta, contacts
+        self._judged = step, beta, made
         self.safe = bound(array)
         self._suspected = step > SUSPECT * damped(self.safe.step, beta)
         warning = instability(array, self.safe)

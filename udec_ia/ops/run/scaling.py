@@ -54,7 +54,7 @@ def renew_relaxations(array: MainArray) -> None:
 
 def scale(array: MainArray) -> float:
     """Scale all masses from what holds them now; returns the time-step that is safe with these, in s."""
-    rows = Rows(array.h)
+    rows = Rows(array.h, even=True)
     step = rows.limit().step
     if math.isfinite(step) and step > 0:
         _put_factors(array, rows, step)
@@ -66,7 +66,7 @@ def scale_anew(array: MainArray) -> None:
     h = array.h
     if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
         step, beta = float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]), float(h.cr[g.BETA])
-        _put_factors(array, Rows(h), math.sqrt((step + beta) ** 2 - beta**2))
+        _put_factors(array, Rows(h, even=True), math.sqrt((step + beta) ** 2 - beta**2))
 
 
 @OVERFLOWS
@@ -76,7 +76,7 @@ def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
     relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
     blocks, points = (integers(h, relaxations, k) for k in (g.KRXB, g.KRXG))
     at = rows.row(np.where(points > 0, points, blocks))
-    reach = np.where(points > 0, 0.0, np.asarray(getr(h, blocks, g.KBRO), float)) / rows.length[at]
+    reach = np.where(points > 0, 0.0, np.asarray(getr(h, blocks, g.KBRO), float)) / rows.frame[at, 0]
     outside = (points == 0) | (integers(h, np.where(points > 0, points, 1), g.KCOR) > 0)
     contact = SHARE * float(max(h.cr[k : k + NMAT].max() for k in (g.AKN, g.AKS))) * outside
     more = np.stack([contact, contact, contact * reach**2, *[contact * reach**2] * 3], axis=1)

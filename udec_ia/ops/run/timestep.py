@@ -4,7 +4,7 @@ Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stif
 simply-deformable blocks and the grid-points (kernels.drive.timestep). It is only approximate: a mass on
 several springs has a shorter period than on one.
 
-Bound: 2 min sqrt(m_i / sum_j |K_ij|), by the rows of the stiffness matrix (ops.run.rows).
+Bound: 2 min sqrt(m_i d_i / sum_j |K_ij| d_j), by the rows of the stiffness matrix (ops.run.rows).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from udec_ia.ops.run.scaling import scale, scaled
 @OVERFLOWS
 def bound(array: MainArray) -> Limit:
     """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
-    rows = Rows(array.h)
+    rows = Rows(array.h, even=bool(array.h.ci[g.LSCALE]))
     return (scaled(array, rows) if array.h.ci[g.LSCALE] else rows).limit()
 
 
