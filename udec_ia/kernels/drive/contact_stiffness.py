@@ -26,7 +26,9 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 
-DOFS = 6  # of a block: x, y, rotation, strains 11, 22, 12 along its principal axes; a grid-point: the first two
+DOFS = (
+    6  # of a block: x, y, rotation, strains 11, 22, 12 along its principal axes; a grid-point: the first two
+)
 NORMAL, TANGENT = 0, 1
 
 
@@ -43,8 +45,10 @@ def _part(h: Memory, ip: int, x: float, y: float) -> float:
 
 
 @kernel
-def _enter_body(h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any) -> None:
-    """How far a unit of each degree of freedom of block `ib`, in row `k`, moves the point (x, y) along (nx, ny).
+def _enter_body(
+    h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any
+) -> None:
+    """How far a unit of each degree of freedom of block `ib`, in row `k`, moves (x, y) along (nx, ny).
 
     frame: radius of gyration and direction of the first principal axis of each row.
     """
@@ -98,10 +102,11 @@ def _add(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total
 
 @kernel
 def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: Any) -> None:
-    """Add the stiffness of all contacts that are not virtual: `own`, n by 6 by 6, within, `total` between rows.
+    """Add the stiffness of all contacts that are not virtual, to `own` within rows, to `total` between them.
 
-    row: of the block or grid-point at each address; row 0 stands for nothing. frame: n by 3, radii of gyration
-    and directions of the first principal axes. weight: n by 6, what a column counts for; 0 for what is held.
+    row: of the block or grid-point at each address; row 0 stands for nothing. own: n by 6 by 6. total: n by
+    6. frame: n by 3, radii of gyration and directions of the first principal axes. weight: n by 6, what a
+    column counts for; 0 for what is held.
     """
     at, moves, way = np.zeros(4, np.int64), np.zeros((4, 2, DOFS)), np.zeros((2, 2))
     ic = h.ci[g.ICPNT]

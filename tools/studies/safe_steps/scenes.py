@@ -111,7 +111,9 @@ def grid(rng: Any) -> tuple[Any, list[Any]]:
     nx, ny = rng.integers(1, 7, 2)
     w, h, lean = nx * rng.uniform(0.3, 1), ny * rng.uniform(0.3, 1), rng.choice([0.0, rng.uniform(-0.5, 0.5)])
     cuts = [np.array([(-1.0, h * i / ny), (w + 1, h * i / ny)]) for i in range(1, ny)]
-    cuts += [np.array([(w * i / nx - 2 * lean * h, -h), (w * i / nx + lean * h, 2 * h)]) for i in range(1, nx)]
+    cuts += [
+        np.array([(w * i / nx - 2 * lean * h, -h), (w * i / nx + lean * h, 2 * h)]) for i in range(1, nx)
+    ]
     return box(w, h), cuts
 
 
@@ -136,7 +138,7 @@ def spokes(rng: Any) -> tuple[Any, list[Any]]:
     n = int(rng.integers(2, 7))
     angles = np.sort(rng.uniform(0, pi, n))
     ways = np.stack([np.cos(angles), np.sin(angles)], axis=1) * 3
-    return box(2, 2), [np.array([(1.0, 1.0) - way, (1.0, 1.0) + way]) for way in ways]
+    return box(2, 2), [np.array([1.0 - way, 1.0 + way]) for way in ways]
 
 
 def shards(rng: Any) -> tuple[Any, list[Any]]:

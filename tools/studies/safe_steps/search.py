@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from naive.stiffness import Scene
-from stability.scenes import draw
 
+from safe_steps.scenes import draw
 from udec_ia import UdecError
 from udec_ia.ops.run.timestep import bound, estimate
 
@@ -57,7 +57,7 @@ def look(kind: str, seed: int) -> Found:
 
 
 def search(kinds: Iterable[str], first: int, count: int, file: Path) -> None:
-    """Look at `count` scenes of each kind from seed `first` on, and write them to `file`, but for those in it."""
+    """Look at `count` scenes of each kind from seed `first` on; write them to `file`, but for those in it."""
     done = {(one.kind, one.seed) for one in read(file)} if file.exists() else set()
     with file.open("a", newline="") as out:
         writer = csv.writer(out)
