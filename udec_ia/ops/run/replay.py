@@ -13,7 +13,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import raise_error
-from udec_ia.ops.run.watch import NEVER, nothing_recorded
+from udec_ia.ops.run.watch import NEVER, NO_MARKS, nothing_recorded
 
 
 class Replay:
@@ -24,15 +24,17 @@ class Replay:
         self._bound = laws.bind(array)
         self._given = soft(array), self._bound.blocks, self._bound.joints
         self._recorded = nothing_recorded()
-        self._passes = passes(array.h, self._given[0], (), NEVER)
+        self._passes = passes(array.h, self._given[0], (), NEVER, False, NO_MARKS)
 
     def step(self, n: int = 1) -> None:
         """`n` cycles. Raises the UdecError that one of them raised in the run."""
         done = 0
         while done < n:
             h = self.array.h
-            completed, _ = run_watched(h, n - done, self._given, NEVER, *self._recorded, self._passes)
+            completed, _ = run_watched(
+                h, n - done, self._given, NEVER, *self._recorded, NO_MARKS, self._passes
+            )
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[THROUGH] == 0:
-                self._passes = passes(self.array.h, self._given[0], (), NEVER)
+                self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)
