@@ -228,8 +228,8 @@ class Unrest:
         share = taken / stored if stored else np.inf
         return (
             f"joints have slipped on the way{slipped_farthest(h)}: friction took {taken:.3g} J/m, "
-            f"{share:.1%} of what joints and blocks hold now, and where all rests may depend on the way; load "
-            "in steps, and compare"
+            f"{share:.1%} of what joints and blocks hold now, and where all rests may depend on the way; "
+            "load in steps, and compare"
         )
 
 
