@@ -36,7 +36,7 @@ from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.rounding import STRAINED
-from udec_ia.ops.run.watch import Solution
+from udec_ia.ops.run.solution import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal

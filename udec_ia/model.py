@@ -25,9 +25,9 @@ from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.interpreting import mode
 from udec_ia.inspect.arrange import arrange
-from udec_ia.kernels.drive.unbalanced import at_rest, force_ratio, motion_ratio, unbalanced
+from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
-from udec_ia.layout.offsets import MCTOT, WFRIC
+from udec_ia.layout.offsets import MCTOT
 from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
@@ -44,9 +44,11 @@ from udec_ia.ops.run.remarks import (
     on_rounding,
 )
 from udec_ia.ops.run.scaling import relaxations_due
-from udec_ia.ops.run.static import STATIC, statically, way_taken
+from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
+from udec_ia.ops.run.static import STATIC, statically
 from udec_ia.ops.run.timestep import bound, describe, kind_of
-from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Solution, Watch
+from udec_ia.ops.run.unrest import Unrest
+from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Watch
 from udec_ia.transaction import beside, looking, once
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
@@ -97,46 +99,61 @@ class Model(Files, Blocks, Numbers, Looks):
         return self._cycle(n, self._recorder.watch(self.array))
 
     @beside
-    def solve(self, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False) -> Solution:
+    def solve(
+        self, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False, criterion: str = MAX
+    ) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
         static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say (ops.run.static).
+        criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
-        The ratio: greatest unbalanced force over the mean of those that are carried (drive.unbalanced); it is
-        looked at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic
-        over strain energy is not greater than `ratio` either. What is returned is true if that was reached.
+        The ratio: that force over the mean of those that are carried (drive.unbalanced); it is looked at
+        every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
+        strain energy is not greater than `ratio` either. What is returned is true if that was reached.
         """
         self._ready()
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
+        criterion = criterion_of(criterion)
         if not static:
             self.remark(on_rest(self.array))
-            return self._to_rest(ratio, limit)
+            return self._to_rest(ratio, limit, criterion)
         self.inform(STATIC)
         begun = self.undo.before
+        named = {"static": True} | ({"criterion": criterion} if criterion == MEAN else {})
         try:
             with statically(self.array):
-                friction = float(self.array.h.cd[WFRIC])
-                solution = self._to_rest(
-                    ratio, limit, lambda n: self.log_call(Model.solve, (ratio, n), {"static": True})
+                return self._to_rest(
+                    ratio, limit, criterion, lambda n: self.log_call(Model.solve, (ratio, n), named)
                 )
-            if said := way_taken(self.array, friction):
-                self.inform(said)
-            return solution
         finally:
             if self.undo.before is not begun:  # cycles are to stay, and with them what stood before
                 self.undo.afresh(self)
 
-    def _to_rest(self, ratio: float, limit: int, ended: Ended | None = None) -> Solution:
+    def _to_rest(self, ratio: float, limit: int, criterion: str, ended: Ended | None = None) -> Solution:
         """Up to `limit` cycles to rest; ended: as of _cycle."""
-        watch = Watch(self.array, self._recorder.series, ratio)
+        unrest, mean = Unrest(), criterion == MEAN
+        watch = Watch(self.array, self._recorder.series, ratio, mean, unrest)
         cycles = self._cycle(limit, watch, ended)
         h, kinds = self.array.h, soft(self.array)
-        reached = cycles > 0 and bool(at_rest(h, float(ratio)))
-        ends, motion = float(force_ratio(h, kinds)), float(motion_ratio(h, kinds))
+        reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(ratio)))
+        largest, average = map(float, force_ratios(h, kinds))
         worst, lively = (
             kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
         )
-        solution = Solution(reached, ratio, ends, cycles, worst, motion, lively)
+        state, why = unrest.explain(self.array, reached, ratio, self._runaway.chatter)
+        solution = Solution(
+            reached,
+            ratio,
+            largest,
+            cycles,
+            worst,
+            float(motion_ratio(h, kinds)),
+            lively,
+            criterion,
+            average,
+            state,
+            why,
+        )
         self._recorder.solutions.append(solution)
         return solution
 

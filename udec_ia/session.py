@@ -21,7 +21,8 @@ from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.log import Log, Step
-from udec_ia.ops.run.watch import Series, Watch, unsolved
+from udec_ia.ops.run.solution import worth_telling
+from udec_ia.ops.run.watch import Series, Watch
 from udec_ia.recorder import Recorder
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ class Session:
             self._files,
             perf_counter() - self._clock,
             compile_seconds() - self._compiled,
-            unsolved(self._recorder.solutions),
+            worth_telling(self._recorder.solutions),
         )
 
     # ---- files

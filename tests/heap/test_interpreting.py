@@ -119,6 +119,6 @@ def test_a_command_within_is_the_same_command() -> None:
     one.cycle(5)
     with interpreted():
         two.cycle(5)
-        assert all(callable(entry) for entry in passes(two.array.h, None, (), -1.0)[:2])
+        assert all(callable(entry) for entry in passes(two.array.h, None, (), -1.0, False, ())[:2])
     assert words(one.array.h) == words(two.array.h)
     assert one.check() == two.check() == []

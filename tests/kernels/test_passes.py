@@ -65,7 +65,7 @@ def test_a_cycle_asks_for_what_it_runs(
         command(m)
     monkeypatch.setattr(module, "entry", entry)
     monkeypatch.setattr(module, "updating", lambda h: 1)
-    found = module.passes(m.array.h, soft(m.array), (), -1.0)
+    found = module.passes(m.array.h, soft(m.array), (), -1.0, False, ())
     assert asked == ALWAYS | wanted
     assert sum(1 for one in found if one) == len(asked) + 1  # and the update
     assert m.array.h.ci[g.JPHASE] == g.AT_BLOCKS

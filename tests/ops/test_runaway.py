@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from kinds import every_kind
 from mechanics import block, on_base, push
@@ -217,3 +218,43 @@ def test_a_command_puts_no_work_in() -> None:
     assert before > 0
     m.change(-1, 2, -1, 2, type="sdef")
     assert float(m.h.cd[g.WDRIVE]) == before
+
+
+def bricks(out: Path, **damping: float) -> Model:
+    """Courses of bricks on a slope of 30 degrees, whose friction would hold them at 45."""
+    m = Model(out=out)
+    m.property(1, density=2500, kn=1e10, ks=1e10, friction=1)
+    m.round(0.05)
+    m.gravity(5, -8.66)
+    m.block(0, -1, 0, 5, 24, 5, 24, -1)
+    for y in range(5):
+        m.split(-1, y, 25, y)
+    for y in range(5):
+        for x in np.arange(1.5 if y % 2 else 3.0, 24, 3):
+            m.split(x, y - 0.01, x, y + 1.01)
+    m.fix(0, 24, -1, 0)
+    if damping:
+        m.damping(**damping)
+    else:
+        m.damping(0.5, 1, "mass")
+    return m
+
+
+def test_contacts_that_chatter_are_told(tmp_path: Path) -> None:
+    """They slide on contacts that open and close all the time. With LOCAL damping they hold, unremarked."""
+    m = bricks(tmp_path)
+    said: list[str] = []
+    m.tell = said.append
+    m.cycle(2500)
+    (text,) = said
+    assert text.startswith("contacts chatter: ")
+    assert "DAMPING LOCAL 0.8" in text
+    where = int(text.partition("contact@")[2].split()[0])
+    assert where in m.table("contact")["address"]
+    solution = m.solve(1e-4, 1500)
+    assert (bool(solution), solution.state, len(said)) == (False, "chatter", 1)
+    held = bricks(tmp_path, local=0.8)
+    held.tell = said.append
+    held.cycle(3000)
+    assert held.solve(1e-4)
+    assert len(said) == 1

@@ -388,3 +388,108 @@ def test_the_last_line_forgets_what_was_reached_later(tmp_path: Path) -> None:
     assert m.summary().count("NOT REACHED") == 1
     m.start()
     assert "NOT REACHED" not in m.summary()
+
+
+def mean_ratio(m: Model) -> float:
+    """Mean unbalanced force on free rigid blocks over mean contact force, from the tables."""
+    blocks, contacts = m.table("block"), m.table("contact")
+    free = blocks[blocks["KBFIX"] == 0]
+    fx = free["KBFX"] + free["KBM"] * m.h.cr[g.GRAVX]
+    fy = free["KBFY"] + free["KBM"] * m.h.cr[g.GRAVY]
+    forces = np.maximum(np.hypot(fx, fy), np.abs(free["KBFT"]) / free["KBRO"])
+    borne = np.hypot(contacts["KCFN"], contacts["KCFS"])[contacts["KCFN"] != 0]
+    return float(forces.mean() / borne.mean())
+
+
+def test_the_mean_ratio(tmp_path: Path) -> None:
+    """SOLVE ... MEAN stops at the first look that finds the mean of all unbalanced forces small enough."""
+    m, twin = damped(tmp_path), damped(tmp_path)
+    twin.cycle(CHECK)
+    while mean_ratio(twin) > 1e-3 or moving(twin) > 1e-3:
+        twin.cycle(CHECK)
+    solution = m.solve(1e-3, criterion="mean")
+    assert solution
+    assert (solution.cycles, solution.ratio) == (
+        twin.h.ci[g.MCTOT],
+        pytest.approx(mean_ratio(twin), rel=1e-9),
+    )
+    assert solution.ratio < solution.largest
+    assert str(solution).startswith("mean force ratio 0.001 reached: it is")
+    with pytest.raises(UdecError) as caught:
+        m.solve(1e-3, criterion="median")
+    assert (caught.value.number, caught.value.parameter) == (10, "criterion")
+
+
+def test_a_deck_chooses_the_ratio(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    printed = m.run(
+        "START\nPROP MAT=1 DENS=1000 KN=1E8 KS=1E8\nBLOCK 0 0 0 2 1 2 1 0\nSPLIT -1 1 2 1\n"
+        "FIX 0 1 0 1\nGRAVITY 0 -10\nSOLVE 1E-6 LIMIT=30 MEAN\nSOLVE 1E9 MAX\n"
+    )
+    assert printed is not None
+    assert "mean force ratio 1e-06 NOT REACHED: it is" in printed
+    assert [one.criterion for one in m.solutions()] == ["mean", "max"]
+    other = Model(out=tmp_path)
+    other.property(1, density=1000, kn=1e8, ks=1e8)
+    other.block(0, 0, 0, 2, 1, 2, 1, 0)
+    other.solve(0.1, 1, criterion="mean")
+    assert "SOLVE 0.1 LIMIT 1 MEAN" in other.deck()
+
+
+def bar(out: Path, friction: float, damping: float) -> Model:
+    """Three simply-deformable blocks whose joints stand 15 degrees askew, loaded along them at once."""
+    m = Model(out=out)
+    m.property(1, density=2000, kn=1e9, ks=1e9, bulk=2e9 / 3, g=1e9, friction=friction)
+    m.fraction(0.3)
+    m.round(0.02)
+    m.block(0, 0, 0, 1, 4.5, 1, 4.5, 0)
+    lean = math.tan(math.radians(15))
+    for x in (1.5, 3.0):
+        m.split(x - lean, -0.5, x + lean, 1.5)
+    m.change(0, 4.5, 0, 1, type="sdef")
+    m.damping(damping, 55, "mass")
+    m.damping(damping, 55, "internal")
+    for x in (0.0, 4.5):
+        m.boundary(x - 0.001, x + 0.001, -1, 2, stress=(-1e5, 0, 0))
+    return m
+
+
+@pytest.mark.parametrize(("friction", "damping"), [(0.3, 0.1), (1e3, 0.1)])
+def test_a_sudden_load_that_spoils_the_rest_is_told(friction: float, damping: float, tmp_path: Path) -> None:
+    """The angle of friction is 17 degrees: nothing slips at rest, and much in the overshoot."""
+    m = bar(tmp_path, friction, damping)
+    long = np.ptp(m.table("block")["KX"])
+    solution = m.solve(1e-4, 20_000)
+    assert solution
+    modulus = 1e5 * long / (long - np.ptp(m.table("block")["KX"]))
+    exact = 1 / (1 / 2e9 + 1 / (2 * 1e9 * 1.5))
+    spoilt = abs(modulus / exact - 1) > 0.02
+    assert spoilt == (friction < 1)
+    assert (solution.state == "joints slipped") == spoilt
+    assert ("joints have slipped on the way, contact@" in str(solution)) == spoilt
+
+
+@pytest.mark.parametrize(
+    ("friction", "damping", "limit", "state"),
+    [
+        (0.1, 0.0, 300, "collapse"),
+        (0.1, 0.5, 6000, "creep"),
+        (0.8, 0.0, 1000, "swings"),
+        (0.8, 0.02, 1000, "settles"),
+    ],
+)
+def test_why_there_is_no_rest(
+    friction: float, damping: float, limit: int, state: str, tmp_path: Path
+) -> None:
+    """Whether it falls, slides at the speed that mass damping leaves, swings, or only needs more cycles."""
+    m = sliding(tmp_path, friction)
+    if state == "swings":
+        m.solve(1e-5)
+        m.gravity(6.3, -10.5)
+    m.damping(damping, 30, "mass")
+    solution = m.solve(1e-7, limit)
+    assert not solution
+    assert solution.state == state
+    if state in ("collapse", "creep"):
+        assert f"block@{int(block(m, 2, 3)['address'])} at (" in solution.why
+        assert "slip at their strength" in solution.why

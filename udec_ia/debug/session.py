@@ -22,7 +22,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.look.atlas import Atlas
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import Watch
+from udec_ia.ops.run.watch import NO_MARKS, Watch
 from udec_ia.signals import poll
 
 PIECE_SECONDS = 0.02
@@ -346,12 +346,12 @@ class _Pieces(Watch):
         self.inner.begin()
         self.debugger.timeline.prepared(self.debugger.model.array)
 
-    def run(self, n: int, laws: Any) -> int:
+    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
         """As Watch.run."""
         done = 0
         while done < n and not self.inner.reached:
             piece, start = self.debugger.piece(n - done), perf_counter()
-            completed = self.inner.run(piece, laws)
+            completed = self.inner.run(piece, laws, marks)
             done += completed
             if completed:
                 self.debugger.ran(completed, perf_counter() - start)

@@ -422,12 +422,19 @@ COMMANDS = (
     Command(
         "SOLve",
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
-        "over the mean of the forces that contacts and zones carry. LIMIT: cycles after which to give up, "
+        "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
+        "carry; and until kinetic over strain energy is no more either. At its end it says what still moves, "
+        "and whether joints slipped. LIMIT: cycles after which to give up, "
         "100000 if it is left off. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, "
         "whatever DAMPING and FRACTION say; all stands still at its end.",
         "SOLVE 1E-3 LIMIT 20000",
         numbers="ratio",
-        words=(Word("Limit", "n"), Word("STatic")),
+        words=(
+            Word("Limit", "n"),
+            Word("STatic"),
+            Word("MEan", sets="criterion"),
+            Word("MAx", sets="criterion"),
+        ),
         ours="the command",
     ),
     Command(

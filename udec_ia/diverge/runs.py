@@ -103,12 +103,13 @@ def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
 def _rest_of(statement: Statement) -> tuple[float | None, int]:
     """The force ratio that a SOLVE asks for, and how many cycles it or a CYCLE has at most; 0 for others.
 
-    SOLVE ... STATIC is one of the others: all stands still at its end, so it cannot be done in parts.
+    SOLVE ... STATIC is one of the others: all stands still at its end, so it cannot be done in parts. So is
+    SOLVE ... MEAN, which is seldom.
     """
     call = parse(statement)
     if call.command.name != "solve":
         return None, cycles_of(statement)
-    if call.named.get("static"):
+    if call.named.get("static") or call.named.get("criterion") == "mean":
         return None, 0
     return float(call.positional[0]), int(call.named.get("limit", SOLVE_LIMIT))
 

@@ -13,7 +13,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from udec_ia.heap.compiling import working_time
-from udec_ia.ops.run.watch import Solution
+from udec_ia.ops.run.solution import Solution
 from udec_ia.printable import printable
 
 LINES = 10  # plain lines for one CYCLE command, at most
@@ -96,18 +96,18 @@ def summary(
     files: list[Path],
     wall: float,
     compiling: float = 0.0,
-    unsolved: Sequence[Solution] = (),
+    solutions: Sequence[Solution] = (),
 ) -> str:
     """The line that ends every run.
 
     cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s,
-    `compiling` of it spent on compiling; unsolved: each SOLVE that came to its limit.
+    `compiling` of it spent on compiling; solutions: each SOLVE of which there is something to be said.
     """
     names = ", ".join(printable(path.name) for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
     written = f"wrote {names}{more}" if files else "no file written"
     compiled = f", {compiling:.1f} s of it compiling" if compiling >= SHOWN else ""
-    solve = "".join(f"; SOLVE {one.wanted:g} NOT REACHED ({one.ratio:.3g})" for one in unsolved)
+    solve = "".join(f"; {one.short}" for one in solutions)
     return (
         f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
         f"largest normal force {force:.4g} N/m{solve}; {written}; {wall:.1f} s{compiled}"

@@ -14,7 +14,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.compiling import compile_seconds
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
-from udec_ia.ops.run.watch import Watch
+from udec_ia.ops.run.watch import NO_MARKS, Watch
 from udec_ia.study.observed import NoValue, Start, State
 from udec_ia.study.reading import read, read_rule
 from udec_ia.study.runs import DECK, LATE, STOPPED, Run
@@ -159,9 +159,9 @@ class _Eye(Watch):
         self.inner.begin()
         self.observer.begin()
 
-    def run(self, n: int, laws: Any) -> int:
+    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
         """One piece of at most `n` cycles."""
-        completed = self.inner.run(self.observer.piece(n), laws)
+        completed = self.inner.run(self.observer.piece(n), laws, marks)
         self.done += completed
         if completed:
             self.observer.ran()

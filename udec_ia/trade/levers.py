@@ -266,7 +266,8 @@ def _solve(one: Statement, setting: Setting, longer: float, last: int | None) ->
     limit = round(call.named.get("limit", LIMIT) * max(longer, 1.0) / min(setting.ratio, 1.0))
     limit = min(limit, last or limit)
     static = " STATIC" if setting.static or call.named.get("static") else ""
-    return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}"
+    mean = " MEAN" if call.named.get("criterion") == "mean" else ""
+    return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}{mean}"
 
 
 def _types(types: str) -> list[str]:

@@ -24,7 +24,7 @@ from udec_ia.inspect.table import addresses as listed
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
-from udec_ia.ops.run.watch import Watch
+from udec_ia.ops.run.watch import NO_MARKS, Watch
 from udec_ia.study.runs import Run
 
 KICKS = 1000
@@ -127,14 +127,14 @@ class _Kicked(Watch):
         self.inner.begin()
         self.noise.begin()
 
-    def run(self, n: int, laws: Any) -> int:
+    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
         """As Watch.run."""
         done, every = 0, self.noise.every
         h = self.noise.model.array.h
         while done < n and not self.inner.reached:
             before = self.noise.reals()
             ahead = min(n - done, every - int(h.ci[g.MCTOT]) % every)
-            completed = self.inner.run(ahead, laws)
+            completed = self.inner.run(ahead, laws, marks)
             done += completed
             if completed < ahead or h.ci[g.NERR] != 0 or h.ci[g.JPHASE] != g.AT_BLOCKS:
                 break

@@ -20,7 +20,7 @@ from udec_ia.heap.compiling import compile_seconds
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.timestep import bound, damped, estimate
-from udec_ia.ops.run.watch import Watch
+from udec_ia.ops.run.watch import NO_MARKS, Watch
 from udec_ia.study.runs import Run
 
 SURVEY, TRACKS = "survey.json", "tracks.npz"
@@ -137,7 +137,7 @@ class Survey(Watch):
         self._marks = [] if one.solve else sorted({round(asked * k / MARKS) for k in range(1, MARKS + 1)})
         self.found.look()
 
-    def run(self, n: int, laws: Any) -> int:
+    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
         """As Watch.run: up to the next mark."""
         one = self._segment
         assert one is not None
@@ -145,7 +145,7 @@ class Survey(Watch):
         if self.asked_for.rehearsed:
             n = min(n, REHEARSED)
         clock, compiled = thread_time(), compile_seconds()
-        completed = self.inner.run(min(n, *ahead[:1]), laws) if ahead else self.inner.run(n, laws)
+        completed = self.inner.run(min([n, *ahead[:1]]), laws, marks)
         one.seconds += max(thread_time() - clock - (compile_seconds() - compiled), 0.0)
         one.done += completed
         if one.done in self._marks:

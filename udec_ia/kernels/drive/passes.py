@@ -14,22 +14,26 @@ from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.openings import note_openings
 from udec_ia.kernels.drive.peaks import look_at_motion
 from udec_ia.kernels.drive.recording import record
 from udec_ia.kernels.drive.relax import relax
-from udec_ia.kernels.drive.unbalanced import at_rest
+from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.contacts import note_contact
 from udec_ia.kernels.energy.works import note_forces, note_rigid, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST = range(11)
+UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST, OPENINGS = range(12)
 
 
-def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tuple[Any, ...]:
+def passes(
+    h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float, mean: bool, marks: Any
+) -> tuple[Any, ...]:
     """Addresses in the order above, 0 for what a run does not need.
 
     soft: as in run_cycles. recorded: what `record` is called with beside `h`, () if nothing is recorded.
-    ratio: as in run_watched. A run of slow blocks does not need THROUGH; one that does stops before it.
+    ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
+    A run of slow blocks does not need THROUGH; one that does stops before it.
     """
     keeps, strains, how = h.ci[g.LENER] != 0, h.ci[g.NSOFT] > 0, h.ci[g.LREST]
     none = h.cr.dtype.type(0)
@@ -45,5 +49,6 @@ def passes(h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float) -> tup
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
         entry(change_map, h, NOBODY, 0, 0),
         entry(record, h, *recorded) if recorded else 0,
-        entry(at_rest, h, ratio) if ratio >= 0 else 0,
+        entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
+        entry(note_openings, h, marks) if len(marks) else 0,
     )

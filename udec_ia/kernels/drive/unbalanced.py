@@ -1,4 +1,4 @@
-"""How far a model is from rest: its greatest unbalanced force, and that against the forces it carries.
+"""How far a model is from rest: its greatest or mean unbalanced force, against the forces it carries.
 
 Unbalanced is what accelerates something free: a rigid block, a grid-point of a fully-deformable block, or the
 strains of a simply-deformable one; moments and strains as a force at the distance of the farthest corner.
@@ -54,40 +54,56 @@ def strain_force(h: Memory, ib: int) -> float:
 
 
 @kernel
-def point_force(h: Memory, ib: int) -> tuple[float, int]:
-    """Greatest unbalanced force on a grid-point of block `ib`, and the grid-point; 0 if there is none."""
-    largest, at = real(h, 0.0), int64(0)
+def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
+    """Greatest unbalanced force on a grid-point of block `ib`, and the grid-point; 0 if there is none.
+
+    Then the sum of these forces, and the number of grid-points that are free to follow one.
+    """
+    largest, at, total, count = real(h, 0.0), int64(0), 0.0, int64(0)
     ig = int64(0) if iget(h, ib, g.KBFIX) == g.FIXED else iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
         fx = real(h, 0.0) if fix & g.ALONG_X else getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX]
         fy = real(h, 0.0) if fix & g.ALONG_Y else getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
         force = np.sqrt(fx * fx + fy * fy)
+        total += force
+        if fix & g.ALONG_X == 0 or fix & g.ALONG_Y == 0:
+            count += 1
         if force > largest:
             largest, at = force, ig
         ig = iget(h, ig, g.KG)
-    return largest, at
+    return largest, at, total, count
 
 
 @kernel
-def greatest(h: Memory, soft: Any) -> tuple[float, int]:
+def greatest(h: Memory, soft: Any) -> tuple[float, int, float]:
     """Greatest unbalanced force in the model, of the force sums as they are, and what it acts on.
 
     That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
+    Then the mean over all of these that are free to follow a force.
     """
-    largest, at = real(h, 0.0), int64(0)
+    largest, at, total, count = real(h, 0.0), int64(0), 0.0, int64(0)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
+        fix = iget(h, ib, g.KBFIX)
         if soft is not None and iget(h, ib, HEAD) == g.MFDEF:
-            force, on = point_force(h, ib)
+            force, on, sum_of_points, points = point_force(h, ib)
+            total += sum_of_points
+            count += points
         else:
             force, on = block_force(h, ib), ib
-        if soft is not None and iget(h, ib, HEAD) == g.MSDEF and strain_force(h, ib) > force:
-            force, on = strain_force(h, ib), iget(h, ib, g.KBEX)
+            total += force
+            count += 0 if fix == g.FIXED or fix == g.GIVEN_X + g.GIVEN_Y else 1
+        if soft is not None and iget(h, ib, HEAD) == g.MSDEF:
+            straining = strain_force(h, ib)
+            total += straining
+            count += 0 if fix == g.FIXED else 1
+            if straining > force:
+                force, on = straining, iget(h, ib, g.KBEX)
         if force > largest:
             largest, at = force, on
         ib = iget(h, ib, g.KB)
-    return largest, at
+    return largest, at, total / count if count > 0 else 0.0
 
 
 @kernel
@@ -119,8 +135,8 @@ def put_sums_back(h: Memory, iu: int, words: Any) -> None:
 
 
 @kernel
-def greatest_under_loads(h: Memory) -> tuple[float, int]:
-    """Greatest unbalanced force with the loads of all boundary conditions, and what it acts on."""
+def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
+    """As `greatest`, with the loads of all boundary conditions."""
     n = 0
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:
@@ -134,15 +150,15 @@ def greatest_under_loads(h: Memory) -> tuple[float, int]:
         fx, fy, x, y = load(h, iu)
         push_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, g.KU)
-    largest, at = greatest(h, True)
+    found = greatest(h, True)
     for i in range(n - 1, -1, -1):
         put_sums_back(h, conditions[i], words[i])
-    return largest, at
+    return found
 
 
 @kernel
-def unbalanced(h: Memory, soft: Any) -> tuple[float, int]:
-    """Greatest unbalanced force, and what it acts on as in `greatest`; soft as in run_cycles."""
+def unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
+    """Greatest unbalanced force, what it acts on, and their mean as in `greatest`; soft as in run_cycles."""
     if soft is not None:
         return greatest_under_loads(h)
     return greatest(h, soft)
@@ -168,11 +184,10 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 
 
 @kernel
-def force_ratio(h: Memory, soft: Any) -> float:
-    """Greatest unbalanced force over the mean of the forces that are carried.
+def carried(h: Memory, soft: Any) -> float:
+    """Mean of the forces that are carried; 0 if nothing carries one.
 
     What carries is a contact with a normal force, and a zone or simply-deformable block with a stress.
-    0 if nothing is unbalanced, infinite if something is and no force is carried.
     """
     total, count = real(h, 0.0), real(h, 0.0)
     ic = int64(h.ci[g.ICPNT])
@@ -189,10 +204,26 @@ def force_ratio(h: Memory, soft: Any) -> float:
             total += inner
             count += stressed
             ib = iget(h, ib, g.KB)
-    largest, _ = unbalanced(h, soft)
+    return total / count if total > 0 else real(h, 0.0)
+
+
+@kernel
+def force_ratios(h: Memory, soft: Any) -> tuple[float, float]:
+    """Greatest and mean unbalanced force over the mean of the forces that are carried.
+
+    0 if nothing is unbalanced, infinite if something is and no force is carried.
+    """
+    largest, _, mean = unbalanced(h, soft)
     if largest == 0:
-        return largest
-    return largest * count / total if total > 0 else real(h, np.inf)
+        return 0.0, 0.0
+    usual = carried(h, soft)
+    return (largest / usual, mean / usual) if usual > 0 else (np.inf, np.inf)
+
+
+@kernel
+def force_ratio(h: Memory, soft: Any) -> float:
+    """The greater of the two."""
+    return force_ratios(h, soft)[0]
 
 
 @kernel
@@ -214,3 +245,9 @@ def motion_ratio(h: Memory, soft: Any) -> float:
 def at_rest(h: Memory, ratio: float) -> bool:
     """True if the model is at rest to within `ratio`: the forces are balanced, and little moves."""
     return bool(force_ratio(h, True) <= ratio and motion_ratio(h, True) <= ratio)
+
+
+@apart
+def at_rest_in_mean(h: Memory, ratio: float) -> bool:
+    """The same by the mean unbalanced force."""
+    return bool(force_ratios(h, True)[1] <= ratio and motion_ratio(h, True) <= ratio)

@@ -13,7 +13,8 @@ from udec_ia.heap.accessors import Memory, iget, int64
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.drive.cycle import run_cycles
-from udec_ia.kernels.drive.passes import RECORD, REST
+from udec_ia.kernels.drive.openings import LOOK
+from udec_ia.kernels.drive.passes import OPENINGS, RECORD, REST
 from udec_ia.layout import offsets as g
 
 CHECK = 10  # cycles between two looks at the force ratio
@@ -33,12 +34,12 @@ def until_due(h: Memory, limit: int) -> int:
 
 @kernel
 def run_watched(
-    h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any, passes: Any
+    h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any, marks: Any, passes: Any
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
     laws: three arguments of run_cycles. passes: see drive.passes. places: without rows if nothing is
-    recorded.
+    recorded. marks: of drive.openings, without any if nobody looks at them.
     Stops early when NERR is set, when `rows` is full, and at rest, which is looked at every CHECK cycles of
     the run; to within a negative ratio it never is.
     """
@@ -46,12 +47,16 @@ def run_watched(
     done = 0
     while done < n and count[0] < len(rows):
         ahead = min(int64(n - done), CHECK - h.ci[g.MCTOT] % CHECK) if ratio >= 0 else int64(n - done)
+        if len(marks) > 0:
+            ahead = min(ahead, int64(LOOK - h.ci[g.MCTOT] % LOOK))
         before = h.ci[g.MCTOT]
         asked = until_due(h, ahead) if recorded else ahead
         completed = run_cycles(h, asked, laws[0], laws[1], laws[2], passes)
         done += completed
         if recorded and h.ci[g.MCTOT] > before:
             call_entry(passes[RECORD], h, places, rows, count)
+        if len(marks) > 0 and h.ci[g.MCTOT] > before and h.ci[g.MCTOT] % LOOK == 0:
+            call_entry(passes[OPENINGS], h, marks)
         if completed < asked or h.ci[g.NERR] != 0:
             return done, False
         if ratio >= 0 and h.ci[g.MCTOT] % CHECK == 0 and call_entry(passes[REST], h, ratio):

@@ -155,8 +155,14 @@ def _run(
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
             cycles = ahead(array, min(target - done, runaway.ahead(array.h)))
+            if watch is not None:
+                cycles = min(cycles, watch.ahead())
             given = soft(array), bound.blocks, bound.joints
-            done += run_unwatched(array.h, cycles, given) if watch is None else watch.run(cycles, given)
+            marks = runaway.chatter.marks(array.h, n - done)
+            if watch is None:
+                done += run_unwatched(array.h, cycles, given, marks)
+            else:
+                done += watch.run(cycles, given, marks)
             settled()
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first

@@ -123,6 +123,17 @@ def on_rounding(array: MainArray) -> Iterator[str]:
         )
 
 
+def digit_force(array: MainArray) -> tuple[float, float]:
+    """Force (N/m) of a last digit of a coordinate in the stiffest joint, and that digit (m)."""
+    h = array.h
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    x, y, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO))
+    materials = np.unique(integers(h, blocks, g.KMAT)) - 1
+    stiffness = float(max(h.cr[g.AKN + materials].max(), h.cr[g.AKS + materials].max()))
+    digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
+    return stiffness * digit, digit
+
+
 def on_resolution(array: MainArray) -> Iterator[str]:
     """CYCLE: a last digit of a coordinate that is a force worth speaking of, where the stiffest contact is.
 

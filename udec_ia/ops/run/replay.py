@@ -14,7 +14,7 @@ from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.renewal import ahead, renew
-from udec_ia.ops.run.watch import NEVER, nothing_recorded
+from udec_ia.ops.run.watch import NEVER, NO_MARKS, nothing_recorded
 
 
 class Replay:
@@ -25,7 +25,7 @@ class Replay:
         self._bound = laws.bind(array)
         self._given = soft(array), self._bound.blocks, self._bound.joints
         self._recorded = nothing_recorded()
-        self._passes = passes(array.h, self._given[0], (), NEVER)
+        self._passes = passes(array.h, self._given[0], (), NEVER, False, NO_MARKS)
 
     def step(self, n: int = 1) -> None:
         """`n` cycles. Raises the UdecError that one of them raised in the run."""
@@ -33,10 +33,10 @@ class Replay:
         while done < n:
             h = self.array.h
             cycles = ahead(self.array, n - done)
-            completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, self._passes)
+            completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, NO_MARKS, self._passes)
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
                 renew(self.array)
             if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[THROUGH] == 0:
-                self._passes = passes(self.array.h, self._given[0], (), NEVER)
+                self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

@@ -34,17 +34,19 @@ from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.bounds import power_of_loads
 from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.energy.inertial import energy_of_motion
 from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.run.chatter import JUDGE, Chatter
 from udec_ia.ops.run.rows import Limit
 from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction
 
 OUT_OF_NOWHERE = 37
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
-LOOK, JUDGE = 100, 1000  # cycles between two looks at the energy, and at the contacts made
+LOOK = 100  # cycles between two looks at the energy; JUDGE of them at the contacts made, and at chatter
 OTHER_STEP = 1.05  # step that the bound is found anew for, over that of before
 
 
@@ -70,11 +72,15 @@ class Account:
 
 
 class Runaway:
-    """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last."""
+    """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last.
+
+    chatter: watches its contacts.
+    """
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = Limit(np.inf, 0)
+        self.chatter = Chatter(tell)
         self._judged = (0.0, 0.0, -1)  # step, BETA and contacts made at that time
         self._warned = (0.0, 0.0)  # step and BETA
         self._suspected = self._own_laws = False
@@ -125,6 +131,7 @@ class Runaway:
     def look(self, array: MainArray) -> None:
         """Error 37 if there is more energy than there can be. A run not suspected is judged again."""
         h, account = array.h, self._account
+        self.chatter.judge(array, h.cr[g.TDEL] <= damped(self.safe.step, float(h.cr[g.BETA])))
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
             self.judge(array)
             self.begin(array, self._own_laws)
@@ -161,7 +168,7 @@ def alike(step: float, beta: float, other_step: float, other_beta: float) -> boo
 def stock(h: Memory) -> Stock:
     """What there is now."""
     soft = soft_in(h)
-    moving, _, _ = liveliest(h, soft)
+    moving = liveliest(h, soft)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
     strained = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
     return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(height(h)))
 

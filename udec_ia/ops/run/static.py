@@ -11,15 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import numpy as np
-
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.peaks import halt_all
-from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.settings import set_fraction, set_relaxation
-from udec_ia.ops.common.soft import soft_in
 
 DAMPED = 0.7  # of critical
 SHARE = 0.9  # of the safe time-step
@@ -27,7 +23,6 @@ STATIC = (
     f"STATIC: ADAPTIVE damping {DAMPED:g}, {SHARE:g} of the safe time-step with scaled masses, "
     "for this SOLVE alone"
 )
-SLIPPED = 0.01  # of the strain energy: work of friction from which on the way is said to matter
 INTEGERS = (g.LREST, g.LSAFE, g.LSCALE)
 REALS = (g.RESTF, g.ALPHA, g.ALPB, g.BETA, g.FRAC)
 
@@ -49,17 +44,3 @@ def statically(array: MainArray) -> Iterator[None]:
         lose_relaxations(h)
         h.ci[list(INTEGERS)], h.cr[list(REALS)], h.cd[g.EMOVES] = kept
         h.ci[g.LREADY] = 0
-
-
-def way_taken(array: MainArray, friction: float) -> str:
-    """What to say if friction has taken much since its work was `friction`, in J/m; "" if it has not."""
-    h = array.h
-    taken = float(h.cd[g.WFRIC]) - friction
-    stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
-    if taken <= SLIPPED * stored:
-        return ""
-    share = taken / stored if stored else np.inf
-    return (
-        f"joints have slipped on the way: friction took {taken:.3g} J/m, {share:.1%} of what joints and "
-        "blocks hold now, and where all rests may depend on the way; load in steps, and compare"
-    )

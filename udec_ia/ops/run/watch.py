@@ -7,8 +7,7 @@ comes between the two.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -18,19 +17,23 @@ from udec_ia.kernels.drive.passes import passes
 from udec_ia.kernels.drive.recording import record
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.ops.commands.history import Definition, definitions, places
+from udec_ia.ops.run.unrest import Unrest
 
 ROWS = 1024  # rows that a compiled piece can fill
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
+FAR = 1 << 60  # cycles that no run has
 NEVER = -1.0  # force ratio that is never reached
+NO_MARKS = np.zeros(0, np.uint8)
 NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 
 
-def run_unwatched(h: Memory, n: int, laws: Any) -> int:
+def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
     """Up to `n` cycles that nobody watches, by the same machine code; returns how many were completed.
 
-    laws: see kernels.drive.watch.run_watched.
+    laws, marks: see kernels.drive.watch.run_watched.
     """
-    return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), passes(h, laws[0], (), NEVER))[0])
+    called = passes(h, laws[0], (), NEVER, False, marks)
+    return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
 
 
 def nothing_recorded() -> tuple[Any, Any, Any]:
@@ -108,72 +111,28 @@ class Series:
             self.count += len(new)
 
 
-class Solution(NamedTuple):
-    """How a SOLVE ended.
-
-    wanted: force ratio asked for; ratio: at the end; cycles: how many it took. worst: what is farthest from
-    balance, "" if nothing is out of it. motion: kinetic over strain energy at the end; liveliest: what has
-    most of the kinetic energy, "" if nothing moves.
-    """
-
-    reached: bool
-    wanted: float
-    ratio: float
-    cycles: int
-    worst: str
-    motion: float
-    liveliest: str
-
-    def __bool__(self) -> bool:
-        return self.reached
-
-    def __str__(self) -> str:
-        ratio = f"{self.ratio:.3g}" if np.isfinite(self.ratio) else "without bound, as no force is carried,"
-        if self.reached:
-            return f"force ratio {self.wanted:g} reached: it is {ratio} after {self.cycles} cycles"
-        found = f"force ratio {self.wanted:g} NOT REACHED: it is {ratio} after {self.cycles} cycles"
-        if self.ratio > self.wanted:
-            return f"{found}, most out of balance is {self.worst}{self._advice}"
-        if self.motion > self.wanted:
-            motion = (
-                f"is {self.motion:.3g}"
-                if np.isfinite(self.motion)
-                else "has no bound, nothing being strained"
-            )
-            return (
-                f"{found}, but there is no rest: kinetic over strain energy {motion}, and {self.liveliest} "
-                "has most of it"
-            )
-        return f"{found}, and at least one cycle must show it"
-
-    @property
-    def _advice(self) -> str:
-        """What else to look at: strains that only DAMPING ... INTERNAL brings to rest."""
-        return "; see DAMPING ... INTERNAL" if "strain" in self.worst else ""
-
-
-def unsolved(solutions: Sequence[Solution]) -> list[Solution]:
-    """Those that came to their limit, but for one before a SOLVE that asked for as much: that one tells."""
-    return [
-        one
-        for i, one in enumerate(solutions)
-        if not one and all(later.wanted > one.wanted for later in solutions[i + 1 :])
-    ]
-
-
 class Watch:
     """Runs cycles of `array` and hands what is recorded to `series`.
 
     ratio: to within which there must be rest to stop. reached: True when there was, after a cycle of this
     run: forces are those of the properties, loads and laws of now only when the contacts have been passed
     through with them. lost: those of `series` whose groups were found to have gone since they were last
-    looked at.
+    looked at. mean: the mean unbalanced force counts, not the greatest. unrest: notes what moves on the way.
     """
 
-    def __init__(self, array: MainArray, series: list[Series], ratio: float = NEVER) -> None:
+    def __init__(
+        self,
+        array: MainArray,
+        series: list[Series],
+        ratio: float = NEVER,
+        mean: bool = False,
+        unrest: Unrest | None = None,
+    ) -> None:
         self.array = array
         self.series = series
         self.ratio = float(ratio)  # a kernel is compiled for one type
+        self.mean = mean
+        self.unrest = unrest
         self.reached = False
         self.lost: list[Series] = []
         self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
@@ -186,21 +145,29 @@ class Watch:
         if len(self._places):
             record(self.array.h, self._places, self._rows, self._count)
         self.hand_on()
+        if self.unrest is not None:
+            self.unrest.begin(self.array)
 
-    def run(self, n: int, laws: Any) -> int:
+    def ahead(self) -> int:
+        """Cycles until something is to be noted that no compiled loop notes."""
+        return FAR if self.unrest is None else self.unrest.ahead(self.array.h)
+
+    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
         """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
 
-        laws: see kernels.drive.watch.run_watched.
+        laws, marks: see kernels.drive.watch.run_watched.
         """
         h, done, full = self.array.h, 0, True
         recorded = self._places, self._rows, self._count
-        called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio)
+        called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio, self.mean, marks)
         while done < n and full:
             try:
-                completed, self.reached = run_watched(h, n - done, laws, self.ratio, *recorded, called)
+                completed, self.reached = run_watched(h, n - done, laws, self.ratio, *recorded, marks, called)
             finally:
                 full = self.hand_on() == ROWS
             done += int(completed)
+        if self.unrest is not None:
+            self.unrest.note(self.array)
         return done
 
     def look(self) -> None:

@@ -1,0 +1,43 @@
+"""What damps, how much and on what: for remarks, and for what is said of a run that does not come to rest."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+
+WORDS = {
+    g.LOCAL: "LOCAL damping takes {f:g} of every unbalanced force",
+    g.COMBINED: "COMBINED damping takes {f:g} of every unbalanced force that swings",
+    g.KINETIC: "KINETIC damping stops all when the kinetic energy has passed a peak",
+    g.ADAPTIVE: "ADAPTIVE damping is {f:g} of critical for what still moves",
+}
+
+
+def has_dashpots(h: Memory) -> bool:
+    """True if boundary conditions are viscous."""
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    return bool(len(bounds)) and any(bool(np.any(getr(h, bounds, k))) for k in (g.KUCXX, g.KUCYY))
+
+
+def what_damps(h: Memory) -> list[str]:
+    """Each kind of damping that acts, with its numbers and on what."""
+    found = []
+    if h.ci[g.LREST]:
+        found.append(WORDS[int(h.ci[g.LREST])].format(f=float(h.cr[g.RESTF])))
+    elif h.cr[g.ALPHA]:
+        found.append(f"MASS damping takes ALPHA = {h.cr[g.ALPHA]:.3g} 1/s of every velocity")
+    if h.cr[g.BETA]:
+        found.append(f"STIFFNESS damping, BETA = {h.cr[g.BETA]:.3g} s, acts on contacts that do not slip")
+    if h.cr[g.ALPB]:
+        found.append(f"INTERNAL damping takes {h.cr[g.ALPB]:.3g} 1/s of the strain rates of SDEF blocks")
+    if has_dashpots(h):
+        found.append("dashpots of BOUNDARY act where they are")
+    return found
+
+
+def fraction_of_critical(h: Memory, w: float) -> float:
+    """Of Rayleigh damping, for what swings at `w` (rad/s)."""
+    return float(h.cr[g.ALPHA]) / (2 * w) + float(h.cr[g.BETA]) * w / 2 if w > 0 else 0.0

@@ -1,0 +1,266 @@
+"""What keeps a SOLVE from rest, or has spoilt the rest that it found: told from where blocks were on the way.
+
+On the way the places of all blocks are noted, evenly spread and KEPT times at most. The last two quarters of
+them are compared. With d the displacements in a quarter, d' those in the one before, sums over blocks
+weighted with their masses,
+
+    share     of the kinetic energy in displacement, (sum m d d/2)/T T over it: 1 for what moves one way
+    steady    (sum m d d')/sqrt(sum m d d  sum m d' d'): 1 for what goes on in the same direction
+    growth    sqrt(sum m d d/sum m d' d'): above 1 for what moves ever faster
+
+tell what moves on from what swings about its place. What moves on collapses, creeps, or settles; of what
+swings, contacts may chatter, the energy may fall or not, or the last digit of the coordinates is all that
+moves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.drive.unbalanced import carried
+from udec_ia.kernels.energy.stored import liveliest, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
+from udec_ia.ops.run.damped import what_damps
+from udec_ia.ops.run.remarks import digit_force
+
+FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
+ENOUGH = 8  # looks, without which nothing is said of what goes on
+ONE_WAY, STEADY = 0.3, 0.5  # share and steady from which on blocks move on
+FASTER, SLOWER = 1.15, 0.87  # growth of what collapses, and of what settles
+FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
+SLIPPED = 0.01  # of the strain energy: work of friction from which on the way is said to matter
+AHEAD = 10_000  # cycles for which what still moves at rest is judged
+NAMED = 3  # blocks that are named
+STATES = (
+    "collapse",
+    "creep",
+    "settles",
+    "chatter",
+    "swings",
+    "last digits",
+    "still moves",
+    "joints slipped",
+)
+
+
+class Look(NamedTuple):
+    """cycle; x, y: centroids of all blocks; moving: kinetic energy; friction: its work until then, in J/m."""
+
+    cycle: int
+    x: Any
+    y: Any
+    moving: float
+    friction: float
+
+
+class Motion(NamedTuple):
+    """The last two quarters of what was noted; see above. by: how far each block has moved in the last."""
+
+    cycles: int
+    by: Any
+    share: float
+    steady: float
+    growth: float
+    fall: float  # kinetic energy over that of the quarter before
+
+
+class Unrest:
+    """Notes the way of one SOLVE."""
+
+    def __init__(self) -> None:
+        self.looks: list[Look] = []
+        self.every = FIRST
+        self._blocks: Any = np.zeros(0, np.int64)
+
+    def begin(self, array: MainArray) -> None:
+        """The state before the first cycle, blocks being where they will stay."""
+        self._blocks = addresses(array.h, int(array.h.ci[g.IBPNT]), g.KB)
+        self.looks, self.every = [], FIRST
+        self.note(array)
+
+    def ahead(self, h: Memory) -> int:
+        """Cycles until the next look."""
+        return self.every - (int(h.ci[g.MCTOT]) - self.looks[0].cycle) % self.every
+
+    def note(self, array: MainArray) -> None:
+        """Look, if it is time to."""
+        h = array.h
+        cycle = int(h.ci[g.MCTOT])
+        if self.looks and (cycle == self.looks[-1].cycle or self.ahead(h) != self.every):
+            return
+        x, y = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KX, g.KY))
+        moving = float(liveliest(h, soft_in(h))[0])
+        self.looks.append(Look(cycle, x, y, moving, float(h.cd[g.WFRIC])))
+        if len(self.looks) > KEPT:
+            self.looks, self.every = self.looks[::2], 2 * self.every
+
+    def motion(self, h: Memory) -> Motion | None:
+        """The last two quarters; None if there are too few looks."""
+        n = len(self.looks) - 1
+        if n < ENOUGH:
+            return None
+        q = n // 4
+        a, b, c = (self.looks[k] for k in (n - 2 * q, n - q, n))
+        free = integers(h, self._blocks, g.KBFIX) != g.FIXED
+        m = np.where(free, np.asarray(getr(h, self._blocks, g.KBM), np.float64), 0.0)
+        (dx, dy), (ex, ey) = ((two.x - one.x, two.y - one.y) for one, two in ((b, c), (a, b)))
+        now, before, both = (float((m * s).sum()) for s in (dx**2 + dy**2, ex**2 + ey**2, dx * ex + dy * ey))
+        energy, earlier = (
+            float(np.mean([one.moving for one in self.looks[k : k + q]])) for k in (n + 1 - q, n + 1 - 2 * q)
+        )
+        time = (c.cycle - b.cycle) * float(h.cr[g.TDEL])
+        return Motion(
+            c.cycle - b.cycle,
+            np.where(free, np.hypot(dx, dy), 0.0),
+            now / time**2 / 2 / energy if energy > 0 else 0.0,
+            both / math.sqrt(now * before) if now * before > 0 else 0.0,
+            math.sqrt(now / before) if before > 0 else math.inf,
+            energy / earlier if earlier > 0 else 1.0,
+        )
+
+    def explain(self, array: MainArray, reached: bool, wanted: float, chatter: Chatter) -> tuple[str, str]:
+        """One of STATES and a sentence; two empty ones if there is nothing to be said."""
+        motion = self.motion(array.h)
+        if reached:
+            said = self._still(array.h, motion) if motion else ""
+            if said:
+                return "still moves", said
+            said = self._slipped(array.h)
+            return ("joints slipped", said) if said else ("", "")
+        if motion is None:
+            return "", ""
+        if chatter.share >= SHARE and chatter.judged > self.looks[0].cycle:
+            return "chatter", self._chatters(array.h, motion, chatter)
+        if motion.share > ONE_WAY and motion.steady > STEADY:
+            return self._moves_on(array.h, motion)
+        return self._swings(array, motion, wanted)
+
+    # ---- not reached
+
+    def _chatters(self, h: Memory, motion: Motion, chatter: Chatter) -> str:
+        moved = f", and {self._named(h, motion)}" if motion.by.max() > 0 else ""
+        return (
+            f"contacts chatter: {chatter.share:.0%} of those that bear a force open and close again and "
+            f"again, most of all {chatter.place}{moved}; DAMPING LOCAL 0.8, or a smaller KN"
+        )
+
+    def _moves_on(self, h: Memory, motion: Motion) -> tuple[str, str]:
+        moved = self._named(h, motion)
+        slipping = at_strength(h)
+        slip = (
+            f", and {len(slipping)} contacts slip at their strength, as {place_of(h, int(slipping[0]))} does"
+            if len(slipping)
+            else ""
+        )
+        if motion.growth > FASTER:
+            return "collapse", (
+                f"it collapses: {moved}, {motion.growth:.1f} times as far as in the {motion.cycles} "
+                f"before{slip}; more strength or a support would hold it, CYCLE shows where it goes"
+            )
+        if motion.growth < SLOWER:
+            return "settles", (
+                f"it slows down: {moved}, {motion.growth:.2f} of the way of the {motion.cycles} "
+                f"before{slip}; take more cycles (LIMIT)"
+            )
+        return "creep", (
+            f"it creeps at a steady pace: {moved}{slip}; more cycles change nothing: the strength or a "
+            "support is lacking, and damping alone holds the speed down"
+        )
+
+    def _swings(self, array: MainArray, motion: Motion, wanted: float) -> tuple[str, str]:
+        h = array.h
+        force, digit = digit_force(array)
+        if force > wanted * float(carried(h, soft_in(h))) and motion.by.max() < 100 * digit:
+            return "last digits", (
+                f"the last digit of coordinates, {digit:.2g} m, is a force of {force:.3g} N/m in stiff "
+                "joints: the reals allow no smaller ratio; take reals of 64 bits or a nearer origin"
+            )
+        if motion.fall < FALLS:
+            tenth = motion.cycles * math.log(10) / -math.log(max(motion.fall, 1e-9))
+            return "settles", (
+                f"it is on its way to rest: the kinetic energy falls to a tenth in about "
+                f"{round(tenth, -1):.0f} cycles; take more of them (LIMIT), or SOLVE {wanted:g} STATIC"
+            )
+        damping = "; ".join(what_damps(h)) or "nothing damps"
+        return "swings", (
+            f"it swings about its place, and does not lose energy: {damping}; DAMPING LOCAL 0.8 damps at any "
+            f"frequency, and so does SOLVE {wanted:g} STATIC"
+        )
+
+    def _named(self, h: Memory, motion: Motion) -> str:
+        """How many blocks move, which do most, and how far they came in the last quarter."""
+        order = np.argsort(-motion.by, kind="stable")
+        many = int((motion.by > motion.by.max() / 10).sum())
+        parts = [
+            f"block@{self._blocks[k]} at ({getr(h, int(self._blocks[k]), g.KX):.4g}, "
+            f"{getr(h, int(self._blocks[k]), g.KY):.4g}) by {motion.by[k]:.2g} m"
+            for k in order[: min(many, NAMED)]
+        ]
+        blocks = "1 block has" if many == 1 else f"{many} blocks have"
+        return f"{blocks} moved in the last {motion.cycles} cycles, {', '.join(parts)}"
+
+    # ---- reached
+
+    def _still(self, h: Memory, motion: Motion) -> str:
+        """What is said if blocks go on as fast as before, and would get somewhere."""
+        usual = overlap(h)
+        if motion.steady < 0.9 or motion.growth < 0.9 or motion.share < ONE_WAY:
+            return ""
+        if not float(motion.by.max()) * AHEAD / motion.cycles > usual:
+            return ""
+        named = self._named(h, motion)
+        return f"and yet it moves on, as fast as before: {named}; a smaller ratio would not be reached"
+
+    def _slipped(self, h: Memory) -> str:
+        """What is said if friction has taken much on the way."""
+        taken = float(h.cd[g.WFRIC]) - self.looks[0].friction
+        stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
+        if taken <= SLIPPED * stored:
+            return ""
+        share = taken / stored if stored else np.inf
+        return (
+            f"joints have slipped on the way{slipped_farthest(h)}: friction took {taken:.3g} J/m, "
+            f"{share:.1%} of what joints and blocks hold now, and where all rests may depend on the way; "
+            "load in steps, and compare"
+        )
+
+
+def _closed(h: Memory) -> tuple[Any, Any, Any, Any]:
+    """Contacts that bear a force: addresses, normal and shear forces, places of their materials."""
+    contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
+    contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+    fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
+    return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
+
+
+def overlap(h: Memory) -> float:
+    """Mean overlap of the contacts that bear a force; 0 if none does."""
+    _, fn, _, m = _closed(h)
+    return float(np.mean(fn / h.cr[g.AKN + m])) if len(fn) else 0.0
+
+
+def at_strength(h: Memory) -> Any:
+    """Contacts whose shear force is their strength, the most loaded one first."""
+    contacts, fn, fs, m = _closed(h)
+    slipping = np.abs(fs) >= 0.999 * (h.cr[g.COH + m] + h.cr[g.AMU + m] * fn)
+    order = np.argsort(-fn[slipping], kind="stable")
+    return contacts[slipping][order]
+
+
+def slipped_farthest(h: Memory) -> str:
+    """The contact that has slipped farthest since it closed: what its spring does not hold of its shear."""
+    contacts, _, fs, m = _closed(h)
+    if not len(contacts):
+        return ""
+    held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
+    slip = np.abs(np.asarray(getr(h, contacts, g.KCS), np.float64) - held)
+    k = int(slip.argmax())
+    return f", {place_of(h, int(contacts[k]))} by {slip[k]:.2g} m in all"
