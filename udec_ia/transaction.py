@@ -87,13 +87,14 @@ def looking(method: Method[P, R]) -> Method[P, R]:
 def _unsettling(method: Method[P, R], words: bool = False) -> Method[P, R]:
     """The next CYCLE finds masses and time-step anew. Obeyed once more, the method says so again.
 
-    words: blocks may change, and what was made of them for the last CYCLE is given back.
+    words: blocks may change, and what was made of them for the last CYCLE is given back. In a heap that is
+    unsound its list may lead anywhere: it stays, and the method refuses to follow lists, or mends some word.
     """
 
     @wraps(method)
     def unsettles(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         model.array.h.ci[g.LREADY] = 0
-        if words and model.array.h.ci[g.IRXPNT]:
+        if words and model.array.h.ci[g.IRXPNT] and model.is_sound():
             lose_relaxations(model.array.h)
         return method(model, *args, **named)
 

@@ -22,7 +22,8 @@ def test_what_faces_away_from_an_arc_stands_at_its_nearer_end(turn: float) -> No
     with np.errstate(all="ignore"):
         o = outlines(State(m.array))
     assert o is not None
-    right = np.flatnonzero(np.abs(o.e - (c, s)).max(axis=1) < 1e-9)  # corners at the end of the right edges
+    normals = o.normal(np.arange(len(o.p)))
+    right = np.flatnonzero(np.abs(normals - (c, s)).max(axis=1) < 1e-9)  # corners at the end of right edges
     assert len(right) == 2
     one = np.zeros(1, np.int64)
     touch = Touches(one, one + g.CORNER_EDGE, right[:1], right[1:], one * 0.0, o.p[right[:1]], one * 0.0)

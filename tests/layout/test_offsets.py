@@ -234,12 +234,12 @@ SCRIPT = """
 from udec_ia.layout import offsets as g
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.jit import CACHE
+from udec_ia.heap.jit import cache_folder
 from udec_ia.heap.memory import find
 from udec_ia.heap.probe import probe
 from udec_ia.heap.words import scheme
 
-kept = any(CACHE.rglob("*.nbc"))
+kept = any(cache_folder().rglob("*.nbc"))
 h = MainArray(scheme("i32r64")).h
 iad = find(h, g.NVBL)
 putr(h, iad, g.KX, 7.5)

@@ -260,3 +260,16 @@ def test_json_and_python_of_check(model: Model, capsys: pytest.CaptureFixture[st
         str(one) for one in found
     ]
     assert table(look_into(path), "block")["address"].any()
+
+
+def test_the_list_of_relaxations_is_followed_only_when_it_is_sound(model: Model, tmp_path: Path) -> None:
+    """A command that gives them back would follow it first of all."""
+    model.h.ci[g.IRXPNT] = 10**8
+    model.save(tmp_path / "bent.h5", force=True)
+    model.restart(tmp_path / "bent.h5", force=True)
+    for change in (lambda: model.delete(2, 3, 0, 1), lambda: model.fix(-9, 9, -9, 9)):
+        with pytest.raises(UdecError, match="IRXPNT"):
+            change()
+    model.rset(1.0, int(table(model.array, "block")["address"][0]), 7)
+    model.h.ci[g.IRXPNT] = 0
+    assert model.is_sound()

@@ -18,11 +18,11 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
-from numba.extending import overload
 
 from udec_ia.heap.checked import WITH_HEAD, offset
 from udec_ia.heap.checked import at_offset as at_offset
 from udec_ia.heap.guarding import guarded
+from udec_ia.heap.loading import has_numba_side
 from udec_ia.heap.views import Memory as Memory
 
 Offset = tuple[int, int, int]  # and more in the checked build: checked.py
@@ -36,12 +36,6 @@ int64 = cast(Callable[[Any], int], np.int64)
 def _which(h: Any) -> int:
     """Index into an offset tuple: 0, 1, 2 for 1, 2, 4 integers to a real."""
     return int(h.ra.itemsize // h.ia.itemsize) >> 1
-
-
-def which_type(h: Any) -> tuple[int, int]:
-    """The same for the compiled type of `h`, and by how many bits a word's address is a real's."""
-    ratio = h.dtypes[1].bitwidth // h.dtypes[0].bitwidth
-    return ratio >> 1, ratio.bit_length() - 1
 
 
 def iget(h: Memory, iad: Address, k: Offset, i: int = 0) -> int:
@@ -81,64 +75,6 @@ def real(h: Memory, value: float) -> Any:
     return h.cr.dtype.type(value)
 
 
-@overload(iget)
-def _iget(h, iad, k, i=0):
-    j, _ = which_type(h)
-
-    def impl(h, iad, k, i=0):
-        return np.int64(h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)])
-
-    return impl
-
-
-@overload(puti)
-def _puti(h, iad, k, n, i=0):
-    j, _ = which_type(h)
-
-    def impl(h, iad, k, n, i=0):
-        h.ia[np.uint64(iad) + np.uint64(k[j] - 1) + np.uint64(i)] = n
-
-    return impl
-
-
-@overload(getr)
-def _getr(h, iad, k):
-    j, shift = which_type(h)
-
-    def impl(h, iad, k):
-        return h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)]
-
-    return impl
-
-
-@overload(putr)
-def _putr(h, iad, k, v):
-    j, shift = which_type(h)
-
-    def impl(h, iad, k, v):
-        h.ra[(np.uint64(iad - 1) >> np.uint64(shift)) + np.uint64(k[j] - 1)] = v
-
-    return impl
-
-
-@overload(size_of)
-def _size_of(h, nv):
-    j, _ = which_type(h)
-
-    def impl(h, nv):
-        return nv[j]
-
-    return impl
-
-
-@overload(real)
-def _real(h, value):
-    kind = h.dtypes[3]
-
-    def impl(h, value):
-        return kind(value)
-
-    return impl
-
-
+PLAIN = iget, puti, getr, putr
 iget, puti, getr, putr = guarded(iget, puti, getr, putr)
+has_numba_side(__name__)

@@ -7,48 +7,15 @@ than all its arithmetic. A fetch has no other effect: any address will do, and i
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic, overload
-
-from udec_ia.heap.accessors import Address, Offset, which_type
-from udec_ia.heap.array import LINE
+from udec_ia.heap.accessors import Address, Offset
+from udec_ia.heap.loading import has_numba_side
 from udec_ia.heap.views import Memory
 
 LEAD = 16  # groups by which a pass looks ahead
-READ, KEEP, DATA = 0, 3, 1  # what llvm.prefetch wants to know: to be read, often, no instructions
 
 
 def fetch(h: Memory, iad: Address, nv: Offset, beyond: int = 0) -> None:
     """Fetch the group of size `nv` (NVBL, NVCR, ...) that lies `beyond` such groups after address `iad`."""
 
 
-@intrinsic
-def _prefetch(typing: Any, array: Any, index: Any) -> Any:
-    """The machine's instruction for it, for element `index` of `array`."""
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        place = builder.gep(args[0], [args[1]])
-        number = ir.IntType(32)
-        kind = ir.FunctionType(ir.VoidType(), [place.type, number, number, number])
-        instruction = builder.module.declare_intrinsic("llvm.prefetch", [place.type], kind)
-        builder.call(instruction, [place, *(number(n) for n in (READ, KEEP, DATA))])
-        return context.get_dummy_value()
-
-    return types.void(array, types.int64), generate
-
-
-@overload(fetch)
-def _fetch(h: Any, iad: Any, nv: Any, beyond: Any = 0) -> Callable[..., Any]:
-    j, _ = which_type(h)
-    step = LINE * 8 // h.dtypes[0].bitwidth
-
-    def impl(h: Any, iad: Any, nv: Any, beyond: Any = 0) -> None:
-        first = iad - 1 + beyond * nv[j]
-        for word in range(0, nv[j], step):
-            _prefetch(h.ia, first + word)
-
-    return impl
+has_numba_side(__name__)

@@ -15,8 +15,6 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
-from numba.extending import register_jitable
-
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
@@ -50,7 +48,7 @@ def _checked_at_offset(k: int, kind: int, own: Any) -> Any:
     return k, k, k, kind, 1, UNNAMED, own[ROUTINE]
 
 
-at_offset = register_jitable(_checked_at_offset if CHECKED else _at_offset)
+at_offset = _checked_at_offset if CHECKED else _at_offset
 
 
 def _lengthen() -> None:

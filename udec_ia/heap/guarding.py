@@ -12,8 +12,6 @@ from functools import update_wrapper
 from typing import Any
 
 import numpy as np
-from numba import types
-from numba.extending import overload, register_jitable, typeof_impl
 
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.checked import (
@@ -31,6 +29,7 @@ from udec_ia.heap.checked import (
     of_routine,
 )
 from udec_ia.heap.kinds import enter, leave, shadow
+from udec_ia.heap.loading import has_numba_side
 from udec_ia.heap.views import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
@@ -52,8 +51,7 @@ class _Inside:
     kernel = False
 
 
-@register_jitable
-def _look(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
+def judge(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
     """Refused unless a group that has the field `k` begins at `iad`, and `i` is one of its elements."""
     top: Any = h.ci[g.MFREE]
     good: Any = False
@@ -74,15 +72,7 @@ def _look(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
 def look(h: Memory, iad: int, k: Any, i: int, writes: int) -> None:
     """The same within a kernel; what reads the heap from outside of them has tests of its own."""
     if _Inside.kernel:
-        _look(h, iad, k, i, writes)
-
-
-@overload(look)
-def _compiled_look(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> Callable[..., None]:
-    def impl(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> None:
-        _look(h, iad, k, i, writes)
-
-    return impl
+        judge(h, iad, k, i, writes)
 
 
 def guarded(*plain: Any) -> tuple[Any, ...]:
@@ -91,22 +81,18 @@ def guarded(*plain: Any) -> tuple[Any, ...]:
         return plain
     plain_iget, plain_puti, plain_getr, plain_putr = plain
 
-    @register_jitable
     def iget(h: Memory, iad: int, k: Any, i: int = 0) -> Any:
         look(h, iad, k, i, 0)
         return plain_iget(h, iad, k, i)
 
-    @register_jitable
     def puti(h: Memory, iad: int, k: Any, n: int, i: int = 0) -> None:
         look(h, iad, k, i, 1)
         plain_puti(h, iad, k, n, i)
 
-    @register_jitable
     def getr(h: Memory, iad: int, k: Any) -> Any:
         look(h, iad, k, 0, 0)
         return plain_getr(h, iad, k)
 
-    @register_jitable
     def putr(h: Memory, iad: int, k: Any, v: Any) -> None:
         look(h, iad, k, 0, 1)
         plain_putr(h, iad, k, v)
@@ -127,36 +113,18 @@ def ends(h: Memory, iad: int, nv: Any) -> None:
         h.kinds[iad - 1] = SPARE
 
 
-@overload(begins)
-def _begins(h: Any, iad: Any, nv: Any) -> Callable[..., None]:
-    def checked(h: Any, iad: Any, nv: Any) -> None:
-        h.kinds[iad - 1] = nv[KIND]
-
-    def nothing(h: Any, iad: Any, nv: Any) -> None:
-        pass
-
-    return checked if CHECKED else nothing
-
-
-@overload(ends)
-def _ends(h: Any, iad: Any, nv: Any) -> Callable[..., None]:
-    def checked(h: Any, iad: Any, nv: Any) -> None:
-        _look(h, iad, nv, 0, 1)
-        h.kinds[iad - 1] = SPARE
-
-    def nothing(h: Any, iad: Any, nv: Any) -> None:
-        pass
-
-    return checked if CHECKED else nothing
-
-
 class Guarded:
     """A kernel of the checked build. Called from Python it ends in Astray where an access is refused."""
 
     def __init__(self, made: Any, function: Callable[..., Any], number: int) -> None:
         update_wrapper(self, function)
         self.number = number
-        self.made, self.whole = made, getattr(made, "whole", made)
+        self.made = made
+
+    @property
+    def whole(self) -> Any:
+        """What is compiled of it."""
+        return self.made.whole
 
     def __call__(self, *args: Any) -> Any:
         h = next((one for one in args if isinstance(one, Memory)), None)
@@ -172,13 +140,6 @@ class Guarded:
         finally:
             _Inside.kernel = False
             leave(h)
-
-
-@typeof_impl.register(Guarded)
-def _type_of(kernel: Guarded, context: Any) -> Any:
-    """To other kernels it is what it guards."""
-    found = typeof_impl(kernel.made, context)
-    return found if found is not None else types.Dispatcher(kernel.made)
 
 
 def astray(h: Memory) -> Astray:
@@ -224,3 +185,6 @@ def _there(h: Memory, iad: int) -> str:
     kind = _kind(h, first)
     size = sizes[kind].size if kind in sizes else int(h.ia[first])
     return f"a word of {kind}@{first}" if iad < first + size else "no group"
+
+
+has_numba_side(__name__)

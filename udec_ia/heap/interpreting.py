@@ -15,9 +15,8 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from numba.core import config
 
-from udec_ia.heap.plain import wanted
+from udec_ia.heap.loading import DISABLED
 from udec_ia.heap.views import Memory
 
 Tell = Callable[[str, Any, Any, bool], None]
@@ -26,7 +25,7 @@ Tell = Callable[[str, Any, Any, bool], None]
 class _Mode:
     """python: kernels that are called run as Python."""
 
-    python = bool(config.DISABLE_JIT)
+    python = DISABLED
 
 
 mode = _Mode()
@@ -34,9 +33,7 @@ mode = _Mode()
 
 @contextmanager
 def interpreted() -> Iterator[None]:
-    """Within, kernels run as Python. NotImplementedError where they were made without linking.py."""
-    if wanted() and not config.DISABLE_JIT:
-        raise NotImplementedError("kernels of UDEC_LINK=plain are compiled only: set NUMBA_DISABLE_JIT=1")
+    """Within, kernels run as Python."""
     before, mode.python = mode.python, True
     try:
         with np.errstate(all="ignore"):  # as compiled code does

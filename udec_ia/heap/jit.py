@@ -1,4 +1,4 @@
-"""The one decorator that compiles a kernel, and where its compiled form is kept.
+"""The one decorator that makes a kernel, and where its compiled form is kept.
 
 numba's cache on disk looks at the kernel's own file only: change an offset, or a function that the
 kernel calls, and it would go on running the old machine code. So the cache lives in a directory
@@ -10,27 +10,26 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
+from functools import cache, cached_property, update_wrapper
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numba
-from numba.core import config
-from platformdirs import user_cache_dir
-
 from udec_ia.heap.checked import CHECKED, named
 from udec_ia.heap.guarding import Guarded
-from udec_ia.heap.plain import plain_kernel, wanted
+from udec_ia.heap.interpreting import mode
+from udec_ia.heap.loading import DISABLED, has_numba_side, load
 from udec_ia.layout import offsets as g
-
-if not wanted():
-    from udec_ia.heap.linking import Kernel
 
 F = TypeVar("F", bound=Callable[..., Any])
 PACKAGE = Path(__file__).parent.parent
 
 
 def _cache_home() -> Path:
-    return Path(os.environ.get("UDEC_CACHE", user_cache_dir("udec_ia", appauthor=False)))
+    if "UDEC_CACHE" in os.environ:
+        return Path(os.environ["UDEC_CACHE"])
+    from platformdirs import user_cache_dir
+
+    return Path(user_cache_dir("udec_ia", appauthor=False))
 
 
 def source_digest() -> str:
@@ -42,34 +41,68 @@ def source_digest() -> str:
     return digest.hexdigest()
 
 
-BUILD = ("-plain" if wanted() else "") + ("-checked" if CHECKED else "")
-CACHE = _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{BUILD}"
+@cache
+def cache_folder() -> Path:
+    """Where what is compiled by these sources is kept."""
+    import numba
+
+    from udec_ia.heap.plain import wanted
+
+    build = ("-plain" if wanted() else "") + ("-checked" if CHECKED else "")
+    return _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{build}"
+
+
+class Kernel:
+    """A kernel: compiled when it is first called, or run as Python where kernels are (interpreting.py).
+
+    inline, apart: as `inlined` and `apart` say.
+    """
+
+    def __init__(self, function: Callable[..., Any], inline: bool, apart: bool) -> None:
+        update_wrapper(self, function)
+        self.py_func, self.inline, self.apart = function, inline, apart
+
+    def __call__(self, *args: Any) -> Any:
+        if mode.python:
+            return self.py_func(*args)
+        return self.whole(*args)
+
+    @cached_property
+    def made(self) -> Any:
+        """What numba makes of it, for each types of arguments when they first come.
+
+        No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
+        follows IEEE 754 instead of raising.
+        """
+        load()
+        from numba.core import config
+
+        from udec_ia.heap.plain import plain_kernel, wanted
+
+        layer = Path(self.py_func.__code__.co_filename).parent.name  # two may have a file of the same name
+        folder = cache_folder() / layer
+        kept, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
+        try:
+            if wanted():
+                return plain_kernel(self.py_func, folder, error_model="numpy", forceinline=self.inline)
+            from udec_ia.heap.linking import Forms
+
+            return Forms(self.py_func, folder, self.apart, error_model="numpy", forceinline=self.inline)
+        finally:
+            config.CACHE_DIR = kept
+
+    @cached_property
+    def whole(self) -> Any:
+        """That which Python calls."""
+        return getattr(self.made, "whole", self.made)
 
 
 def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
-    """Compile `function` on first use, for the word scheme of the arrays it is called with.
-
-    No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
-    follows IEEE 754 instead of raising.
-    """
+    """Have `function` compiled on first use, for the word scheme of the arrays it is called with."""
     if CHECKED:
         own, number = named(function)
-        return cast(F, Guarded(_compiled(own, inline, apart), own, number))
-    return cast(F, _compiled(function, inline, apart))
-
-
-def _compiled(function: Callable[..., Any], inline: bool, apart: bool) -> Any:
-    if config.DISABLE_JIT:
-        return function
-    layer = Path(function.__code__.co_filename).parent.name  # two of them may have a file of the same name
-    kept = config.CACHE_DIR
-    config.CACHE_DIR = str(CACHE)
-    try:
-        if wanted():
-            return plain_kernel(function, CACHE / layer, error_model="numpy", forceinline=inline)
-        return Kernel(function, CACHE / layer, apart, error_model="numpy", forceinline=inline)
-    finally:
-        config.CACHE_DIR = kept
+        return cast(F, Guarded(own if DISABLED else Kernel(own, inline, apart), own, number))
+    return function if DISABLED else cast(F, Kernel(function, inline, apart))
 
 
 def inlined(function: F) -> F:
@@ -80,3 +113,6 @@ def inlined(function: F) -> F:
 def apart(function: F) -> F:
     """A kernel that is not taken in by others, which call it where it is: see heap/apart.py."""
     return kernel(function, apart=True)
+
+
+has_numba_side(__name__)

@@ -12,7 +12,6 @@ A part is made once for the types of its arguments, not once more for every lite
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import update_wrapper
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,6 @@ from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
 from udec_ia.heap.compiling import compiling
-from udec_ia.heap.interpreting import mode
 from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
@@ -90,14 +88,13 @@ class _WholeCompiler(_KernelCompiler):
             return super().compile_extra(function)
 
 
-class Kernel:
+class Forms:
     """A compiled function in both its forms: called from Python it is whole, from a kernel a part.
 
     folder: where the machine code of the whole is kept. apart: kernels call the whole, too, by its address.
     """
 
     def __init__(self, function: Callable[..., Any], folder: Path, apart: bool = False, **flags: Any) -> None:
-        update_wrapper(self, function)
         self.whole = njit(cache=True, no_cfunc_wrapper=not apart, pipeline_class=_WholeCompiler, **flags)(
             function
         )
@@ -105,11 +102,6 @@ class Kernel:
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
         )(function)
-
-    def __call__(self, *args: Any) -> Any:
-        if mode.python:
-            return self.whole.py_func(*args)
-        return self.whole(*args)
 
 
 class _KernelType(types.Dispatcher):
@@ -127,6 +119,6 @@ class _KernelType(types.Dispatcher):
 register_model(_KernelType)(models.OpaqueModel)
 
 
-@typeof_impl.register(Kernel)
-def _type_of(kernel: Kernel, _: Any) -> _KernelType:
-    return _KernelType(kernel.part)
+@typeof_impl.register(Forms)
+def _type_of(forms: Forms, _: Any) -> _KernelType:
+    return _KernelType(forms.part)

@@ -110,6 +110,14 @@ class State(Session):
         if (sound and self._touched) or (shapes and self._unproved):
             self._prove()
 
+    def is_sound(self) -> bool:
+        """True if routines may follow the lists of the heap; proved, if words have been written to."""
+        try:
+            self._ready()
+        except UdecError:
+            return False
+        return True
+
     def _prove(self, whole: bool = False) -> None:
         """Error 20 with the first violation of links, numbers or outlines that could mislead a routine.
 

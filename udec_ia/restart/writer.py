@@ -12,10 +12,10 @@ import io
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from importlib import metadata
 from pathlib import Path
 
 import h5py
-import numba
 import numpy as np
 
 from udec_ia.files import put_in_place
@@ -157,7 +157,7 @@ def _write_provenance(file: h5py.File) -> None:
     attrs["udec_ia"] = text(__version__)
     attrs["python"] = text(platform.python_version())
     attrs["numpy"] = text(np.__version__)
-    attrs["numba"] = text(numba.__version__)
+    attrs["numba"] = text(metadata.version("numba"))
     attrs["h5py"] = text(h5py.__version__)
     attrs["hdf5"] = text(h5py.version.hdf5_version)
 

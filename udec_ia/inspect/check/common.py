@@ -6,6 +6,7 @@ import numpy as np
 
 from udec_ia.errors import MESSAGES
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.interpreting import interpreted
 from udec_ia.inspect.check.groups import Violation
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
@@ -16,7 +17,8 @@ def check_common(array: MainArray) -> list[Violation]:
     ci, cr, first, last = array.h.ci, array.h.cr, g.AT_BLOCKS, g.AT_WAYS
     size, d = len(array.h.ia), cr[g.DTOL]
     tolerances = cr.copy()
-    tolset(array.h._replace(cr=tolerances), d)
+    with interpreted():  # to load what is compiled takes longer
+        tolset(array.h._replace(cr=tolerances), d)
     alike = np.allclose(tolerances, cr, rtol=4 * np.finfo(cr.dtype).eps, atol=0, equal_nan=True)
     ended = ci[g.NSPOIL]
     trusted = [

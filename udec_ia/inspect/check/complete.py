@@ -17,7 +17,7 @@ tip between them, thinner than the overlaps on its two sides: it hands on the fo
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from math import hypot, isqrt
 
@@ -27,6 +27,7 @@ from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot, length
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
+Sides = Sequence[Numbers] | Numbers  # x and y
 Meetings = tuple[Numbers, Numbers, Numbers, Numbers]  # corner of an arc, the other corner, point, overlap
 
 CHUNK = 10_000  # pairs of blocks looked at together
@@ -47,22 +48,29 @@ class Joined:
         pair = self._key(one, two)
         order = np.argsort(pair, kind="stable")
         self.pair, self.point, self.overlap = pair[order], touch.point.take(order, 0), touch.overlap[order]
+        self.known, self.first, self.many = np.unique(self.pair, return_index=True, return_counts=True)
 
     def _key(self, one: Numbers, two: Numbers) -> Numbers:
-        return np.minimum(one, two) * self.blocks + np.maximum(one, two)
+        return np.minimum(one, two).astype(np.int64) * self.blocks + np.maximum(one, two)
 
     def joins(self, one: Numbers, two: Numbers) -> Numbers:
         """True for each pair of blocks with a contact."""
-        key = self._key(one, two)
-        return np.searchsorted(self.pair, key, "left") < np.searchsorted(self.pair, key, "right")
+        return self._of_pair(one, two)[1] > 0
 
     def near(self, one: Numbers, two: Numbers, point: Numbers, reach: Numbers) -> Numbers:
         """True for each pair of blocks with a contact within `reach` of `point`."""
-        key = self._key(one, two)
-        first = np.searchsorted(self.pair, key, "left")
-        row, place = ragged(np.searchsorted(self.pair, key, "right") - first)
+        first, many = self._of_pair(one, two)
+        row, place = ragged(many)
         away = length(point.take(row, 0) - self.point.take(first[row] + place, 0))
-        return np.bincount(row[away <= reach[row]], minlength=len(key)) > 0
+        return np.bincount(row[away <= reach[row]], minlength=len(many)) > 0
+
+    def _of_pair(self, one: Numbers, two: Numbers) -> tuple[Numbers, Numbers]:
+        """The first contact of each pair of blocks, and how many it has."""
+        key = self._key(one, two)
+        at = np.searchsorted(self.known[:-1], key)  # the last place is for all that come after the others
+        if not len(self.known):
+            return np.zeros(len(key), np.int64), np.zeros(len(key), np.int64)
+        return self.first[at], np.where(self.known[at] == key, self.many[at], 0)
 
     @cached_property
     def points(self) -> dict[tuple[int, int], list[tuple[float, float, float]]]:
@@ -221,12 +229,11 @@ def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Num
     i, b = i[inside], b[inside]
     pair, place = ragged(o.count[b])
     i, j = i[pair], o.first[b[pair]] + place
-    reach = (FAR * o.d + o.slack + AWRY * np.abs(o.r))[i]
-    near = np.ones(len(i), bool)
-    for axis in (0, 1):
-        at = o.p[i, axis]
-        near &= (at >= o.low_corner[j, axis] - reach) & (at <= o.high_corner[j, axis] + reach)
-    return i[near], j[near]
+    for axis, (low, high) in enumerate(o.boxes):
+        at, reach = o.p[i, axis], FAR * o.d + o.slack[i] + AWRY * np.abs(o.r[i])
+        near = (at >= low[j] - reach) & (at <= high[j] + reach)
+        i, j = i[near], j[near]
+    return i, j
 
 
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
@@ -238,9 +245,9 @@ def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     """
     along, blunt = dot(o.c.take(i, 0) - o.p.take(o.before[j], 0), o.t.take(j, 0)), o.r[i] > BLUNT * o.d
     keep = blunt | ((along >= o.start[j]) & (along <= o.end[j]))
-    keep &= dot(o.e.take(j, 0), o.out.take(i, 0)) < 0
+    keep &= dot(o.normal(j), o.outward(i)) < 0
     i, j, blunt = i[keep], j[keep], blunt[keep]
-    inward = -o.e.take(j, 0)
+    inward = -o.normal(j)
     early, late = dot(inward, o.t.take(i, 0)), dot(inward, o.t.take(o.after[i], 0))
     deepest = o.c.take(i, 0) + o.r[i][:, None] * inward
     for ends, along, sign in ((early < 0, i, -1.0), ((early >= 0) & (late > 0), o.after[i], 1.0)):
@@ -272,7 +279,7 @@ def _arc_in_arc(o: Outlines, i: Numbers, j: Numbers) -> Meetings:
     keep = (depth >= -o.apart(i, j)) & (distance > 0)
     for k, towards in ((i, between), (j, -between)):
         keep &= (dot(towards, o.t.take(k, 0)) >= 0) & (dot(towards, o.t.take(o.after[k], 0)) <= 0)
-        keep &= dot(towards, o.out.take(k, 0)) > 0
+        keep &= dot(towards, o.outward(k)) > 0
     i, j, depth = i[keep], j[keep], depth[keep]
     towards = between.compress(keep, 0) / distance[keep][:, None]
     return i, j, o.c.take(i, 0) + (o.r[i] - depth / 2)[:, None] * towards, depth
@@ -310,21 +317,33 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
 
     Only what lies in the boxes of both can do so.
     """
-    edge = o.straight
     low, high = (
         np.maximum(o.low.take(a, 0), o.low.take(b, 0)),
         np.minimum(o.high.take(a, 0), o.high.take(b, 0)),
     )  # the box that both share
 
-    def common(block: Numbers, low_corner: Numbers, high_corner: Numbers) -> tuple[Numbers, Numbers]:
-        """Pair and corner for what the corners of `block` have, from low to high, in that box."""
+    def corners(block: Numbers) -> tuple[Numbers, Numbers]:
+        """Pair and corner for all corners of `block`."""
         pair, place = ragged(o.count[block])
-        k = o.first[block[pair]] + place
-        meet = (low_corner[k, 0] <= high[pair, 0]) & (high_corner[k, 0] >= low[pair, 0])
-        meet &= (low_corner[k, 1] <= high[pair, 1]) & (high_corner[k, 1] >= low[pair, 1])
-        return pair[meet], k[meet]
+        return pair, o.first[block[pair]] + place
 
-    one, two = common(a, o.low_corner, o.high_corner), common(b, o.low_corner, o.high_corner)
+    def meets(pair: Numbers, lowest: Sides, highest: Sides) -> Numbers:
+        """True for each box, from the lowest to the highest x and y, that has a part in that of its pair."""
+        meet = (lowest[0] <= high[pair, 0]) & (highest[0] >= low[pair, 0])
+        return np.asarray(meet & (lowest[1] <= high[pair, 1]) & (highest[1] >= low[pair, 1]))
+
+    bad, edges = [], []
+    for inner, outer in ((a, b), (b, a)):
+        pair, k = corners(inner)
+        meet = meets(pair, *([side[k] for side in sides] for sides in zip(*o.boxes, strict=True)))
+        edges.append((pair[meet], k[meet]))
+        at = o.p.take(k, 0).T
+        meet = meets(pair, at - o.d, at + o.d)  # nothing of an arc is farther from its corner
+        pair, points = pair[meet], o.rounded(k[meet])
+        for point in (points[:, of_arc] for of_arc in range(3)):
+            shared = meets(pair, point.T, point.T)
+            bad.append(pair[shared][_in_rounded(o, point[shared], outer[pair[shared]])])
+    one, two = edges
     count, first = (np.bincount(two[0], minlength=len(a)), np.searchsorted(two[0], np.arange(len(a))))
     row, place = ragged(count[one[0]])
     pair, i = one[0][row], one[1][row]
@@ -332,12 +351,8 @@ def _crossings(o: Outlines, a: Numbers, b: Numbers) -> list[tuple[int, int]]:
     slack = o.rounding(i, j)
     cut = np.ones(len(pair), bool)
     for k, m in ((i, j), (j, i)):
-        u, v = (dot(point.take(k, 0) - o.p.take(m, 0), o.e.take(m, 0)) for point in edge)
+        normal, corner = o.normal(m), o.p.take(m, 0)
+        u, v = (dot(point - corner, normal) for point in o.straight(k))
         cut &= (np.minimum(u, v) < -slack) & (np.maximum(u, v) > slack)
-    bad = [pair[cut]]
-    for inner, outer in ((a, b), (b, a)):
-        for of_arc in range(3):
-            points = o.rounded[:, of_arc]
-            pair, k = common(inner, points, points)
-            bad.append(pair[_in_rounded(o, points[k], outer[pair])])
+    bad.append(pair[cut])
     return [(int(a[k]), int(b[k])) for k in np.unique(np.concatenate(bad))]

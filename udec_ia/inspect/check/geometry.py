@@ -10,20 +10,21 @@ A point that GENERATE has put on an edge has an arc too: a circle of radius zero
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 
 from udec_ia.heap.array import variable
 from udec_ia.inspect.check.codes import allowed
-from udec_ia.inspect.check.groups import TABLE, Numbers, State
+from udec_ia.inspect.check.groups import INDEX, TABLE, Numbers, State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.kernels.geometry.shape import BULGE, FLAT, KEPT
 from udec_ia.layout import offsets as g
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
+TOGETHER = 50_000  # contacts that are looked at together
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
 
@@ -74,33 +75,31 @@ class Outlines:
         """Unit vector along the edge that ends at the corner."""
         return np.asarray((self.p - self.p.take(self.before, 0)) / self.z[:, None])
 
-    @cached_property
-    def e(self) -> Numbers:
-        """Outward normal of the edge that ends at the corner."""
-        return turned(self.t)
+    def normal(self, j: Numbers) -> Numbers:
+        """Outward normals of the edges that end at corners j."""
+        return turned(self.t.take(j, 0))
+
+    def outward(self, i: Numbers) -> Numbers:
+        """A vector along the bisector of the two edges of each of corners i, outwards."""
+        return np.asarray(self.normal(i) + self.normal(self.after[i]))
 
     @cached_property
     def arc(self) -> Numbers:
         """True for a corner that may touch edges and arcs of others."""
         return np.asarray((self.r > 0) | self.pointed)
 
-    @cached_property
-    def out(self) -> Numbers:
-        """A vector along the bisector of the corner's two edges, outwards."""
-        return np.asarray(self.e + self.e.take(self.after, 0))
-
-    @cached_property
-    def rounded(self) -> Numbers:
-        """The rounded outline at the corner: start, middle and end of its arc (n x 3 x 2).
+    def rounded(self, k: Numbers) -> Numbers:
+        """The rounded outline at corners k: start, middle and end of each arc (n x 3 x 2).
 
         A corner that touches nothing, a concave one above all, is sharp: others meet its two edges.
         """
-        round_it = (self.r > 0)[:, None]
-        outwards = self.p - self.c
-        far = np.maximum(length(outwards), self.fine)
-        top = np.where(round_it, self.c + (self.r / far)[:, None] * outwards, self.p)
-        start = self.p - np.where(round_it, self.d * self.t, 0.0)
-        end = self.p + np.where(round_it, self.d * self.t.take(self.after, 0), 0.0)
+        p, c, r = self.p.take(k, 0), self.c.take(k, 0), self.r[k]
+        round_it = (r > 0)[:, None]
+        outwards = p - c
+        far = np.maximum(length(outwards), self.fine[k])
+        top = np.where(round_it, c + (r / far)[:, None] * outwards, p)
+        start = p - np.where(round_it, self.d * self.t.take(k, 0), 0.0)
+        end = p + np.where(round_it, self.d * self.t.take(self.after[k], 0), 0.0)
         return np.stack((start, top, end), axis=1)
 
     def deepest(self, i: Numbers, inward: Numbers, on_edge: Numbers) -> Numbers:
@@ -122,7 +121,7 @@ class Outlines:
         t, after = self.t, self.t.take(self.after, 0)
         return np.asarray(np.arctan2(-cross(t, after), dot(t, after)))
 
-    @cached_property
+    @property
     def flat(self) -> Numbers:
         """Sine of the turn below which the corner is a point of a straight edge."""
         bulge = BULGE * self.d * (1 / self.z + 1 / self.z[self.after])
@@ -161,21 +160,16 @@ class Outlines:
         """Where along the edge that ends at the corner its rounding begins."""
         return self.z - np.where(self.r > 0, self.d, 0.0)
 
-    @cached_property
-    def straight(self) -> tuple[Numbers, Numbers]:
-        """Start and end of the straight part of the edge that ends at the corner."""
-        start = self.p.take(self.before, 0)
-        return start + self.start[:, None] * self.t, start + self.end[:, None] * self.t
+    def straight(self, j: Numbers) -> tuple[Numbers, Numbers]:
+        """Start and end of the straight parts of the edges that end at corners j."""
+        start, t = self.p.take(self.before[j], 0), self.t.take(j, 0)
+        return start + self.start[j][:, None] * t, start + self.end[j][:, None] * t
 
     @cached_property
-    def low_corner(self) -> Numbers:
-        """Lower left of the box around the straight part."""
-        return np.asarray(np.minimum(*self.straight))
-
-    @cached_property
-    def high_corner(self) -> Numbers:
-        """Upper right of it."""
-        return np.asarray(np.maximum(*self.straight))
+    def boxes(self) -> list[tuple[Numbers, Numbers]]:
+        """Least and greatest x, and y, of the straight parts of all edges."""
+        ends = [end.T for end in self.straight(np.arange(len(self.p)))]
+        return [(np.minimum(one, two), np.maximum(one, two)) for one, two in zip(*ends, strict=True)]
 
 
 def dot(a: Numbers, b: Numbers) -> Numbers:
@@ -211,7 +205,7 @@ def outlines(state: State) -> Outlines | None:
 
     p, c, r = column("KXP", "KYP"), column("KXCP", "KYCP"), column("KRAD")[:, 0]
     usable = (np.abs(np.column_stack((p, c, r))) < np.sqrt(np.finfo(state.h.cr.dtype).max)).all(axis=1)
-    count = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64)
+    count = np.add.reduceat(~rings.contact, rings.first, dtype=INDEX)
     sound = np.logical_and.reduceat(usable, np.cumsum(count) - count) & (count > 2)
     if not sound.any():
         return None
@@ -219,9 +213,9 @@ def outlines(state: State) -> Outlines | None:
     on_edge = np.append(state.column("gridpoint", "KGEDGE"), 0) == 1  # one more, for row -1
     grid_point = state.rows("gridpoint", state.column("corner", "KGP")[rows])
     block, count = rings.block[sound], count[sound]
-    first = np.cumsum(count) - count
-    owner = np.repeat(np.arange(len(block)), count)
-    here = np.arange(len(owner))
+    first = np.cumsum(count, dtype=INDEX) - count
+    owner = np.repeat(np.arange(len(block), dtype=INDEX), count)
+    here = np.arange(len(owner), dtype=INDEX)
     last = first + count - 1
     return Outlines(
         block=block,
@@ -303,7 +297,7 @@ def circles(o: Outlines) -> tuple[Numbers, Numbers]:
     bent = (np.abs(np.sin(o.turn)) >= o.flat) & ~o.pointed
     radius = np.where(bent, o.d / np.tan(o.turn / 2), 0.0)
     reach = np.where(radius == 0, 0.0, o.d)
-    return o.p - reach[:, None] * o.t - radius[:, None] * o.e, radius
+    return o.p - reach[:, None] * o.t - radius[:, None] * turned(o.t), radius
 
 
 def reaches(o: Outlines, centroid: Numbers) -> Numbers:
@@ -346,22 +340,38 @@ class Touches:
     point: Numbers
     slack: Numbers
 
+    def part(self, first: int, last: int) -> Touches:
+        """Those from the first to before the last."""
+        return Touches(*(column[first:last] for column in self.columns()))
+
+    def columns(self) -> list[Numbers]:
+        """All arrays."""
+        return [getattr(self, field.name) for field in fields(self)]
+
 
 def touches(state: State, o: Outlines) -> Touches:
     """The real contacts whose code and corners are sound, with the overlap that the outlines give."""
-    index = np.full(len(state.address["corner"]) + 1, -1)  # one more, for row -1
+    index = np.full(len(state.address["corner"]) + 1, -1, INDEX)  # one more, for row -1
     index[state.rows("corner", o.corner)] = np.arange(len(o.corner))
     code = state.column("contact", "KCCOD")
     ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
     comparable = (code >= g.CORNER_CORNER) & (code < g.VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
     at = np.flatnonzero(comparable)
-    code, i, j = code[at], ends[0][at], ends[1][at]
+    made = []
+    for first in range(0, max(len(at), 1), TOGETHER):
+        part = at[first : first + TOGETHER]
+        made.append(_touches(o, part, code[part], ends[0][part], ends[1][part]))
+    return Touches(*(np.concatenate(column) for column in zip(*map(Touches.columns, made), strict=True)))
+
+
+def _touches(o: Outlines, at: Numbers, code: Numbers, i: Numbers, j: Numbers) -> Touches:
+    """Those of the rows `at`, with these codes, at corners i and j."""
     between = o.c.take(j, 0) - o.c.take(i, 0)
     distance = length(between)
     two_arcs = code == g.CORNER_CORNER
     arc, edge = np.where(code == g.EDGE_CORNER, (j, i), (i, j))
     inward = np.where(
-        two_arcs[:, None], between / distance[:, None], -o.e.take(edge, 0)
+        two_arcs[:, None], between / distance[:, None], -o.normal(edge)
     )  # away from the arc's block
     deepest = o.deepest(arc, inward, ~two_arcs)
     overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p.take(edge, 0), inward))

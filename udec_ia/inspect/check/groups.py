@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.slack import give_back
 from udec_ia.inspect.walk import HEADS, SOFT, follow, one_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
@@ -30,6 +31,8 @@ KIND_OF_HEAD = {code: kind for kind, codes in HEADS.items() for code in codes}
 KIND_CODE = {group.name: code for code, group in enumerate(TABLE.groups, 1)}
 TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
 SHORT = 64  # items of a list that is walked together with others
+INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
+STRETCH = 256  # places in which groups are counted by a byte
 OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
 TARGETS |= {"item": ("corner", "contact"), "soft": tuple(SOFT.values()), "any": tuple(KIND_CODE)}
 
@@ -113,7 +116,9 @@ class State:
         self._columns: dict[str, Numbers] = {}
         places = (self.free - 1) // self.ratio + 1  # groups begin on reals: at these places, from 0
         self._kind_at = np.zeros(places, np.int8)
-        self._row_at = np.zeros(places, np.int32)
+        self._nth_at = np.zeros(places, np.uint8)  # among the groups of its kind that begin in the stretch
+        self._before: dict[str, Numbers] = {}  # by kind: groups that begin before each stretch
+        self._row: dict[str, Numbers] = {}  # by kind: row of the groups in the order of their addresses
         for kind in LISTED:
             self._enter(kind, self._main_list(kind))
         self.rings = self._take_rings()
@@ -158,6 +163,12 @@ class State:
     def forget(self) -> None:
         """Keep no column: what comes now needs others, and room."""
         self._columns.clear()
+        give_back()
+
+    def leave_lists(self) -> None:
+        """Keep no list either: what comes now looks at none."""
+        del self.rings
+        self.forget()
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
@@ -165,12 +176,22 @@ class State:
         place = before // self.ratio
         inside = (addresses > 0) & (addresses < self.free) & (place * self.ratio == before)
         place[~inside] = 0
-        return np.where(inside & (self._kind_at[place] == KIND_CODE[kind]), self._row_at[place], -1)
+        there = inside & (self._kind_at[place] == KIND_CODE[kind])
+        place = place[there]
+        row = np.full(addresses.shape, -1, INDEX)
+        row[there] = self._row[kind][self._before[kind][place // STRETCH] + self._nth_at[place]]
+        return row
 
     def _enter(self, kind: str, at: Numbers) -> None:
+        """Groups of `kind` are in use at the addresses `at`, all different."""
         self.address[kind] = at
-        self._kind_at[(at - 1) // self.ratio] = KIND_CODE[kind]
-        self._row_at[(at - 1) // self.ratio] = np.arange(len(at))
+        place = (at - 1) // self.ratio
+        order = np.argsort(place, kind="stable")
+        in_order = place[order]
+        before = np.searchsorted(in_order, np.arange(0, len(self._kind_at), STRETCH)).astype(INDEX)
+        self._kind_at[place] = KIND_CODE[kind]
+        self._nth_at[in_order] = np.arange(len(at)) - before[in_order // STRETCH]
+        self._before[kind], self._row[kind] = before, order.astype(INDEX)
 
     def _kind(self, iad: int) -> str | None:
         """Kind of the group at `iad` by head code, if a whole group of that kind can stand there."""
@@ -236,30 +257,28 @@ class State:
             corners.append(np.array(found, np.int64))
             owners.append(np.full(len(found), block))
         at, owner = np.concatenate(corners), np.concatenate(owners)
-        self._enter("corner", at)
-        once = self.rows("corner", at) == np.arange(len(at))
-        if not once.all():  # the first list that a corner stands in has it
+        if _first_repeated(at) < len(at):  # the first list that a corner stands in has it
             once = np.sort(np.unique(at, return_index=True)[1])
             at, owner = at[once], owner[once]
-            self._enter("corner", at)
+        self._enter("corner", at)
         self.owner["corner"] = owner
         rings.row[~rings.contact] = self.rows("corner", rings.item[~rings.contact])
         return rings
 
     def _lay_out(self, block: Numbers, count: Numbers, item: Numbers) -> Rings:
         """The lists as arrays; the rows of corners are still to come."""
-        end = np.cumsum(count)
-        first = end - count
-        owner = np.repeat(np.arange(len(block)), count)
-        here = np.arange(len(item))
+        end = np.cumsum(count, dtype=INDEX)
+        first = (end - count).astype(INDEX)
+        owner = np.repeat(np.arange(len(block), dtype=INDEX), count)
+        here = np.arange(len(item), dtype=INDEX)
         contact = self.h.ia[item - 1] == g.MCON
         row = np.where(contact, self.rows("contact", item), -1)
         side = np.zeros(len(item), np.int8)
         side[contact] = self.read(item[contact], HOSTS[0]) != block[owner[contact]]
-        at = np.full((2, len(self.address["contact"])), -1)
+        at = np.full((2, len(self.address["contact"])), -1, INDEX)
         listed = contact & (row >= 0)
         at[side[listed], row[listed]] = here[listed]
-        corner = np.where(contact, len(item), here)
+        corner = np.where(contact, INDEX(len(item)), here)
         corner = np.minimum.accumulate(corner[::-1])[::-1]
         return Rings(
             block=block,
@@ -449,8 +468,9 @@ def check_pointers(state: State) -> None:
 def _check_block_extensions(state: State) -> None:
     blocks = state.address["block"]
     extension = state.column("block", KBEX)
-    for row, head in enumerate(state.h.ia[blocks - 1].tolist()):
-        kind = SOFT.get(head)
+    heads = state.h.ia[blocks - 1]
+    for row in np.flatnonzero(one_of(heads, tuple(SOFT)) | (extension != 0)).tolist():
+        kind = SOFT.get(int(heads[row]))
         if kind is None and extension[row] != 0:
             what = "but a rigid block has no extension"
         elif kind is not None and state.rows(kind, extension[row : row + 1])[0] < 0:

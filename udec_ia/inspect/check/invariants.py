@@ -74,9 +74,10 @@ def check(array: MainArray) -> list[Violation]:
         if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
             check_pieces(state, shapes)
             touching = touches(state, shapes)
+            state.forget()
             check_contacts(state, shapes, touching)
             check_places(state, shapes, touching)
-            state.forget()
+            state.leave_lists()
             check_complete(state, shapes, touching)
     return state.violations()
 
@@ -98,6 +99,7 @@ def _check_links(state: State) -> None:
     check_codes(state)
     check_histories(state)
     check_map(state)
+    state.forget()
     check_outer(state)
     check_members(state)
     check_bounds(state)

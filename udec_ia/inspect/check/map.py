@@ -14,7 +14,7 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import HOSTS, KR, TABLE, Numbers, State, corner_before, names
+from udec_ia.inspect.check.groups import HOSTS, INDEX, KR, TABLE, Numbers, State, corner_before, names
 from udec_ia.layout import offsets as g
 
 (KNB,) = names("corner", "host")
@@ -271,8 +271,8 @@ def neighbours(state: State, skipped: Numbers) -> tuple[Numbers, Numbers, Number
     out_of = np.zeros(len(state.address["contact"]) + 1, bool)
     out_of[skipped] = out_of[-1] = True  # and for row -1
     out = rings.contact & out_of[np.where(rings.contact, rings.row, -1)]
-    index = np.flatnonzero(~out)
-    one, two = index[:-1], index[1:]
-    close = rings.contact[one] & rings.contact[two] & (rings.owner[one] == rings.owner[two])
-    one, two = one[close], two[close]
+    index = np.flatnonzero(~out).astype(INDEX)
+    real, owner = rings.contact[index], rings.owner[index]
+    close = np.flatnonzero(real[:-1] & real[1:] & (owner[:-1] == owner[1:]))
+    one, two = index[close], index[close + 1]
     return rings.block[rings.owner[one]], rings.row[one], rings.row[two]

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.errors import DISORDERED
-from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.groups import INDEX, State
 from udec_ia.inspect.check.map import SIDES
 from udec_ia.layout import offsets as g
 
@@ -30,10 +30,11 @@ def check_outer(state: State) -> None:
         return
     if not len(rings.item) or (rings.row < 0).any():
         return
-    place = np.stack([_along(state, *names) for names in (("KXP", "KXC"), ("KYP", "KYC"))], axis=1)
-    place = place - place.mean(axis=0)
-    after = place[rings.after]
-    twice = place[:, 0] * after[:, 1] - place[:, 1] * after[:, 0]
+    x, y = (_along(state, *names) for names in (("KXP", "KXC"), ("KYP", "KYC")))
+    x -= x.mean()
+    y -= y.mean()
+    twice = x * y[rings.after] - y * x[rings.after]
+    del x, y
     domain = _exposed_to(state)
     if (domain < 0).any() or not np.isfinite(twice).all():
         return
@@ -51,7 +52,7 @@ def _along(state: State, corner: str, contact: str) -> np.ndarray:
     place = np.empty(len(rings.item))
     place[~rings.contact] = state.read(rings.item[~rings.contact], corner)
     place[rings.contact] = state.read(rings.item[rings.contact], contact)
-    real = np.arange(len(rings.item))
+    real = np.arange(len(rings.item), dtype=INDEX)
     row = rings.row[rings.contact]
     real[np.flatnonzero(rings.contact)[state.column("contact", "KCCOD")[row] == g.VIRTUAL]] = 0
     return place[np.maximum.accumulate(real)]  # a list begins with a corner
@@ -60,12 +61,12 @@ def _along(state: State, corner: str, contact: str) -> np.ndarray:
 def _exposed_to(state: State) -> np.ndarray:
     """Row of the domain on the piece of the outline after each item: that before the next contact."""
     rings = state.rings
-    index = np.flatnonzero(rings.contact)
+    index = np.flatnonzero(rings.contact).astype(INDEX)
     named = [state.rows("domain", state.column("contact", side)) for side in SIDES]
-    domain = np.full(len(rings.item), -1)
+    domain = np.full(len(rings.item), -1, INDEX)
     if not len(index):
         return domain
-    number = np.cumsum(rings.contact)
+    number = np.cumsum(rings.contact, dtype=INDEX)
     following = index[np.minimum(number, len(index) - 1)]
     before = number[rings.first] - rings.contact[rings.first]
     first = index[np.minimum(before, len(index) - 1)][rings.owner]

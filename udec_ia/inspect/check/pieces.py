@@ -33,7 +33,7 @@ def check_pieces(state: State, o: Outlines) -> None:
         for k, loop in enumerate(loops):
             wall = _polygon(state, o, corner, loop)
             own = o.first[hosts[k]] + np.arange(o.count[hosts[k]])
-            outline = _area(wall) < _area(o.rounded[own].reshape(-1, 2)) / 2  # round a block, clockwise
+            outline = _area(wall) < _area(o.rounded(own).reshape(-1, 2)) / 2  # round a block, clockwise
             wrong = _turns(wall, middle) != (0 if outline else 1)
             wrong[k] = False
             for i in np.flatnonzero(wrong):
@@ -80,7 +80,7 @@ def _loops(state: State, virtual: Numbers) -> dict[int, list[list[int]]]:
 def _polygon(state: State, o: Outlines, corner: Numbers, loop: list[int]) -> Numbers:
     """The loop as a polygon through its contacts and through the ends and middles of its arcs."""
     index = np.array(loop)
-    points = np.array(o.rounded[corner[index]])  # a contact stands there three times
+    points = o.rounded(corner[index])  # a contact stands there three times
     contact = state.rings.contact[index]
     row = state.rings.row[index[contact]]
     for k, name in enumerate(("KXC", "KYC")):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.inspect.check.geometry import Outlines, Touches, cross, dot, length
+from udec_ia.inspect.check.geometry import TOGETHER, Outlines, Touches, cross, dot, length
 from udec_ia.inspect.check.groups import HOSTS, Numbers, State
 from udec_ia.inspect.check.map import neighbours
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
@@ -49,15 +49,16 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     on_edge = touch.code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
     two_arcs = touch.code == g.CORNER_CORNER
-    touching = o.deepest(other, -o.e.take(k, 0), on_edge)
+    touching = o.deepest(other, -o.normal(k), on_edge)
     from_start = dot(touching - o.p.take(o.before[k], 0), o.t.take(k, 0))
     to_other = o.c.take(other, 0) - o.c.take(k, 0)
     under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
     over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
     far = two_arcs & (o.r[other] > BLUNT * o.d)
-    facing = np.where(two_arcs[:, None], to_other, -o.e.take(other, 0))
+    facing = np.where(two_arcs[:, None], to_other, -o.normal(other))
     turn = np.maximum(o.turn[k], 0.0)
-    angle = np.arctan2(-cross(o.e.take(k, 0), facing), dot(o.e.take(k, 0), facing))
+    normal = o.normal(k)
+    angle = np.arctan2(-cross(normal, facing), dot(normal, facing))
     angle += 2 * np.pi * (angle < turn / 2 - np.pi)  # facing away, nearer to the end
     arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, turn)
     return Place(
@@ -82,10 +83,16 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
     """Invariants 3 and 7."""
     if not len(touch.row):
         return
-    places = [place(o, touch, side) for side in (0, 1)]
-    for side, here in enumerate(places):
-        _check_segment(state, o, touch, here, side)
-    _check_order(state, touch, places)
+    along = []
+    for side in (0, 1):
+        positions = []
+        for first in range(0, len(touch.row), TOGETHER):
+            part = touch.part(first, first + TOGETHER)
+            here = place(o, part, side)
+            _check_segment(state, o, part, here, side)
+            positions.append(here.along)
+        along.append(np.concatenate(positions))
+    _check_order(state, touch, along)
 
 
 def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
@@ -126,7 +133,7 @@ def _waits(state: State, row: int, side: int, step: int) -> bool:
     return bool(rings.contact[one] or rings.contact[along[one]])
 
 
-def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
+def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     """Contacts between two corners follow each other clockwise.
 
     Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
@@ -144,7 +151,7 @@ def _check_order(state: State, touch: Touches, places: list[Place]) -> None:
     hosts = [state.column("contact", name)[touch.row] for name in HOSTS]
     here, other = (
         [np.where(hosts[0][k] == block, of[0][k], of[1][k]) for k in (one, two)]
-        for of in ([p.along for p in places], hosts[::-1])
+        for of in (along, hosts[::-1])
     )
     wedge = (touch.overlap[one] > 0) & (touch.overlap[two] > 0) & (other[0] != other[1])
     slack = state.tolerance("FTOL") + state.tolerance("HTOL") + touch.slack[one] + touch.slack[two]

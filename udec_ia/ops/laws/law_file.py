@@ -18,12 +18,11 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
-import numba
 import numpy as np
-from numba import config, types
 
 from udec_ia.errors import UdecError
-from udec_ia.kernels.body.law_call import FIRST, LAST, MATERIAL, STATE, machine_code
+from udec_ia.heap.loading import DISABLED
+from udec_ia.kernels.body.law_call import FIRST, LAST
 from udec_ia.layout.material import Material
 
 NUMBERS = range(FIRST, LAST + 1)
@@ -185,8 +184,10 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
         raise _wrong(f"{name} does not take 7 arguments", advice, plain.__code__) from error
     noted = np.full(6, np.nan)
     python = _in_python(plain, n, noted)
-    if config.DISABLE_JIT:
+    if DISABLED:
         return Law(name, origin, digest, python, 0, None, plain, noted)
+    from udec_ia.kernels.body.law_call_numba import MATERIAL, STATE, machine_code
+
     compiled = _compiled(function, {})
     try:
         compiled.compile((*STATE, MATERIAL))
@@ -222,6 +223,8 @@ def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
 
     Indices are checked, unless its author has decorated it with numba.njit(boundscheck=False).
     """
+    from numba import njit
+
     function: FunctionType = getattr(given, "py_func", given)
     checked = getattr(given, "targetoptions", {}).get("boundscheck") is not False
     for step in dis.get_instructions(function):
@@ -235,7 +238,7 @@ def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
     copy = FunctionType(
         function.__code__, space, function.__name__, function.__defaults__, function.__closure__
     )
-    done[function] = numba.njit(error_model="numpy", boundscheck=checked)(copy)
+    done[function] = njit(error_model="numpy", boundscheck=checked)(copy)
     for name in function.__code__.co_names:
         called = space.get(name)
         plain = getattr(called, "py_func", called)
@@ -262,6 +265,8 @@ def _not_compiled(name: str, error: Exception, code: CodeType) -> UdecError:
 
 def _are_numbers(returned: Any, n: int) -> bool:
     """True if a compiled type is that of `n` numbers."""
+    from numba import types
+
     kinds = (types.Float, types.Integer, types.Boolean)
     return (
         isinstance(returned, types.BaseTuple)
