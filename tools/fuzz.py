@@ -23,6 +23,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -100,8 +101,8 @@ class Tame(Model):
     def cycle(self, n: int) -> int:
         return super().cycle(min(n, MAX_CYCLES))
 
-    def solve(self, ratio: float, limit: int = MAX_CYCLES) -> Solution:
-        return super().solve(ratio, min(limit, MAX_CYCLES))
+    def solve(self, ratio: float, limit: int = MAX_CYCLES, **named: Any) -> Solution:
+        return super().solve(ratio, min(limit, MAX_CYCLES), **named)
 
     def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
         return super().save(None, force=force)

@@ -468,10 +468,10 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
     m.cycle(3)
     run, calls = running.run_unwatched, []
 
-    def run_short(h: object, n: int, given: object) -> int:
+    def run_short(h: object, n: int, *given: object) -> int:
         calls.append(n)
         if len(calls) > 1:
-            return run(h, n, given)  # type: ignore[arg-type]
+            return run(h, n, *given)  # type: ignore[arg-type]
         m.array.h.ci[NERR], m.array.h.ci[JPHASE] = 15, 3
         room(m.array.h, len(m.array.h.ia) + 1)
         return 0

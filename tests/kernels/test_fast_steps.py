@@ -37,9 +37,9 @@ def runs_of(monkeypatch: pytest.MonkeyPatch, found: bool) -> list[int]:
     phases: list[int] = []
     find = passes.passes
 
-    def told(h, soft, recorded, ratio):
+    def told(h, *others):
         phases.append(int(h.ci[g.JPHASE]))
-        these = list(find(h, soft, recorded, ratio))
+        these = list(find(h, *others))
         wanted = found or phases[-1] == g.AT_WAYS
         these[passes.THROUGH] = entry(gone_through, h) if wanted else 0
         return tuple(these)

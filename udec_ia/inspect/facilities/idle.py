@@ -69,7 +69,7 @@ def _fixed(s: Scene) -> Found:
 
 def _conditions(s: Scene) -> Found:
     """Conditions that load nothing, and functions that nothing follows."""
-    yield from (("BOUNDARY", text) for text in on_loads(s.array))
+    yield from (("BOUNDARY", text) for text in on_loads(s.array, s.found))
     empty = np.all([s.column("bound", k) == 0 for k in LOADS], axis=0) & (s.column("bound", "KUFIX") == 0)
     if many := int(empty.sum()):
         yield "BOUNDARY", f"{many} conditions have no load and give no velocity"
@@ -100,7 +100,7 @@ def _materials(s: Scene) -> Found:
     stiff = np.setdiff1d(np.concatenate([given[name] for name in MODULI]), soft)
     for m in np.intersect1d(stiff, used).astype(int).tolist():
         yield f"PROPERTY MATERIAL={m}", "BULK and G: no block of it is deformable"
-    yield from (("PROPERTY", text) for text in on_laws(s.array))
+    yield from (("PROPERTY", text) for text in on_laws(s.array, s.found))
 
 
 def _pressures(s: Scene) -> Found:

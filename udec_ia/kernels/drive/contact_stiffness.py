@@ -26,9 +26,8 @@ from udec_ia.heap.jit import kernel
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 
-DOFS = (
-    6  # of a block: x, y, rotation, strains 11, 22, 12 along its principal axes; a grid-point: the first two
-)
+# Of a block: x, y, rotation, and the strains 11, 22, 12 along its principal axes. Of a grid-point: x and y.
+DOFS = 6
 NORMAL, TANGENT = 0, 1
 
 

@@ -7,7 +7,8 @@ material that lacks a modulus, a wait for rest that nothing brings about.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,7 @@ OF_LAWS = {  # properties that constitutive number 1 does not look at, by their 
     one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in OURS
 }
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
+Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of what a block puts on a contact: force of a last digit from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
@@ -71,7 +73,13 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
                 )
 
 
-def on_laws(array: MainArray) -> Iterator[str]:
+def listed(array: MainArray, kind: str) -> Any:
+    """Addresses of the blocks, contacts or conditions ("bound") of a sound heap, in the order of their list."""
+    head, link = {"block": (g.IBPNT, g.KB), "contact": (g.ICPNT, g.KC), "bound": (g.IBNPNT, g.KU)}[kind]
+    return addresses(array.h, int(array.h.ci[head]), link)
+
+
+def on_laws(array: MainArray, groups: Groups = listed) -> Iterator[str]:
     """CYCLE: properties of materials in use that only other laws than constitutive number 1 look at."""
     h = array.h
     given: dict[int, list[str]] = {}
@@ -80,7 +88,7 @@ def on_laws(array: MainArray) -> Iterator[str]:
             given.setdefault(int(m), []).append(word)
     if not given:
         return
-    blocks, contacts = (addresses(h, int(h.ci[k]), n) for k, n in ((g.IBPNT, g.KB), (g.ICPNT, g.KC)))
+    blocks, contacts = groups(array, "block"), groups(array, "contact")
     followers = [
         integers(h, groups, material)[integers(h, groups, number) > 1]
         for groups, material, number in ((blocks, g.KMAT, g.KCONS), (contacts, g.KCM, g.KCC))
@@ -93,10 +101,10 @@ def on_laws(array: MainArray) -> Iterator[str]:
             )
 
 
-def on_loads(array: MainArray) -> Iterator[str]:
+def on_loads(array: MainArray, groups: Groups = listed) -> Iterator[str]:
     """CYCLE: loads, all of which act on blocks that are fixed."""
     h = array.h
-    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    bounds = groups(array, "bound")
     loaded = np.any([getr(h, bounds, k) for k in (g.KUFX, g.KUFY)], axis=0)
     blocks = np.unique(integers(h, bounds[loaded], g.KUB))
     if len(blocks) and (integers(h, blocks, g.KBFIX) == g.FIXED).all():

@@ -26,6 +26,7 @@ from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
+ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
 
@@ -88,9 +89,9 @@ class Rows:
             return
         rows, ext, mat = self.row(soft), integers(h, soft, g.KBEX), integers(h, soft, g.KMAT) - 1
         j11, j12, j22, area = (reals(h, ext, k) for k in (g.KSJ11, g.KSJ12, g.KSJ22, g.KSAREA))
-        square, angle = self.frame[rows, 0] ** 2, np.arctan2(2 * j12, j11 - j22) / 2
+        square, half, mean = self.frame[rows, 0] ** 2, np.hypot((j11 - j22) / 2, j12), (j11 + j22) / 2
+        angle = np.where(half > ROUND * mean, np.arctan2(2 * j12, j11 - j22) / 2, 0.0)
         self.frame[rows, 1], self.frame[rows, 2] = np.cos(angle), np.sin(angle)
-        half, mean = np.hypot((j11 - j22) / 2, j12), (j11 + j22) / 2
         self.mass[rows, 3:] = (np.stack([mean + half, mean - half, 2 * mean]) / square).T
         self.free[rows, 3:] = 1
         one, two, area = h.cr[g.ALAM1 + mat], h.cr[g.ALAM2 + mat], np.abs(area)
