@@ -189,13 +189,28 @@ def has_direction(step: Step) -> bool:
     )
 
 
+def with_joints_alike(steps: list[Step]) -> list[Step]:
+    """The same, with the joint properties of material 1 in material 2, too.
+
+    A contact takes the material of the block that was first in a list, which a turn may change.
+    """
+    first = next(step.words for step in steps if step.name == "property" and "kn" in step.words)
+    joints = {name: first[name] for name in ("kn", "ks", "friction", "cohesion")}
+    return [
+        Step(step.name, step.numbers, step.words | joints)
+        if step.name == "property" and "kn" in step.words
+        else step
+        for step in steps
+    ]
+
+
 @pytest.mark.parametrize("turn", TURNS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_directions_are_equal(seed: int, turn: str) -> None:
     """A scene that is turned or mirrored, up to its first cycles, is the same scene in another position."""
     x, y = TURNS[turn]
     scene = play(seed, cycles=(2, 4))
-    steps = [step for step in scene.steps if not has_direction(step)]
+    steps = with_joints_alike([step for step in scene.steps if not has_direction(step)])
     one, two = quiet(Model()), quiet(Model())
     replay(one, steps)
     replay(two, [turned(step, x, y) for step in steps])

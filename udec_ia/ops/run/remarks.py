@@ -74,7 +74,7 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
 
 
 def listed(array: MainArray, kind: str) -> Any:
-    """Addresses of the blocks, contacts or conditions ("bound") of a sound heap, in the order of their list."""
+    """Addresses of the blocks, contacts or conditions ("bound") of a sound heap, as in their list."""
     head, link = {"block": (g.IBPNT, g.KB), "contact": (g.ICPNT, g.KC), "bound": (g.IBNPNT, g.KU)}[kind]
     return addresses(array.h, int(array.h.ci[head]), link)
 
