@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mechanics import block, box, model, push, sound, step
@@ -49,10 +51,14 @@ def falling() -> Model:
     return m
 
 
-def test_a_safe_step_is_judged_again_when_contacts_are_made() -> None:
-    """It is shortened before they bear a force, and how cycles are cut into CYCLEs does not matter."""
-    m, whole = falling(), falling()
-    for one in (m, whole):
+def test_a_safe_step_is_judged_again_when_contacts_are_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is shortened before they bear a force, and CYCLEs cut otherwise, or a HISTORY, do not matter."""
+    monkeypatch.chdir(tmp_path)  # where the history goes
+    m, whole, recorded = falling(), falling(), falling()
+    recorded.history(1, "TIME")
+    for one in (m, whole, recorded):
         one.cycle(0)
         push(one, int(block(one, 3, 0.3)["address"]), yd=-1.0)
     long = step(m)
@@ -60,9 +66,12 @@ def test_a_safe_step_is_judged_again_when_contacts_are_made() -> None:
         m.cycle(50)
         assert step(m) <= 0.9 * Scene(m, (1.0, 1.0), JOINTS).critical() * (1 + 1e-9)
     whole.cycle(2000)
+    recorded.cycle(2000)
     assert step(m) < 0.5 * long
     assert step(m) <= 0.9 * bound(m.array).step * (1 + 1e-12)
     assert abs(float(block(m, 3, 0.1)["KYD"])) < 1.0  # no faster than it came
     for kind in ("block", "contact"):
         np.testing.assert_array_equal(m.table(kind), whole.table(kind))
+        for name in ("KXD", "KYD", "KX", "KY") if kind == "block" else ("KCFN", "KCN"):
+            np.testing.assert_array_equal(recorded.table(kind)[name], whole.table(kind)[name])
     sound(m)

@@ -12,7 +12,7 @@ from typing import Any
 from udec_ia.heap.accessors import Memory, iget, int64
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
-from udec_ia.kernels.drive.cycle import run_cycles
+from udec_ia.kernels.drive.cycle import has_to_judge, run_cycles
 from udec_ia.kernels.drive.openings import LOOK
 from udec_ia.kernels.drive.passes import OPENINGS, RECORD, REST
 from udec_ia.layout import offsets as g
@@ -40,8 +40,8 @@ def run_watched(
 
     laws: three arguments of run_cycles. passes: see drive.passes. places: without rows if nothing is
     recorded. marks: of drive.openings, without any if nobody looks at them.
-    Stops early when NERR is set, when `rows` is full, and at rest, which is looked at every CHECK cycles of
-    the run; to within a negative ratio it never is.
+    Stops early when NERR is set, when `rows` is full, when a safe time-step has to be judged, and at rest,
+    which is looked at every CHECK cycles of the run; to within a negative ratio it never is.
     """
     recorded = len(places) > 0
     done = 0
@@ -61,4 +61,6 @@ def run_watched(
             return done, False
         if ratio >= 0 and h.ci[g.MCTOT] % CHECK == 0 and call_entry(passes[REST], h, ratio):
             return done, True
+        if has_to_judge(h):
+            return done, False
     return done, False

@@ -25,8 +25,8 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
-# A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
+# A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.kernels.drive.recording import record
 from udec_ia.kernels.drive.watch import run_watched
@@ -166,6 +167,8 @@ class Watch:
             finally:
                 full = self.hand_on() == ROWS
             done += int(completed)
+            if full and has_to_judge(h):
+                break
         if self.unrest is not None:
             self.unrest.note(self.array)
         return done
