@@ -81,7 +81,8 @@ def install(venv: Path, releases: str, extra: str) -> Path:
         return python
     print("installing into " + str(venv) + ", a minute or two ...", flush=True)
     package = "." + ("[" + extra + "]" if extra else "")
-    pip = [python, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--editable", package]
+    pip = [python, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    pip += ["--no-compile", "--editable", package]  # Python compiles what is imported, and keeps it
     if subprocess.run(pip + newest, check=False, cwd=str(ROOT), env=environment).returncode:
         sys.exit("the installation failed: see pip's message above; is the network there?")
     stamp.write_text("\n".join([where, digest, extra]))

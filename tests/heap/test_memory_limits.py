@@ -52,13 +52,15 @@ def state_of(array: MainArray) -> list[bytes]:
 @pytest.mark.parametrize("build", ["i32r32", "i32r64"])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_with_any_number_of_words_a_command_is_obeyed_or_changes_nothing(command: str, build: str) -> None:
-    """With every number that an array can have; for SPLIT, which takes longest, with every fifth."""
+    """With every number that an array can have; for SPLIT, which takes longest, and where a real is one
+    word, with every fifth."""
     model = Model(build)
     model.run(SCENE)
     before = model.array.copy()
     COMMANDS[command](model)
     obeyed, refusals = state_of(model.array), set()
-    first, step = int(before.h.ci[MFREE]) - 1, before.scheme.ratio * (5 if command == "split" else 1)
+    ratio = before.scheme.ratio
+    first, step = int(before.h.ci[MFREE]) - 1, ratio * (5 if command == "split" or ratio == 1 else 1)
     for words in range(first, len(before.h.ia), step):
         model = Model(build)
         model.start()

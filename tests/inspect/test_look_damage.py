@@ -41,7 +41,7 @@ from udec_ia.restart import look_into, save
 
 HEADS = [getattr(g, field.name) for field in read_table().common if field.target] + [g.JUNK]
 WRECKS = Path(__file__).parents[2] / "tools" / "wrecks.py"
-TRIALS = 50  # in each word scheme
+TRIALS = 30  # in each word scheme
 LOOKS = 6  # at each of them, chosen at random
 SECONDS = 3.0  # of processor time, for these
 SAID = re.compile(

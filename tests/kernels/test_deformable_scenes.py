@@ -46,7 +46,7 @@ def test_every_cycle_is_sound(first: int) -> None:
         play(seed, watch=sound, cycles=SHORT)
 
 
-@settings(max_examples=10, derandomize=True)
+@settings(max_examples=5, derandomize=True)
 @given(st.integers(1000, 2**31))
 def test_any_scene_is_sound(seed: int) -> None:
     play(seed, watch=sound, cycles=SHORT)
@@ -114,7 +114,7 @@ def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
     assert again(scene, Model(), forget) == []
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", SEEDS[:1])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
     scene = play(seed, cycles=(5, 20))
 

@@ -20,8 +20,8 @@ from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
-SCENES = 60
-NARROW = 20  # scenes with the narrowest words
+SCENES = 40
+NARROW = 10  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
 

@@ -77,7 +77,8 @@ def test_a_blow_keeps_momentum(lower: str, upper: str, edge_points: int) -> None
     pressed = 0.0
     for done in range(1, 121):
         m.cycle(1)
-        sound(m)
+        if done % 3 == 0:
+            sound(m)
         after, _ = momentum(m)
         forces = contact_forces(m)
         pressed = max(pressed, sum(float(row["KCFN"]) for row, _, _ in forces))

@@ -31,14 +31,18 @@ class Slide:
         m.cycle(0)
         blocks = m.table("block")
         self.model, self.fixed = m, int(blocks["address"][blocks["KY"] < 0.5][0])
+        self.seen = 0  # contacts when last looked at
         self.left, self.right = np.array([1.0, -slope]), np.array([1.0, slope])
 
     def step(self, way: np.ndarray) -> None:
-        """One cycle, the upper block moved by `way`, in D."""
+        """One cycle, the upper block moved by `way`, in D. Sound after a change, and every fifth time."""
         x, y = (float(v) for v in way * D / self.model.h.cr[g.TDEL])
         self.model.boundary(-3, 5, 1.2, 5, xvel=x, yvel=y)
         self.model.cycle(1)
-        assert self.model.check() == []
+        contacts = len(self.contacts())
+        if contacts != self.seen or int(self.model.h.ci[g.MCTOT]) % 5 == 0:
+            assert self.model.check() == []
+        self.seen = contacts
 
     def contacts(self) -> np.ndarray:
         """The contacts that are not virtual."""

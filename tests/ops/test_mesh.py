@@ -63,7 +63,7 @@ def is_mesh_of(found: Mesh, corners: Any, paired: bool) -> None:
             assert len({*one.tolist(), *two.tolist()}) == 4
 
 
-@settings(max_examples=150)
+@settings(max_examples=80)
 @given(outlines(), st.floats(0.04, 3.0), st.booleans())
 def test_zones_fill_any_block(corners: list[tuple[float, float]], edge: float, paired: bool) -> None:
     is_mesh_of(mesh(corners, edge, paired), corners, paired)
@@ -135,7 +135,7 @@ def test_a_zone_between_three_others_takes_one_and_the_others_are_cut() -> None:
     is_mesh_of(Mesh(points, paired, ring), outline, True)
 
 
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(st.integers(4, 30), st.integers(0, 10_000))
 def test_no_zone_is_cut_where_all_can_be_paired(n: int, seed: int) -> None:
     """Zones 2i and 2i + 1 have a common side, so all could be paired, whatever other sides there are."""

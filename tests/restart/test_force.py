@@ -189,7 +189,7 @@ def test_histories_that_cannot_be_followed_are_left_out(model: Model) -> None:
 def test_whatever_is_damaged_can_be_looked_at(saved: Path, tmp_path: Path) -> None:
     """Random words, in IA() and in the common block: no command that only looks crashes, hangs or runs on."""
     rng = np.random.default_rng(8)
-    for trial in range(8):
+    for trial in range(5):
         m = Model.restore(saved, out=tmp_path)
         last = int(m.h.ci[g.MFREE]) - 1
         for _ in range(int(rng.integers(1, 6))):

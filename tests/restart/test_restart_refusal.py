@@ -28,7 +28,9 @@ from udec_ia.restart.layout import text
 from udec_ia.restart.seal import SIZE, seal
 
 SCHEMES = tuple(ALL_SCHEMES)
-SETTINGS = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+SETTINGS = settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 ARRAYS = {name: two_blocks(name) for name in SCHEMES}
 Edit = Callable[[h5py.File], None]
 

@@ -66,7 +66,7 @@ def test_a_worker_that_is_killed_is_made_up_for(
 ) -> None:
     """It is killed while both workers have a run; the results are those of a single process, bit for bit."""
     address, workers = cluster
-    runs = piles(*FRICTIONS, cycles=30000)
+    runs = piles(*FRICTIONS, cycles=15000)
     run_all(piles(0.7, 0.8, cycles=1), tmp_path / "before", dask=address)  # both have loaded what they need
     killed: list[str] = []
 
