@@ -24,7 +24,7 @@ from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.ranges import edges_between, points_between
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import finite, held, not_negative, positive, whole
+from udec_ia.ops.common.limits import finite, held, not_negative, positive, reals, whole
 from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import require
 from udec_ia.ops.common.ranges import Range, check_range, why_nothing
@@ -55,7 +55,10 @@ class Load:
 
 def boundary(
     array: MainArray,
-    where: Range,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
     *,
     xvel: float | None = None,
     yvel: float | None = None,
@@ -76,6 +79,9 @@ def boundary(
     it lasts (s), from now on, or function: number of a FUNCTION; loads and velocities are multiplied by it.
     Errors 24, 26, 28.
     """
+    where = x1, x2, y1, y2
+    stress, xgrad, ygrad = reals(3, stress=stress), reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
+    sine = None if sine is None else reals(2, sine=sine)
     check_range(array, where)
     finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
     for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
