@@ -167,7 +167,7 @@ def test_a_folder_that_is_made_is_told(tmp_path: Path) -> None:
     m.save(tmp_path / "one.h5")
     assert said == []
     m.save(tmp_path / "a" / "b" / "one.h5")
-    assert said == [f"the folder {tmp_path / 'a' / 'b'} was not there and has been made"]
+    assert said == [f"the folder {tmp_path / 'a' / 'b'} did not exist and was created"]
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:

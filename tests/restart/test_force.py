@@ -139,7 +139,7 @@ def test_in_a_deck(model: Model) -> None:
 
     with pytest.raises(UdecError, match="error 20"):
         obey("SAVE bad.h5")
-    assert " SAVE: the state is unsound, and the file is marked: invariant" in obey("SAVE bad.h5 FORCE")
+    assert " SAVE: the state is unsound, and the file is marked so: invariant" in obey("SAVE bad.h5 FORCE")
     with pytest.raises(UdecError, match="error 29"):
         obey("RESTART bad.h5")
     told = obey("RESTART bad.h5 FORCE")
@@ -156,7 +156,7 @@ def test_a_run_that_comes_upon_damage_leaves_a_file_that_tells(model: Model) -> 
         run_deck(model, "GRAVITY 0 -10\nCYCLE 1\n", out)
     rescue = model.out / "rescue.h5"
     assert f"the damaged state is saved in {rescue}" in str(caught.value)
-    assert "the state that is saved is there to be looked at: invariant" in out.getvalue()
+    assert "the saved state is for inspection only: invariant" in out.getvalue()
     assert see(rescue).mark
     run_deck(Model.restore(rescue, force=True, out=model.out), "SAVE first.h5 FORCE\n", out)
     with pytest.raises(UdecError) as caught:  # whatever the error is, there is a file

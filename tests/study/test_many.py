@@ -112,7 +112,7 @@ def test_ctrl_c_leaves_what_is_done(tmp_path: Path) -> None:
     os.killpg(process.pid, signal.SIGINT)
     printed, complaints = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert complaints == "\ninterrupted: what was computed is saved in pile-sweep\n"
+    assert complaints == "\ninterrupted: the results so far are saved in pile-sweep\n"
     table = (folder / "pile.csv").read_text().splitlines()
     assert 6 > len(table) - 1 == whole(folder / RUNS) >= printed.count(" ended, ")
     assert "Traceback" not in printed

@@ -87,7 +87,7 @@ def satisfying(atlas: Atlas, text: str) -> Found:
 
 
 def _no_kind(word: str) -> str:
-    """What to say of a word that is no kind of group; often it is a field of one."""
+    """What to say of a word that is not a kind of group; often it is a field of one."""
     has = next((kind.name for kind in TABLE.groups for field in kind.fields if field.name == word), None)
     meant = get_close_matches(word, KINDS, 1)
     advice = f"say {has} where {word} ..." if has else f"did you mean {meant[0]}?" if meant else ""

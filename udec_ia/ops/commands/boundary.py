@@ -104,7 +104,7 @@ def boundary(
         for ib, ip in edges_between(array.h, *map(float, where)).tolist():
             _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
     if not loads:
-        advice = "a range holds what lies inside it and not on its limits"
+        advice = "what lies on the limits of a range is outside it"
         raise UdecError(24, _why_nothing(array.h, where, moves), advice, parameter="x1")
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     words = len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG)
@@ -125,13 +125,13 @@ def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> Non
     """Error 26 if no condition is given, 10 if those that are given cannot stand together."""
     if free and (condition or sine or function):
         raise UdecError(
-            10, "FREE stands alone", "give other conditions in a line of their own", parameter="free"
+            10, "FREE stands alone", "give other conditions on a line of their own", parameter="free"
         )
     if sine and function:
         advice = "a condition follows a sine or a function, not both"
         raise UdecError(10, "FUNCTION beside SINE", advice, parameter="function")
     if not (condition or free):
-        raise UdecError(26, "no velocity, and no force or stress that is not 0", "BOUNDARY 0 9 0 1 YVEL=0")
+        raise UdecError(26, "no velocity, and no force or stress other than 0", "BOUNDARY 0 9 0 1 YVEL=0")
 
 
 def _inside(where: Range, x: float, y: float) -> bool:
@@ -354,7 +354,7 @@ def _find_function(h: Memory, number: int) -> int:
     for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
         if iget(h, isg, g.KTP) and iget(h, isg, g.KTNUM) == number:
             return isg
-    raise UdecError(26, f"FUNCTION {number}", f"define it before: FUNCTION {number} t1 f1 t2 f2 ...")
+    raise UdecError(26, f"FUNCTION {number}", f"define it first: FUNCTION {number} t1 f1 t2 f2 ...")
 
 
 def set_function(array: MainArray, number: int, points: Sequence[tuple[float, float]]) -> None:
@@ -371,7 +371,7 @@ def set_function(array: MainArray, number: int, points: Sequence[tuple[float, fl
         finite(array, **{f"t{k}": t, f"f{k}": f})
     for k, ((t1, f1), (t2, f2)) in enumerate(pairwise(points), 2):
         if t2 <= t1:
-            raise UdecError(28, f"{t2:g} follows {t1:g}", "the times must ascend", parameter=f"t{k}")
+            raise UdecError(28, f"{t2:g} follows {t1:g}", "times must increase", parameter=f"t{k}")
         finite(array, **{f"t{k} - t{k - 1}": t2 - t1, f"f{k} - f{k - 1}": f2 - f1})
     require(array, size_of(array.h, g.NVSG) + len(points) * size_of(array.h, g.NVTP))
     h = array.h
