@@ -42,8 +42,7 @@ ROOT = Path(__file__).parent.parent
 TURNS = 15
 TRIES = 5  # slabs cut; the first may pay for memory that the machine hands out for the first time
 PROOFS = 3
-WORK = 2_000_000  # contacts or zones that one turn passes through: a few cycles would tell of its beginning
-CYCLES = 20  # of one turn at least, as caches hold what the other has worked on
+WORK = 2_000_000  # contacts or zones that one turn passes through: in its first cycle caches hold other memory
 SETTLE = 40  # cycles before a measurement
 OVERLAP = 0.001  # that a slab is squeezed to at every joint, in rounding lengths
 FAR = 1e9
@@ -125,7 +124,7 @@ def agree(model: Model, s: Slab) -> None:
 def turns(model: Model, s: Slab) -> tuple[float, float, float]:
     """ns per contact and cycle of the program and of the yardstick, and the median of their ratios."""
     contacts = int(model.h.ci[NCON])
-    n = max(CYCLES, WORK // contacts)
+    n = max(1, WORK // contacts)
     times = []
     for _ in range(TURNS):
         start = process_time()
@@ -207,7 +206,7 @@ def bench_zones(sizes: list[int]) -> None:
         (ib,) = (int(row["address"]) for row in table(model.array, "block") if row["KBEX"])
         body = zones.extract(model.array)
         count = len(body.zones.a)
-        n, times = max(CYCLES, WORK // count), []
+        n, times = max(1, WORK // count), []
         zones.run_arrays(body, 0)
         zones.run_heap(model.h, ib, 0)
         for _ in range(TURNS):
