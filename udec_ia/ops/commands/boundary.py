@@ -96,20 +96,11 @@ def boundary(
     if free:
         return _set_free(array.h, where)
     fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
-    loads: dict[Target, Load] = {}
-    if moves:
-        for ib, ig in points_between(array.h, *map(float, where)).tolist():
-            loads.setdefault((ib, ig, 0, 0), Load()).add(xforce, yforce)
-    if presses:
-        for ib, ip in edges_between(array.h, *map(float, where)).tolist():
-            _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
-    if not loads:
-        advice = "what lies on the limits of a range is outside it"
-        raise UdecError(24, _why_nothing(array.h, where, moves), advice, parameter="x1")
+    pressure = (stress, xgrad, ygrad) if presses else None
+    loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
-    words = len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG)
     signal = _find_function(array.h, function) if function is not None else 0
-    require(array, words)
+    require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
     h = array.h
     if sine is not None:
         signal = _make_sine(h, *sine)
@@ -119,6 +110,23 @@ def boundary(
         on_point = target[2] == 0 and bool(fix)
         _make(h, target, load, fix if on_point else 0, (xvel or 0.0, yvel or 0.0), signal)
     return len(loads)
+
+
+def _loads(
+    h: Memory, where: Range, force: tuple[float, float] | None, stress: Sequence[Triple] | None, viscous: bool
+) -> dict[Target, Load]:
+    """What targets in the range get: points if `force` is given, edges if `stress` is. Error 24 if none do."""
+    loads: dict[Target, Load] = {}
+    if force is not None:
+        for ib, ig in points_between(h, *map(float, where)).tolist():
+            loads.setdefault((ib, ig, 0, 0), Load()).add(*force)
+    if stress is not None:
+        for ib, ip in edges_between(h, *map(float, where)).tolist():
+            _load_edge(h, ib, ip, stress, viscous, loads)
+    if not loads:
+        advice = "what lies on the limits of a range is outside it"
+        raise UdecError(24, _why_nothing(h, where, force is not None), advice, parameter="x1")
+    return loads
 
 
 def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> None:
