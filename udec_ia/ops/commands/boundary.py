@@ -115,7 +115,7 @@ def boundary(
 def _loads(
     h: Memory, where: Range, force: tuple[float, float] | None, stress: Sequence[Triple] | None, viscous: bool
 ) -> dict[Target, Load]:
-    """What targets in the range get: points if `force` is given, edges if `stress` is. Error 24 if none do."""
+    """What targets in the range get: points if `force` is given, edges if `stress` is. Error 24 if none."""
     loads: dict[Target, Load] = {}
     if force is not None:
         for ib, ig in points_between(h, *map(float, where)).tolist():
