@@ -25,7 +25,7 @@ from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 from udec_ia.workshop import VERBS as LOOKS
 from udec_ia.workshop import add_commands
-from udec_ia.workshop.common import given, variables
+from udec_ia.workshop.common import given, variables, word_scheme
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", *LOOKS)
@@ -33,8 +33,6 @@ VERBS = ("run", *LOOKS)
 
 def arguments() -> argparse.ArgumentParser:
     """The command line."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
     parser = argparse.ArgumentParser(
         prog="udec",
         description="The distinct element program UDEC. Alone, it takes commands from the terminal; with the "
@@ -49,12 +47,7 @@ def arguments() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     run = commands.add_parser("run", help="run a deck")
     run.add_argument("deck", nargs="?", type=Path, help="file of commands (default: standard input)")
-    run.add_argument(
-        "--build",
-        choices=ALL_SCHEMES,
-        default=DEFAULT_SCHEME,
-        help="widths of integers and reals in bits (default: %(default)s)",
-    )
+    word_scheme(run)
     run.add_argument(
         "--out", type=Path, help="folder for plots and restart files (default: the current folder)"
     )

@@ -37,6 +37,18 @@ def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
     parser.add_argument(name, type=Path, metavar=name.upper(), help="a restart file, sound or damaged")
 
 
+def word_scheme(parser: argparse.ArgumentParser) -> None:
+    """The argument --build NAME."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser.add_argument(
+        "--build",
+        choices=ALL_SCHEMES,
+        default=DEFAULT_SCHEME,
+        help="widths of integers and reals in bits (default: %(default)s)",
+    )
+
+
 def variables(parser: argparse.ArgumentParser) -> None:
     """The argument --set NAME=VALUE."""
     parser.add_argument(
