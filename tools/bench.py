@@ -369,7 +369,7 @@ def main() -> None:
         "--cycles",
         type=int,
         default=0,
-        help="of one turn (default: as many as pass through 2 million contacts)",
+        help="of one turn (default: those of 2 million contacts)",
     )
     args = parser.parse_args()
     what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "ball"]
