@@ -48,7 +48,7 @@ def refused_or_said(m: Model, line: str, column: int) -> str:
         ("-5 5 5 15", "the line only touches block@1,"),
         ("2 0 8 0", "the line only touches block@1,"),
         ("20 20 30 30", "the line meets no block; all blocks lie in x 0 to 10, y 0 to 10"),
-        ("11 5 30 30", "the line passes no block;"),
+        ("11 5 30 30", "the line meets no block;"),
     ],
 )
 def test_why_no_block_is_cut(line: str, reason: str) -> None:
@@ -62,7 +62,7 @@ def test_why_no_block_is_cut(line: str, reason: str) -> None:
     [
         ("1 1 2 1", "only touches block@1"),
         ("1 3 1 1", "only touches block@1"),
-        ("1.2 2 1.8 2.5", "passes no block"),
+        ("1.2 2 1.8 2.5", "meets no block"),
         ("1.5 2 1.5 0.5", "ends inside block@1 at (1.5, 0.5)"),
         ("0.5 2 2.5 2", "begins inside block@1 at (0.5, 2) and ends inside block@1 at (2.5, 2)"),
     ],

@@ -71,7 +71,7 @@ def test_the_word_stands_last(text: str, path: str | None, force: bool) -> None:
 
 @pytest.mark.parametrize("text", ["SAVE 'x.h5' HARD", "SAVE 'x.h5'FORCED", "SAVE 'x.h5' FORCE y"])
 def test_nothing_else_stands_behind_a_name(text: str) -> None:
-    with pytest.raises(UdecError, match="put a name in quotes"):
+    with pytest.raises(UdecError, match="put the whole name in quotes"):
         parsed(text)
 
 
@@ -144,7 +144,7 @@ def test_in_a_deck(model: Model) -> None:
         obey("RESTART bad.h5")
     told = obey("RESTART bad.h5 FORCE")
     assert " RESTART: saved by force, being unsound: invariant" in told
-    assert " RESTART: taken by force: CYCLE and all that follows links is refused while" in told
+    assert " RESTART: taken by force: CYCLE and other commands that follow links are refused while" in told
     with pytest.raises(UdecError, match="error 20"):
         obey("CYCLE 1")
 

@@ -337,7 +337,7 @@ def test_mtop_out_of_range(name: str, mtop: int, tmp_path: Path) -> None:
     path = save(ARRAYS[name], tmp_path / "two.h5")
     edit(path, commons(ARRAYS[name], MTOP=mtop))
     what = refusal(path)
-    assert f"and MTOP {mtop} cannot be in {name}" in what or "more memory than there is" in what
+    assert f"and MTOP {mtop} are impossible in {name}" in what or "more than the memory available" in what
 
 
 def test_sizes_that_only_exist_on_paper(tmp_path: Path) -> None:

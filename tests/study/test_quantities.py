@@ -94,7 +94,7 @@ def test_what_comes_and_goes_is_looked_for_in_the_end(tmp_path: Path) -> None:
     assert value == pytest.approx(1, abs=0.01)
     (value,), remarks = worth(tmp_path, "contact(0, 1).KYC")
     assert math.isnan(value)
-    assert remarks == ("contact(0, 1).KYC has no value: no contact has a place to be near to",)
+    assert remarks == ("contact(0, 1).KYC has no value: no contact has a position",)
 
 
 def test_before_the_first_cycle_places_are_those_of_now(tmp_path: Path) -> None:

@@ -222,7 +222,7 @@ def test_model_view(tmp_path: Path) -> None:
         m.view(target)
     assert refused.value.number == 31
     assert "mine" in target.read_text()
-    with pytest.raises(ValueError, match="one state or more"):
+    with pytest.raises(ValueError, match="at least one state"):
         Page().write(target)
 
 

@@ -67,7 +67,7 @@ def _range(name: str, text: str) -> list[Value]:
     except (ValueError, OverflowError):
         raise ValueError(f"{name}={text}: {FORM}") from None
     if how not in ("", "log"):
-        raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one);  {FORM}")
+        raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one); {FORM}")
     if not 2 <= n <= LONGEST:
         raise ValueError(f"{name}={text}: a range has 2 to {LONGEST} values, not {n}")
     if how == "log":
