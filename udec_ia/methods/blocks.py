@@ -13,10 +13,11 @@ from udec_ia.layout.offsets import DTOL
 from udec_ia.methods.state import State
 from udec_ia.ops.commands import boundary as bounds
 from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.boundary import ZERO, Triple, number_of_conditions, set_function
+from udec_ia.ops.commands.boundary import ZERO, Triple, number_of_conditions
 from udec_ia.ops.commands.change import change
 from udec_ia.ops.commands.create import create
 from udec_ia.ops.commands.delete import delete
+from udec_ia.ops.commands.function import set_function
 from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
 from udec_ia.ops.commands.generate_automatic import generate_automatically
 from udec_ia.ops.commands.insitu import insitu
