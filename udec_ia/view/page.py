@@ -124,4 +124,4 @@ def _digest(text: str) -> str:
 
 
 def _judge(front: bytes, _: int) -> str:
-    return "" if front.startswith(MARK) else "exists, and is not a view written by this program"
+    return "" if front.startswith(MARK) else "exists, but is not a view written by this program"
