@@ -6,13 +6,12 @@ from typing import Any
 
 import pytest
 from naive.relocate import differences, essence
-from numba.core import config
 
-from udec_ia.heap import plain
 from udec_ia.heap.interpreting import interpreted
+from udec_ia.heap.loading import DISABLED
 from udec_ia.model import Model
 
-both_ways = pytest.mark.skipif(bool(config.DISABLE_JIT) or plain.wanted(), reason="there is one way only")
+both_ways = pytest.mark.skipif(DISABLED, reason="there is one way only")
 
 
 def unlike(play: Any, build: str, seed: int) -> list[str]:

@@ -132,7 +132,7 @@ def main() -> int:
         return 0
     chosen = options.commands or [*COMMANDS]
     if unknown := {*chosen} - {*COMMANDS}:
-        parser.error(f"{', '.join(unknown)}: choose of {', '.join(COMMANDS)}")
+        parser.error(f"{', '.join(unknown)}: choose from {', '.join(COMMANDS)}")
     if "SAVE" in chosen and RESTART not in chosen:
         chosen = [RESTART, *chosen]
     missed = False

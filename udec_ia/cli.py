@@ -25,7 +25,7 @@ from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 from udec_ia.workshop import VERBS as LOOKS
 from udec_ia.workshop import add_commands
-from udec_ia.workshop.common import given, variables
+from udec_ia.workshop.common import given, variables, word_scheme
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", *LOOKS)
@@ -33,8 +33,6 @@ VERBS = ("run", *LOOKS)
 
 def arguments() -> argparse.ArgumentParser:
     """The command line."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
     parser = argparse.ArgumentParser(
         prog="udec",
         description="The distinct element program UDEC. Alone, it takes commands from the terminal; with the "
@@ -43,20 +41,17 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument(
         "--checked",
         action="store_true",
-        help="compiled routines look at what stands at an address before they read or write there (slower)",
+        help="compiled routines check every address before they read or write there (slower)",
     )
     parser.add_argument("--version", action="version", version=f"udec_ia {udec_ia.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     run = commands.add_parser("run", help="run a deck")
-    run.add_argument("deck", nargs="?", type=Path, help="file of commands; standard input if left off")
+    run.add_argument("deck", nargs="?", type=Path, help="file of commands (default: standard input)")
+    word_scheme(run)
     run.add_argument(
-        "--build",
-        choices=ALL_SCHEMES,
-        default=DEFAULT_SCHEME,
-        help="widths of integers and reals in bits (default: %(default)s)",
+        "--out", type=Path, help="folder for plots and restart files (default: the current folder)"
     )
-    run.add_argument("--out", type=Path, help="folder for plots and restart files (default: the current one)")
-    run.add_argument("--mtop", type=int, help="size of the main array in words; left off, it grows as needed")
+    run.add_argument("--mtop", type=int, help="size of the main array in words (default: it grows as needed)")
     run.add_argument(
         "--constitutive",
         action="append",
@@ -72,7 +67,7 @@ def arguments() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
-        print(f"udec: --out {args.out}: no file can be written there", file=sys.stderr)
+        print(f"udec: --out {args.out}: files cannot be written there", file=sys.stderr)
         return MISUSE
     from udec_ia.deck.interactive import converse, history, history_file
     from udec_ia.deck.monitor import run_deck
@@ -142,7 +137,7 @@ def _saved(interrupt: BaseException | None) -> str:
     """Where a run that was interrupted is saved, however many interrupts came on top of the first."""
     while interrupt is not None:
         if isinstance(interrupt, KeyboardInterrupt) and interrupt.args and interrupt.args[0]:
-            return f": what was computed is saved in {interrupt.args[0]}"
+            return f": the results so far are saved in {interrupt.args[0]}"
         interrupt = interrupt.__context__
     return ""
 
@@ -169,7 +164,9 @@ def _main(argv: Sequence[str]) -> int:
             stream.reconfigure(errors="replace")
     args = arguments().parse_args(completed(argv))
     if args.checked and not _checked():
-        print("udec: --checked: kernels are loaded already: set UDEC_CHECKED=1 before that", file=sys.stderr)
+        print(
+            "udec: --checked: kernels are already loaded: set UDEC_CHECKED=1 before they are", file=sys.stderr
+        )
         return MISUSE
     try:
         status: int = args.action(args)

@@ -11,7 +11,7 @@ from udec_ia.printable import MESSAGE, printable
 ERRORS = {  # number: message, and what to do about it
     1: (
         "memory overflow",
-        "take a larger --mtop, or leave --mtop off and choose a --build with wider integers",
+        "use a larger --mtop, or omit --mtop and choose a --build with wider integers",
     ),
     2: (
         "unrecognisable command",
@@ -19,7 +19,7 @@ ERRORS = {  # number: message, and what to do about it
     ),
     3: (
         "not START or RESTART as first command",
-        "put START before this line, or RESTART to go on from a saved state",
+        "put START before this line, or RESTART to continue from a saved state",
     ),
     4: (
         "material number out of range",
@@ -59,19 +59,19 @@ ERRORS = {  # number: message, and what to do about it
     ),
     13: (
         "mass damping for rigid-body motion too high",
-        "take a smaller fcrit in DAMPING, or a smaller FRACTION",
+        "use a smaller fcrit in DAMPING, or a smaller FRACTION",
     ),
     14: (
         "rounding length too great",
-        "the shortest edge must hold two roundings, no overlap may exceed half of one: change d in ROUND",
+        "change d in ROUND: two roundings must fit on the shortest edge, and no overlap may exceed d/2",
     ),
     15: (
         "contact overlap too great",
-        "take a larger joint stiffness or a smaller FRACTION, or look for what drives the blocks together",
+        "use a larger joint stiffness or a smaller FRACTION, and check what drives the blocks together",
     ),
     16: (
         "internal mass damping too high",
-        "take a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
+        "use a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
     ),
     17: (
         "cannot split fully-deformable block",
@@ -79,15 +79,15 @@ ERRORS = {  # number: message, and what to do about it
     ),
     18: (
         "only one block may be created at present: use SPLIT for more",
-        "make the first block large enough, then SPLIT it and DELETE what is not needed",
+        "make the first block large enough, then SPLIT it and DELETE the parts not needed",
     ),
     19: (
         "cannot delete final contact in problem",
-        "leave at least two blocks that touch",
+        "at least two blocks must remain",
     ),
     20: (
         "internal error, the main array is damaged",
-        "look at the last RSET, and go back to what was saved before it",
+        "check the last RSET, or go back to a state that was saved before it",
     ),
     21: (
         "cannot delete fully-deformable block at present",
@@ -99,7 +99,7 @@ ERRORS = {  # number: message, and what to do about it
     ),
     23: (
         "not available yet",
-        'AUTOMATIC zones need one package more: python -m pip install "pythoncdt>=2.0"',
+        'AUTOMATIC zones need one more package: python -m pip install "pythoncdt>=2.0"',
     ),
     24: (
         "cannot find block in range",
@@ -107,11 +107,11 @@ ERRORS = {  # number: message, and what to do about it
     ),
     25: (
         "zone pointer references non-existent grid-point",
-        "zones name grid-points from 1 to their number, and the last grid-point given is number 1",
+        "zones refer to grid-points by number; the last grid-point given is number 1",
     ),
     26: (
         "missing data",
-        "a zone needs its three grid-points on one line",
+        "the three grid-points of a zone must stand on one line",
     ),
     27: (
         "split line runs too close to a corner or an edge",
@@ -131,11 +131,11 @@ ERRORS = {  # number: message, and what to do about it
     ),
     31: (
         "file cannot be written",
-        "check that the folder can be written to, and its name",
+        "check the name of the folder, and that it can be written to",
     ),
     32: (
         "zone or block has turned inside out",
-        "take a stiffer material, a smaller FRACTION or smaller loads",
+        "use a stiffer material, a smaller FRACTION or smaller loads",
     ),
     33: (
         "zones do not fill the block",
@@ -147,14 +147,14 @@ ERRORS = {  # number: message, and what to do about it
     ),
     35: (
         "constitutive law returned no finite number",
-        "look for what the law divides by or takes a root of, and at the properties of the material",
+        "check divisions and square roots in the law, and the properties of the material",
     ),
     36: (
         "coordinate or force beyond the precision",
-        "FIX or DELETE what flies away, look for what drives it, take smaller loads or 64-bit reals",
+        "FIX or DELETE the blocks that fly away, apply smaller loads, or use 64-bit reals",
     ),
     37: (
-        "there is more energy than can be",
+        "more energy than was put in",
         "take a smaller FRACTION, or FRACTION f SAFE",
     ),
 }
@@ -210,7 +210,7 @@ class UdecError(Exception):
         if self.source is not None and self.column is not None:
             lines += [f"    {self.source}", "    " + " " * (self.column - 1) + "^"]
         lines += [printable(self.advice, MESSAGE)] if self.advice else []
-        state = "the damaged state" if self.number == DAMAGED else "what was computed so far"
+        state = "the damaged state" if self.number == DAMAGED else "the results so far"
         saved = f"{state} is saved in {self.saved}"
         lines += [printable(saved, MESSAGE)] if self.saved else []
         return "\n".join(lines)

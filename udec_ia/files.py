@@ -24,7 +24,7 @@ from udec_ia.errors import UdecError
 
 FRONT = 512  # bytes that tell what a file is
 SIGNATURE = 6  # bytes in which PNG, SVG, GIF, HDF5 and our tables differ from each other and from a deck
-LEAVE = "a file may replace one of its own kind only: take another name or folder, or move away what is there"
+LEAVE = "a file may only replace one of its own kind: use another name or folder, or move the existing file"
 NO_FILES = {
     stat.S_IFDIR: "a folder",
     stat.S_IFCHR: "a device",
@@ -70,7 +70,7 @@ def status(path: Path) -> os.stat_result | None:
     except FileNotFoundError:
         return None
     except ValueError as error:  # a NUL, or a character that the file system cannot spell
-        raise UdecError(31, f"{path} is no name for a file: {error}", "take another name") from error
+        raise UdecError(31, f"{path} cannot be the name of a file: {error}", "take another name") from error
 
 
 def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: Judge) -> None:
@@ -79,7 +79,7 @@ def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: J
     if kind != stat.S_IFREG:
         raise UdecError(31, f"{path} is {NO_FILES.get(kind, 'no file')}", LEAVE)
     if not (there.st_mode & 0o222 and os.access(target, os.W_OK)):
-        raise UdecError(31, f"{path} is read-only", "take another name, or allow it to be written to")
+        raise UdecError(31, f"{path} is read-only", "use another name, or make it writable")
     with target.open("rb") as file:
         reason = judge(file.read(FRONT), there.st_size)
     if reason:
@@ -91,7 +91,7 @@ def _alike(path: Path, content: Content) -> Judge:
 
     def judge(front: bytes, _: int) -> str:
         alike = front[:SIGNATURE] == bytes(content[:SIGNATURE])
-        return "" if alike else f"is there, but is no {path.suffix[1:].upper()} file of this program's"
+        return "" if alike else f"exists, but is not a {path.suffix[1:].upper()} file of this program"
 
     return judge
 

@@ -168,11 +168,11 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("block@1.NOFIELD", "no field of a block"),
-        ("blocks@1.KX", "no kind of group"),
+        ("block@1.NOFIELD", "is not a field of a block"),
+        ("blocks@1.KX", "is not a kind of group"),
         ("block@3.KX", "no block at 3"),
         ("zone@1.KZG(9)", "no zone at 1"),
-        ("NONE", "no name of the common block"),
+        ("NONE", "is not a variable of the common block"),
         ("block@1", "give KIND@ADDRESS.FIELD"),
         ("0", "addresses 1 to"),
         ("99999999", "addresses 1 to"),

@@ -115,7 +115,7 @@ def test_a_restart_file_is_no_deck(in_folder: Path, capsys: pytest.CaptureFixtur
     assert main(["run.h5"]) == 1
     told = capsys.readouterr().err
     assert told.endswith(
-        "this is a restart file: udec info says what is in it, RESTART in a deck goes on from it\n"
+        "this is a restart file: udec info shows its contents, RESTART in a deck continues from it\n"
     )
 
 
@@ -157,7 +157,7 @@ def test_a_folder_that_takes_no_files_is_refused_before_the_run(
     for out in ("deck.dat", "deck.dat/results/deep"):
         assert main(["run", "deck.dat", "--out", out]) == 2
         said = capsys.readouterr()
-        assert said.err == f"udec: --out {out}: no file can be written there\n"
+        assert said.err == f"udec: --out {out}: files cannot be written there\n"
         assert said.out == ""
     assert main(["run", "deck.dat", "--out", "results/deep"]) == 0
     assert list(Path("results/deep").iterdir())

@@ -154,7 +154,7 @@ def test_a_command_that_takes_blocks_says_how_many() -> None:
     assert [line for line in out.getvalue().split("\n") if not line.startswith(">")] == [
         " SPLIT: 1 block cut off, 2 blocks now",
         " SPLIT: 2 blocks cut off, 4 blocks now",
-        " SPLIT: no block cut: the line passes no block; all blocks lie in x 0 to 2, y 0 to 2",
+        " SPLIT: no block was cut: the line meets no block; all blocks lie in x 0 to 2, y 0 to 2",
         " FIX: 2 blocks fixed",
         " FREE: 1 block set free",
         " CHANGE: 4 blocks changed",

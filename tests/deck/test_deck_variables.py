@@ -84,7 +84,7 @@ def test_values_are_put_into_names_of_files(line: str, path: str) -> None:
         ("GRAVITY $LONG\n", {"LONG": 1}, 7, 2, 14, "the form is"),
         ("DEFAULT\n", {}, 7, 2, 8, "the form is"),
         ("DEFAULT F\n", {}, 7, 2, 10, "the form is"),
-        ("DEFAULT $F 1\n", {}, 10, 2, 9, "here the name stands without $"),
+        ("DEFAULT $F 1\n", {}, 10, 2, 9, "write the name without $ here"),
         ("DEFAULT 5 1\n", {}, 10, 2, 9, "the form is"),
         ("DEFAULT F +x\n", {}, 10, 2, 11, "a value is a number"),
         ("DEFAULT F 1\nDEFAULT G=2 F=3\n", {}, 10, 3, 13, "HELP"),
@@ -109,7 +109,7 @@ def test_the_place_is_that_of_the_line_as_written(
         (SLIP, {"F": "a b"}, 'F cannot be "a b"', "a value is a number"),
         (SLIP, {"F": float("nan")}, 'F cannot be "nan"', "a value is a number"),
         (SLIP, {"F": True}, 'F cannot be "True"', "a value is a number"),
-        (SLIP, {"1F": 2}, '"1F" is no name of a variable', "a name is a letter"),
+        (SLIP, {"1F": 2}, '"1F" is not the name of a variable', "a name is a letter"),
     ],
 )
 def test_values_that_cannot_be_given(deck: str, values: Values, detail: str, advice: str) -> None:

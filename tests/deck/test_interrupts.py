@@ -339,7 +339,7 @@ def test_a_run_that_signals_end_is_saved_however_many_there_are(
         run.stdout.read()
         err = run.stderr.read().splitlines() if run.stderr else []
     said = [line for line in err if line and not line.startswith("compiling")]
-    told = f"interrupted: what was computed is saved in {tmp_path}/rescue.h5"
+    told = f"interrupted: the results so far are saved in {tmp_path}/rescue.h5"
     unproved = "interrupted"  # it says on standard output that the file was not proved
     assert (run.returncode, said) in [(status, [told])] + [(status, [unproved])] * (times > 1)
     assert Model.check_file(tmp_path / "rescue.h5") == []
@@ -569,7 +569,7 @@ def test_a_run_that_is_ended_by_system_exit_leaves_a_rescue_file(
     with pytest.raises(SystemExit) as caught:
         m.run("CYCLE 5\nGRAVITY 0 -5\n")
     (note,) = caught.value.__notes__
-    assert note == f"what was computed is saved in {tmp_path / 'rescue.h5'}"
+    assert note == f"the results so far are saved in {tmp_path / 'rescue.h5'}"
     assert Model.restore(tmp_path / "rescue.h5").h.ci[MCTOT] == 5
 
 
@@ -598,7 +598,7 @@ def test_no_memory_left_in_a_run_does_not_say_that_nothing_was_done(
         raise MemoryError
 
     monkeypatch.setattr("udec_ia.ops.run.cycle.run_unwatched", none_left)
-    with pytest.raises(UdecError, match="what was computed is kept") as caught:
+    with pytest.raises(UdecError, match="the results so far are kept") as caught:
         m.run("CYCLE 5\n")
     assert caught.value.number == 1
 

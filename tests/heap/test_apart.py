@@ -9,12 +9,18 @@ import numpy as np
 import pytest
 from unchecked import without_groups
 
+from udec_ia.heap import plain
 from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.heap.apart import call_entry, entry, entry_if
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import apart, kernel
+from udec_ia.heap.loading import DISABLED
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME, Scheme
 from udec_ia.layout import offsets as g
+
+with_our_linking = pytest.mark.skipif(
+    DISABLED or plain.wanted(), reason="nothing is compiled, or without our linking"
+)
 
 
 @apart
@@ -58,11 +64,10 @@ def test_there_is_one_for_each_word_scheme() -> None:
     assert len(set(where)) == (len(ALL_SCHEMES) if isinstance(where[0], int) else 1)
 
 
+@with_our_linking
 def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if not hasattr(calls, "whole"):
-        pytest.skip("nothing is compiled, or without our linking")
     monkeypatch.setattr("udec_ia.heap.jit.cache_folder", lambda: tmp_path)
     seldom = apart(count_down.whole.py_func)
     one, other = (MainArray(ALL_SCHEMES[build]).h for build in ("i32r64", "i32r32"))
@@ -72,11 +77,10 @@ def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
     assert entry_if(False, seldom, other, 0) == 0
 
 
+@with_our_linking
 @without_groups
 def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The machine code of the caller has no copy of it. Of what it finds on disk numba shows nothing."""
-    if not hasattr(calls, "whole"):
-        pytest.skip("nothing is compiled, or without our linking")
     monkeypatch.setattr("udec_ia.heap.jit.cache_folder", lambda: tmp_path)
     taking, calling = (kernel(one.whole.py_func) for one in (takes_it_in, calls))
     h = MainArray(ALL_SCHEMES[DEFAULT_SCHEME]).h

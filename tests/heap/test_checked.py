@@ -115,4 +115,4 @@ def test_a_deck_gives_the_same_words(tmp_path: Path) -> None:
 def test_it_is_too_late_once_kernels_are_loaded() -> None:
     done = run("-c", "import udec_ia.model, udec_ia.cli; exit(udec_ia.cli.main(['--checked', 'info', 'x']))")
     assert done.returncode == 2
-    assert "kernels are loaded already: set UDEC_CHECKED=1" in done.stderr
+    assert "kernels are already loaded: set UDEC_CHECKED=1" in done.stderr

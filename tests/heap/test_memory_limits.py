@@ -150,7 +150,7 @@ def test_a_restart_file_takes_the_size_that_the_run_fixes(tmp_path: Path) -> Non
 def test_start_goes_back_to_the_words_of_the_run(tmp_path: Path) -> None:
     Model("i16r32", out=tmp_path).run("START\nBLOCK 0 0 0 1 1 1 1 0\nSAVE\nSTOP\n")
     model = Model("i64r64", out=tmp_path)
-    assert "i16r32, as saved; --build is for START" in str(model.run("RESTART\n"))
+    assert "i16r32, as saved; --build applies to START" in str(model.run("RESTART\n"))
     assert model.array.scheme.name == "i16r32"
     model.start()
     assert model.array.scheme.name == "i64r64"

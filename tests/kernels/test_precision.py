@@ -197,7 +197,7 @@ def test_clockwise_is_told_far_from_the_origin(x: float, y: float) -> None:
     model = Model()
     model.block(*(number for corner in square for number in corner))
     assert model.check() == []
-    with pytest.raises(UdecError, match=r"error 6: .* its corners run anticlockwise"):
+    with pytest.raises(UdecError, match=r"error 6: .* its corners are in anticlockwise order"):
         Model().block(*(number for corner in reversed(square) for number in corner))
 
 

@@ -301,10 +301,10 @@ def test_what_is_no_law(tmp_path: Path) -> None:
     (tmp_path / "number.py").write_text("cl2 = 3\n")
     assert "none.py defines no law" in refusal(tmp_path / "none.py").detail
     assert "latin.py cannot be read: 'utf-8'" in refusal(tmp_path / "latin.py").detail
-    assert "cl2 is no function" in refusal(tmp_path / "number.py").detail
+    assert "cl2 is not a function" in refusal(tmp_path / "number.py").detail
     assert "cannot be read: Is a directory" in refusal(tmp_path).detail
     assert "'cl6' is not the name of a law" in refusal({"cl6": echo}).detail
-    assert "clj3 is no function" in refusal({"clj3": 1.0}).detail
+    assert "clj3 is not a function" in refusal({"clj3": 1.0}).detail
     missing = refusal("mohr-coulombs")
     assert missing.detail == "mohr-coulombs cannot be read: No such file or directory"
     assert missing.advice == "give a file, or joint-dilation or mohr-coulomb"
@@ -346,7 +346,7 @@ def test_a_book_keeps_the_laws_of_a_restart_file(tmp_path: Path) -> None:
     assert without.record() == saved
     path.write_text(BLOCK + "    return 1, 0, 0\n")
     (warning,) = LawBook(path).note(saved)
-    assert "cl2 of law.py has another text than cl2 of law.py" in warning
+    assert "cl2 of law.py differs from cl2 of law.py" in warning
     assert again.record() == saved
 
 
@@ -382,7 +382,7 @@ def test_a_restart_file_knows_its_laws(tmp_path: Path, caplog: pytest.LogCapture
     assert Model.restore(tmp_path / "one.h5").laws.record() == model.laws.record()
     law.write_text(JOINT + "    return 0.0, 0.0\n")
     Model.restore(tmp_path / "one.h5", constitutive=law)
-    assert "clj2 of law.py has another text" in caplog.text
+    assert "clj2 of law.py differs from" in caplog.text
     model.start()
     model.restart(tmp_path / "one.h5")
     assert model.laws.recorded == model.laws.record()

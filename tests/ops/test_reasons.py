@@ -47,14 +47,14 @@ def refused_or_said(m: Model, line: str, column: int) -> str:
         ("0 -1 0 11", "the line only touches block@1,"),
         ("-5 5 5 15", "the line only touches block@1,"),
         ("2 0 8 0", "the line only touches block@1,"),
-        ("20 20 30 30", "the line passes no block; all blocks lie in x 0 to 10, y 0 to 10"),
-        ("11 5 30 30", "the line passes no block;"),
+        ("20 20 30 30", "the line meets no block; all blocks lie in x 0 to 10, y 0 to 10"),
+        ("11 5 30 30", "the line meets no block;"),
     ],
 )
 def test_why_no_block_is_cut(line: str, reason: str) -> None:
     m = Model()
     m.block(0, 0, 0, 10, 10, 10, 10, 0)
-    assert said(m, f"SPLIT {line}").startswith(f"SPLIT: no block cut: {reason}")
+    assert said(m, f"SPLIT {line}").startswith(f"SPLIT: no block was cut: {reason}")
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_why_no_block_is_cut(line: str, reason: str) -> None:
     [
         ("1 1 2 1", "only touches block@1"),
         ("1 3 1 1", "only touches block@1"),
-        ("1.2 2 1.8 2.5", "passes no block"),
+        ("1.2 2 1.8 2.5", "meets no block"),
         ("1.5 2 1.5 0.5", "ends inside block@1 at (1.5, 0.5)"),
         ("0.5 2 2.5 2", "begins inside block@1 at (0.5, 2) and ends inside block@1 at (2.5, 2)"),
     ],
@@ -88,7 +88,7 @@ def test_a_line_that_ends_in_two_blocks_names_both() -> None:
 def test_before_the_first_block(line: str) -> None:
     m = Model()
     m.start()
-    assert said(m, line).endswith("there is no block yet: BLOCK makes the first")
+    assert said(m, line).endswith("there is no block yet: create one with BLOCK")
 
 
 TURNED = "x1 = 10 is not below x2 = 0, where a range is x1 x2 y1 y2"
@@ -106,7 +106,7 @@ def test_why_no_block_is_in_the_range(command: str) -> None:
     for where, reason in (
         ("10 0 0 10", TURNED),
         ("0 1 0 1", NEAREST),
-        ("5 6 2 3", "the nearest is block@1 at (5, 2.5), on a limit and not inside"),
+        ("5 6 2 3", "the nearest is block@1 at (5, 2.5), on a limit and so outside"),
     ):
         found = refused_or_said(m, f"{command} {where}{rest}", len(command) + 2)
         wanted = reason.replace("centroid", "grid-point and no centroid") if command == "BOUNDARY" else reason

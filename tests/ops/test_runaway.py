@@ -53,7 +53,7 @@ def test_a_deck_that_runs_away_is_warned_of_and_stopped(
     warning = WARNING.search(said.out)
     assert warning is not None
     assert said.out.index(warning.group()) < said.out.index("cycle 100 of 20000")
-    assert "error 37: there is more energy than can be" in said.err
+    assert "error 37: more energy than was put in" in said.err
     assert re.search(r"block@\d+ leads with", said.err)
     assert (tmp_path / "rescue.h5").exists()
 

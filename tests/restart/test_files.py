@@ -167,7 +167,7 @@ def test_a_folder_that_is_made_is_told(tmp_path: Path) -> None:
     m.save(tmp_path / "one.h5")
     assert said == []
     m.save(tmp_path / "a" / "b" / "one.h5")
-    assert said == [f"the folder {tmp_path / 'a' / 'b'} was not there and has been made"]
+    assert said == [f"the folder {tmp_path / 'a' / 'b'} did not exist and was created"]
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
@@ -224,12 +224,12 @@ def test_pictures_and_tables_replace_their_own_kind_only(tmp_path: Path) -> None
     again, other = small(tmp_path), small(tmp_path)
     again.name = other.name = "wall"
     again.history(1, "TIME")
-    assert "wall-history.csv is there" in refused(lambda: again.cycle(2))
-    assert "wall-history-1.png is there" in refused(lambda: again.plot(history=True))
-    assert "wall-plot-1.png is there" in refused(lambda: again.plot(0))
+    assert "wall-history.csv exists" in refused(lambda: again.cycle(2))
+    assert "wall-history-1.png exists" in refused(lambda: again.plot(history=True))
+    assert "wall-plot-1.png exists" in refused(lambda: again.plot(0))
     other.animate = True
     other.cycle(2)
-    assert "wall.gif is there" in refused(other.stop)
+    assert "wall.gif exists" in refused(other.stop)
     assert {(tmp_path / name).read_text()[:6] for name in written} == {"START\n"}
 
 

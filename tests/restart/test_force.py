@@ -71,7 +71,7 @@ def test_the_word_stands_last(text: str, path: str | None, force: bool) -> None:
 
 @pytest.mark.parametrize("text", ["SAVE 'x.h5' HARD", "SAVE 'x.h5'FORCED", "SAVE 'x.h5' FORCE y"])
 def test_nothing_else_stands_behind_a_name(text: str) -> None:
-    with pytest.raises(UdecError, match="put a name in quotes"):
+    with pytest.raises(UdecError, match="put the whole name in quotes"):
         parsed(text)
 
 
@@ -139,12 +139,12 @@ def test_in_a_deck(model: Model) -> None:
 
     with pytest.raises(UdecError, match="error 20"):
         obey("SAVE bad.h5")
-    assert " SAVE: the state is unsound, and the file is marked: invariant" in obey("SAVE bad.h5 FORCE")
+    assert " SAVE: the state is unsound, and the file is marked so: invariant" in obey("SAVE bad.h5 FORCE")
     with pytest.raises(UdecError, match="error 29"):
         obey("RESTART bad.h5")
     told = obey("RESTART bad.h5 FORCE")
     assert " RESTART: saved by force, being unsound: invariant" in told
-    assert " RESTART: taken by force: CYCLE and all that follows links is refused while" in told
+    assert " RESTART: taken by force: CYCLE and other commands that follow links are refused while" in told
     with pytest.raises(UdecError, match="error 20"):
         obey("CYCLE 1")
 
@@ -156,7 +156,7 @@ def test_a_run_that_comes_upon_damage_leaves_a_file_that_tells(model: Model) -> 
         run_deck(model, "GRAVITY 0 -10\nCYCLE 1\n", out)
     rescue = model.out / "rescue.h5"
     assert f"the damaged state is saved in {rescue}" in str(caught.value)
-    assert "the state that is saved is there to be looked at: invariant" in out.getvalue()
+    assert "the saved state is for inspection only: invariant" in out.getvalue()
     assert see(rescue).mark
     run_deck(Model.restore(rescue, force=True, out=model.out), "SAVE first.h5 FORCE\n", out)
     with pytest.raises(UdecError) as caught:  # whatever the error is, there is a file

@@ -67,7 +67,7 @@ CASES: dict[str, tuple[Callable[[h5py.File], object], str]] = {
     "outside, deck": (lambda f: replaced(f, "deck", (), "S10", external=[("secret", 0, 10)]), STORED),
     "any length": (
         lambda f: replaced(f, "deck", (), h5py.string_dtype()),
-        "/deck is no text of fixed length",
+        "/deck is not a text of fixed length",
     ),
     "rank": (lambda f: replaced(f, VALUE, (1,) * 32, "<f8"), "instead of one row"),
     "names": (lambda f: packed_names(np.random.default_rng(3), f, Path()), "/recorded is no group"),
@@ -107,7 +107,7 @@ def test_one_dataset_under_many_names(image: bytes, tmp_path: Path) -> None:
             del file[f"recorded/{number}"]
             file[f"recorded/{number}"] = file["recorded/2"]
 
-    assert "is said to be larger than the file" in refusal(forged(image, tmp_path / "bad.h5", change))
+    assert "is declared larger than the file" in refusal(forged(image, tmp_path / "bad.h5", change))
 
 
 NASTY = "\x1b]0;mine\x07\u202egnp.exe\r\n"

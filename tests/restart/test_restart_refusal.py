@@ -99,7 +99,7 @@ def test_other_versions(good: Path) -> None:
     assert refusal(good) == "has format 2.7, and this program reads format 1"
     assert refusal(good, info) == "has format 2.7, and this program reads format 1"
     good.write_bytes(seal(memoryview(image), (1, 8)) + image)
-    assert refusal(good) == "is damaged: its first lines name another format version than the rest"
+    assert refusal(good) == "is damaged: its first lines and the rest name different format versions"
 
 
 def test_a_later_minor_version_is_read(good: Path) -> None:
@@ -270,7 +270,7 @@ CASES: dict[str, tuple[Edit, str]] = {
         put("common/GRAVX", np.array(0.0, ">f8")),
         "/common/GRAVX holds reals of 8 bytes, not little-endian float64",
     ),
-    "deck type": (put("deck", 1.0), "/deck is no text of fixed length"),
+    "deck type": (put("deck", 1.0), "/deck is not a text of fixed length"),
     "deck link": (dangling, "/deck is a link that leads elsewhere"),
     "deck text": (put("deck", np.array(b"\xff\xfe\n", "S3")), "cannot be understood"),
 }
@@ -339,7 +339,7 @@ def test_mtop_out_of_range(name: str, mtop: int, tmp_path: Path) -> None:
     path = save(ARRAYS[name], tmp_path / "two.h5")
     edit(path, commons(ARRAYS[name], MTOP=mtop))
     what = refusal(path)
-    assert f"and MTOP {mtop} cannot be in {name}" in what or "more memory than there is" in what
+    assert f"and MTOP {mtop} are impossible in {name}" in what or "more than the memory available" in what
 
 
 def test_sizes_that_only_exist_on_paper(tmp_path: Path) -> None:
@@ -355,7 +355,7 @@ def test_sizes_that_only_exist_on_paper(tmp_path: Path) -> None:
         file.create_dataset("heap/IA", (words,), "<i8", chunks=(65536,), fletcher32=True).attrs.update(kept)
 
     edit(path, change)
-    assert refusal(path) == "is damaged: /heap/IA is said to be larger than the file"
+    assert refusal(path) == "is damaged: /heap/IA is declared larger than the file"
 
 
 @pytest.mark.parametrize("name", SCHEMES)
@@ -474,7 +474,7 @@ def test_a_refusal_names_what_was_meant(tmp_path: Path) -> None:
         load(path)
     assert str(caught.value) == (
         f"error 29: restart file cannot be used: {path} is not a restart file of udec_ia\n"
-        "RESTART reads files written by SAVE: give the name of one"
+        "RESTART reads files written by SAVE: give the name of such a file"
     )
 
 

@@ -54,7 +54,7 @@ def test_a_run_that_kills_its_process_is_a_result(tmp_path: Path) -> None:
     runs[2] = replace(runs[2], constitutive=(str(tmp_path / "once.py"),))
     results = run_all(runs, tmp_path, jobs=2)
     assert [one.status for one in results] == ["ended", "died", "ended"]
-    assert "too little memory" in results[1].message
+    assert "for want of memory" in results[1].message
     assert sorted(os.listdir(tmp_path / RUNS)) == [run.name for run in runs]
     assert outcomes(run_all(runs[1:2], tmp_path, jobs=1)) == outcomes(results[1:2])  # kept, as all are
 
@@ -112,7 +112,7 @@ def test_ctrl_c_leaves_what_is_done(tmp_path: Path) -> None:
     os.killpg(process.pid, signal.SIGINT)
     printed, complaints = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert complaints == "\ninterrupted: what was computed is saved in pile-sweep\n"
+    assert complaints == "\ninterrupted: the results so far are saved in pile-sweep\n"
     table = (folder / "pile.csv").read_text().splitlines()
     assert 6 > len(table) - 1 == whole(folder / RUNS) >= printed.count(" ended, ")
     assert "Traceback" not in printed

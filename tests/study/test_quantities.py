@@ -94,7 +94,7 @@ def test_what_comes_and_goes_is_looked_for_in_the_end(tmp_path: Path) -> None:
     assert value == pytest.approx(1, abs=0.01)
     (value,), remarks = worth(tmp_path, "contact(0, 1).KYC")
     assert math.isnan(value)
-    assert remarks == ("contact(0, 1).KYC has no value: no contact has a place to be near to",)
+    assert remarks == ("contact(0, 1).KYC has no value: no contact has a position",)
 
 
 def test_before_the_first_cycle_places_are_those_of_now(tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "column", "reason"),
     [
-        ("", 0, "this is no quantity: write time"),
+        ("", 0, "this is not a quantity: write time"),
         ("tim", 0, "did you mean TIME?"),
         ("KXD", 0, "KXD of which block? write block(x, y).KXD, or max block.KXD"),
         ("v = KXD", 4, "KXD of which block?"),
@@ -136,7 +136,7 @@ def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
         ("block(1, 2).KYY", 12, "a block has no field KYY"),
         ("contact(1, 2).DISPLACEMENT", 14, "a contact has no field DISPLACEMENT"),
         ("largest block.KY", 0, "there is no 'largest' here, but max, min, mean, sum"),
-        ("max block.KY were KX > 1", 13, "what comes behind it begins with: where"),
+        ("max block.KY were KX > 1", 13, "the text after it must begin with: where"),
         ("max block.KY where KXX > 1", 19, "a block has no field KXX"),
         ("v = count block where KX > 1 and KXX", 33, "a block has no field KXX"),
         ("last history 0", 13, "histories count from 1"),

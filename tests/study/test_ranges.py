@@ -39,7 +39,7 @@ def test_values(text: str, values: list[object]) -> None:
         ("1:2:x", "a range is first:last:number"),
         ("a:2:3", "a range is first:last:number"),
         ("1:2:1", "a range has 2 to 1000000 values, not 1"),
-        ("1:2:3:lin", "'lin' is no kind of range"),
+        ("1:2:3:lin", "'lin' is not a kind of range"),
         ("0:2:3:log", "begins and ends above 0"),
         ("1,,2", 'F cannot be ""'),
         ("1,a b", 'F cannot be "a b"'),
@@ -61,7 +61,7 @@ def test_values_from_python() -> None:
     for wrong in ([], [None], [float("inf")], [True]):
         with pytest.raises(ValueError, match="F"):
             values_of("F", wrong)
-    with pytest.raises(ValueError, match="no name of a variable"):
+    with pytest.raises(ValueError, match="not the name of a variable"):
         values_of("2F", 1)
 
 

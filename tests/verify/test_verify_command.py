@@ -97,8 +97,8 @@ def test_what_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     [
         (["inclin"], "there is no problem inclin: did you mean incline?"),
         (["qqq"], "there is no problem qqq: udec verify --list names them all"),
-        (["--blocks", "soft"], "--blocks soft: choose of rigid, sdef, fdef, with commas between"),
-        (["--build", "i8r8"], "--build i8r8: choose of i16r32"),
+        (["--blocks", "soft"], "--blocks soft: choose from rigid, sdef, fdef, with commas between"),
+        (["--build", "i8r8"], "--build i8r8: choose from i16r32"),
         (["ball", "--blocks", "fdef"], "none of these problems makes sense for fdef in i32r64"),
     ],
 )
@@ -111,7 +111,7 @@ def test_a_file_that_is_no_problem(tmp_path: Path, capsys: pytest.CaptureFixture
     path = tmp_path / "law.py"
     path.write_text('"""Nothing."""\n')
     assert main(["verify", str(path)]) == 2
-    assert "is no problem: it needs a docstring, BLOCKS and solve(case)" in capsys.readouterr().err
+    assert "is not a problem: it needs a docstring, BLOCKS and solve(case)" in capsys.readouterr().err
     path.write_text("1 +\n")
     assert main(["verify", str(path)]) == 2
     assert "SyntaxError" in capsys.readouterr().err

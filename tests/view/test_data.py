@@ -218,11 +218,11 @@ def test_model_view(tmp_path: Path) -> None:
     m.view(target)  # over a view of ours
     assert target.read_text() == first
     target.write_text("<!doctype html>\n<title>mine</title>")
-    with pytest.raises(UdecError, match="is no view") as refused:
+    with pytest.raises(UdecError, match="is not a view") as refused:
         m.view(target)
     assert refused.value.number == 31
     assert "mine" in target.read_text()
-    with pytest.raises(ValueError, match="one state or more"):
+    with pytest.raises(ValueError, match="at least one state"):
         Page().write(target)
 
 

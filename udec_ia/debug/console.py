@@ -49,7 +49,7 @@ class Console(cmd.Cmd):
     deck: the lines of the deck, for `list`.
     """
 
-    doc_header = "commands (help COMMAND tells more; every name may be cut short):"
+    doc_header = "commands (help COMMAND tells more; names may be abbreviated):"
 
     def __init__(
         self,
@@ -201,20 +201,20 @@ class Console(cmd.Cmd):
         debugger = self.debugger
         probes: list[Probe] = [Changed(place(debugger.atlas, text))] if text else [*debugger.probes.values()]
         told = debugger.back_to(probes)
-        self.say(told or "nothing of that has happened before")
+        self.say(told or "this has not happened before")
         self._here()
 
     def do_resume(self, _: str) -> bool:
         """resume: let the run go on from here; what came later is forgotten."""
         if self.debugger.trace is not None:
-            raise ValueError("a run goes on between two cycles: step or reverse-step first")
+            raise ValueError("a run can only continue between two cycles: step or reverse-step first")
         raise Resume(self.debugger.event)
 
     def do_patch(self, text: str) -> bool:
         """patch NAME = VALUE, ...: give words other values, as PATCH does in a deck."""
         debugger = self.debugger
         if debugger.in_past:
-            raise ValueError("what has been stays as it was: goto now first, or resume from here")
+            raise ValueError("the past cannot be changed: goto now first, or resume from here")
         if not debugger.timeline.stretches:
             raise ValueError("the deck has not begun: step first")
         try:

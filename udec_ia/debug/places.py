@@ -49,12 +49,12 @@ def place(atlas: Atlas, name: str) -> Place:
     if kind is None:
         return _common(field.upper(), k)
     if kind not in KINDS:
-        raise ValueError(f"{kind} is no kind of group: there are {', '.join(KINDS)}")
+        raise ValueError(f"{kind} is not a kind of group: choose one of {', '.join(KINDS)}")
     if not atlas.holds(kind, int(address)):
         raise ValueError(f"there is no {kind} at {address}")
     known = {one.name: one for one in TABLE.group(kind).fields}
     if field.upper() not in known:
-        raise ValueError(f"{field} is no field of a {kind}: there are {', '.join(known)}")
+        raise ValueError(f"{field} is not a field of a {kind}: there are {', '.join(known)}")
     if k >= known[field.upper()].count:
         raise ValueError(f"{field.upper()} has {known[field.upper()].count} elements")
     return of_word(atlas, f"{kind}@{address}", atlas.word(atlas.span(int(address)), known[field.upper()], k))
@@ -93,7 +93,9 @@ def named(atlas: Atlas, part: str, index: int) -> Place:
 def _common(name: str, k: int) -> Place:
     field: Any = next((one for one in TABLE.common if one.name == name), None)
     if field is None:
-        raise ValueError(f"{name} is no name of the common block, and a field needs its group: block@88.KXD")
+        raise ValueError(
+            f"{name} is not a variable of the common block; a field needs its group, as in block@88.KXD"
+        )
     if k >= field.count:
         raise ValueError(f"{name} has {field.count} elements")
     text = f"{name}({k + 1})" if field.count > 1 else name

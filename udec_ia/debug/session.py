@@ -22,7 +22,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.look.atlas import Atlas
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
 from udec_ia.signals import poll
 
 PIECE_SECONDS = 0.02
@@ -332,18 +332,16 @@ class Debugger:
         return self._numbered
 
 
-class _Pieces(Watch):
-    """Runs a CYCLE or SOLVE in the pieces that the debugger asks for. inner: what watches the run else."""
+class _Pieces(Around):
+    """Runs a CYCLE or SOLVE in the pieces that the debugger asks for."""
 
     def __init__(self, debugger: Debugger, inner: Watch) -> None:
-        self.debugger, self.inner = debugger, inner
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
+        super().__init__(inner)
+        self.debugger = debugger
 
     def begin(self) -> None:
         """The run is prepared."""
-        self.inner.begin()
+        super().begin()
         self.debugger.timeline.prepared(self.debugger.model.array)
 
     def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
@@ -358,14 +356,6 @@ class _Pieces(Watch):
             if completed < piece or self.debugger.model.array.h.ci[g.NERR] != 0:
                 break
         return done
-
-    def look(self) -> None:
-        """As Watch.look."""
-        self.inner.look()
-
-    def hand_on(self) -> int:
-        """As Watch.hand_on."""
-        return self.inner.hand_on()
 
 
 def cycles_of(statement: Statement) -> int:

@@ -191,7 +191,7 @@ class Timeline:
             return self.copies[event].array()
         if base < 0 or not self._within_run(base, event):
             after = min(one for one in self.copies if one > event)
-            raise Gone(f"event {event} cannot be reached, as memory is short; the next that can is {after}")
+            raise Gone(f"event {event} cannot be reached for want of memory; the next that can be is {after}")
         *_, (_, array) = self.through(base, event)
         return array
 

@@ -126,19 +126,20 @@ FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in 
 COMMANDS = (
     Command(
         "Block",
-        "Create a rigid block with the corners (x,y), given clockwise. One BLOCK in a run; SPLIT makes more.",
+        "Create a rigid block with the corners (x,y), given clockwise. A run has one BLOCK; SPLIT makes "
+        "more blocks.",
         "BLOCK MAT=2 0,0 0,40 60,40 60,0",
         words=(MATERIAL, CONSTITUTIVE),
         list="x y",
     ),
     Command(
         "BOundary",
-        "Conditions on the grid-points and block centroids in x1<x<x2, y1<y<y2: velocities or forces; on the "
-        "edges with both ends there, those of joints too: stresses (tension positive, growing with x and y "
-        "by XGrad and YGrad) or viscous, non-reflecting edges, with the properties of now. A sine "
-        "(frequency, duration), which begins now, or a FUNCTION of the time of the model multiplies loads "
-        "and velocities. Loads add to those that are there, a velocity takes the place of the last one. "
-        "Free takes all conditions away.",
+        "Boundary conditions in x1<x<x2, y1<y<y2. Velocities and forces act on the grid-points and block "
+        "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension"
+        " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
+        "non-reflecting, with the present properties. A sine (frequency, duration) begins now; a FUNCTION "
+        "depends on the time of the model. Either multiplies loads and velocities. Loads add to existing "
+        "loads. A velocity replaces the previous one. Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -179,12 +180,12 @@ COMMANDS = (
     ),
     Command(
         "DAmping",
-        "Rayleigh damping: fraction of critical damping at the centre frequency, in cycles per unit time. "
-        "Mass or Stiffness takes that half alone, which is fcrit/2 at that frequency. There is none "
-        "by default. Or what only leads to rest: LOCAL takes the fraction f of every unbalanced force, "
-        "against the velocity; COMBINED half of that, and half against the change of the force; KINETIC "
-        "stops all when the kinetic energy has passed a peak; ADAPTIVE is mass damping, of which f is "
-        "the fraction of critical for what moves. None of these is physics.",
+        "Rayleigh damping: the fraction of critical damping at the centre frequency, in cycles per unit "
+        "time. Mass or Stiffness keeps that half alone, which is fcrit/2 at that frequency. There is no "
+        "damping by default. The other kinds only lead to rest and are not physical. LOCAL opposes the "
+        "velocity with the fraction f of every unbalanced force. COMBINED takes half of that, and half "
+        "against the change of the force. KINETIC stops all motion when the kinetic energy has passed a "
+        "peak. ADAPTIVE is mass damping, with f the fraction of critical damping for what moves.",
         "DAMP 0.1 30 STIFFNESS",
         optional="fcrit freq",
         words=(
@@ -200,9 +201,9 @@ COMMANDS = (
     ),
     Command(
         "DEFault",
-        "Give variables of the deck their values: names and values by turns. In the lines that follow $F or "
-        "${F} stands for the value of F, in any place but a comment. A value that is given with the deck, by "
-        "--set F=0.4, goes before it. A value is a number or a word.",
+        "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
+        "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
+        "given with the deck, by --set F=0.4, takes precedence.",
         "DEFAULT F=0.5 N=1000",
         text="assignments",
         needs_text=True,
@@ -220,8 +221,8 @@ COMMANDS = (
     ),
     Command(
         "ENErgy",
-        "ON: an account of the energy begins, which PRINT ENERGY shows: motion, springs, weight, friction, "
-        "damping, boundary conditions. It makes a cycle longer. OFF: it ends.",
+        "ON starts an account of the energy, which PRINT ENERGY shows: motion, springs, weight, friction, "
+        "damping, boundary conditions. Cycles take longer with it. OFF ends it.",
         "ENERGY ON",
         words=(Word("ON", sets="state"), Word("OFf", sets="state")),
         first="state",
@@ -232,7 +233,7 @@ COMMANDS = (
     ),
     Command(
         "FUnction",
-        "Function number n for BOUNDARY: factors f at the times t of the model, linear between them.",
+        "Define function number n for BOUNDARY: factors f at the times t of the model, linear in between.",
         "FUNCTION 1 0 0 0.5 1",
         numbers="n",
         list="t f",
@@ -240,10 +241,10 @@ COMMANDS = (
     ),
     Command(
         "FRaction",
-        "Use the fraction f of the critical time-step: of the estimate of 1980, which is only approximate, "
-        "or of a bound that no mode of the contacts and zones of now exceeds. By default it is 0.1 of the "
-        "estimate. SCALED: of that bound, with inertial masses that make all as quick as the quickest; "
-        "the way to rest is then none of the model, and time has no meaning.",
+        "Use the fraction f of the critical time-step. Without a word this is the estimate of 1980, which "
+        "is only approximate; the default is 0.1 of it. SAFE: of a bound that no mode of the present "
+        "contacts and zones exceeds. SCALED: of that bound, with inertial masses that make all modes as "
+        "quick as the quickest. The path to rest is then not that of the model, and time has no meaning.",
         "FRAC 0.1",
         numbers="f",
         words=(Word("Safe"), Word("SCaled")),
@@ -255,9 +256,9 @@ COMMANDS = (
     ),
     Command(
         "GEnerate",
-        "Make the first block in range fully-deformable: grid-points (x,y), and zones as triples of them, "
-        "where the last grid-point is number 1. Automatic makes triangles with sides of about the length d. "
-        "Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
+        "Make the first block in the range fully-deformable. Manual: grid-points (x,y), and zones as "
+        "triples of their numbers; the last grid-point is number 1. Automatic: triangles with sides of "
+        "about d. Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
         numbers=RANGE,
         words=(
@@ -283,10 +284,11 @@ COMMANDS = (
     ),
     Command(
         "HIStory",
-        "Record a number every n cycles: a field of a group, by its name in the table of data groups, of the "
-        "group at an address or of those nearest to points; a variable of the common block, such as TIME or "
-        "WFRIC; or a quantity of the whole model: " + ", ".join(QUANTITIES) + ". The numbers go to "
-        "NAME-history.csv and NAME-history.h5 after every CYCLE.",
+        "Record a number every n cycles. It is a field of a group, named as in the table of data groups; "
+        "the group is given by its address, or as the one nearest to a point. Or it is a variable of the "
+        "common block, such as TIME or WFRIC, or a quantity of the whole model: "
+        + ", ".join(QUANTITIES)
+        + ". The numbers go to NAME-history.csv and NAME-history.h5 after every CYCLE.",
         "HISTORY 10 KXD AT 15,25 25,25",
         numbers="n",
         words=(
@@ -300,8 +302,9 @@ COMMANDS = (
     ),
     Command(
         "INsitu",
-        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2, tension positive; "
-        "they grow with x and y by XGrad and YGrad. Joints begin without force and close under them.",
+        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive;"
+        " XGrad and YGrad are the increases with x and y. Joints start without force and close under these "
+        "stresses.",
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
@@ -309,9 +312,9 @@ COMMANDS = (
     ),
     Command(
         "PAtch",
-        "Give words of the main array other values by name: the field of a group, a variable of the common "
-        "block, or an integer word by its address; several with commas between them. All or none: the state "
-        "is proved sound with them first.",
+        "Change words of the main array by name: a field of a group, a variable of the common block, or an "
+        "integer word by its address. Separate several with commas. The state is first proved sound with "
+        "the new values; otherwise nothing is changed.",
         "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
         text="assignments",
         needs_text=True,
@@ -319,12 +322,12 @@ COMMANDS = (
     ),
     Command(
         "PLot",
-        "Plot all blocks and centroids: 0 starts a frame, 1 draws over the last one. The picture is written "
-        "at once, one of more than ten states when it has grown by a quarter and when it ends. On request "
-        "also contacts with their forces, domains, addresses, principal stresses, velocities, displacements "
-        "since the frame began (so with PLOT 1), and deformable blocks coloured by a stress (11, 12, 22), "
-        "pressure or shear stress. WINDOW is the range that the picture shows. HISTORY alone plots what was "
-        "recorded instead.",
+        "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
+        " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
+        " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
+        "stress. WINDOW is the range that the picture shows. HISTORY alone plots the histories instead. A "
+        "picture is written at once; one with more than ten states is written when it has grown by a "
+        "quarter, and when it ends.",
         "PLOT 0 CONTACTS",
         optional="n",
         words=(
@@ -343,8 +346,8 @@ COMMANDS = (
     Command(
         "Print",
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or what "
-        "histories have recorded.",
+        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or the"
+        " histories.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(
             Word(keyword, sets=SEVERAL)
@@ -366,14 +369,15 @@ COMMANDS = (
     ),
     Command(
         "PROperty",
-        "Define properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
-        "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force for a metre of overlap), joint "
-        "friction coefficient, shear modulus (G, Pa). Stiffnesses and cohesion are those of each contact, "
-        "however long the joint: two blocks face to face have two. What is not given is 0: a joint without "
-        "friction slides. For constitutive numbers 2 to "
-        "5: dilation of joints, their residual friction and cohesion and the critical slip that leads to "
-        "these; friction, cohesion, tensile strength and dilation inside blocks; four numbers for laws of "
-        "your own. Frictions and dilations are tangents of angles.",
+        "Define the properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
+        "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
+        "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
+        "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
+        "blocks face to face have two contacts. A joint between two materials has the properties of one of "
+        "them (PRINT CONTACTS shows which): give both the same joint properties, or check. For constitutive"
+        " numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
+        "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
+        "laws of your own. Frictions and dilations are tangents of angles.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
         words=(
             MATERIAL,
@@ -385,9 +389,9 @@ COMMANDS = (
     ),
     Command(
         "Restart",
-        "Go on from the restart file, restart.h5 if it is not named; relative names begin in the folder for "
-        "files (--out). FORCE takes an unsound state, too, to be looked at and mended: what follows "
-        "links, as CYCLE does, is refused until they are sound.",
+        "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
+        "files (--out). FORCE also accepts an unsound state, for inspection and repair. Commands that "
+        "follow links, such as CYCLE, are then refused until the links are sound.",
         "RESTART slope.h5",
         words=(BY_FORCE,),
         text="path",
@@ -402,17 +406,17 @@ COMMANDS = (
     ),
     Command(
         "Round",
-        "Round each corner with a circle tangential to its edges at the distance d. Half the shortest edge "
-        "is the most, twice the greatest overlap the least. Blocks touch where their corners' circles begin: "
-        "a block turns about a point at d from its corner.",
+        "Round each corner with a circle tangential to its edges at the distance d. The upper limit is half"
+        " the shortest edge, the lower limit twice the greatest overlap. Blocks touch where the circles of "
+        "their corners begin: a block turns about a point at d from its corner.",
         "ROUND 0.5",
         numbers="d",
     ),
     Command(
         "SAve",
-        "Save the state on the restart file, restart.h5 if it is not named; relative names begin in the "
-        "folder for files (--out). It may replace a restart file, and nothing else. FORCE saves an unsound "
-        "state, too, and marks the file; a file that is called FORCE has its name in quotes.",
+        "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
+        "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
+        "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
         "SAVE slope.h5",
         words=(BY_FORCE,),
         text="path",

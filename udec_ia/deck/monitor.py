@@ -37,7 +37,7 @@ COUNTED = {  # what a command that returns a number has done
     "insitu": "block stressed",
     "boundary": "condition in the range",
 }
-NONE = {"split": "no block cut", "boundary": "no condition in range"}
+NONE = {"split": "no block was cut", "boundary": "no condition in range"}
 RUNS = ("cycle", "solve")  # what they have done until something ends them stays
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
@@ -80,7 +80,7 @@ class Monitor:
             except BrokenPipeError:
                 raise
             except BaseException as failure:  # of ours, or of a function of the user's
-                failure.add_note(f"what was computed is saved in {self.rescue()}")
+                failure.add_note(f"the results so far are saved in {self.rescue()}")
                 raise
 
     def obey(self, statement: Statement) -> None:
@@ -97,9 +97,9 @@ class Monitor:
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
         except MemoryError as error:
-            stays = "what was computed is kept" if name in RUNS else "nothing was changed"
-            advice = f"take a smaller model, or a machine with more memory; {stays}"
-            raise at(UdecError(1, "this machine has no memory left", advice), call.head) from error
+            stays = "the results so far are kept" if name in RUNS else "nothing was changed"
+            advice = f"use a smaller model, or a machine with more memory;  {stays}"
+            raise at(UdecError(1, "this machine is out of memory", advice), call.head) from error
         except UdecError as error:
             raise at(error, call.place_of(error)) from error.__cause__
         except BrokenPipeError:
@@ -211,10 +211,10 @@ class Monitor:
         try:
             violations = self.model.check_file(path)
         except KeyboardInterrupt:
-            self._write(f"{path} was written, but not read again and proved: interrupted")
+            self._write(f"{path} was written, but the check by reading it again was interrupted")
             raise
         for violation in violations[:1]:
-            self._write(f"the state that is saved is there to be looked at: {violation}")
+            self._write(f"the saved state is for inspection only: {violation}")
         return str(path)
 
 

@@ -25,9 +25,9 @@ APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins be
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
 RESTART_FILE = ["udec_ia", "restart", "file"]  # the words that such a file begins with
-NO_DECK = "this is a restart file: udec info says what is in it, RESTART in a deck goes on from it"
-ALONE = "no command to continue stands before this line; at a terminal, end the line of the command with +"
-NO_COMMENT = "a comment behind a command begins with ; # or !, with * only on a line of its own"
+NO_DECK = "this is a restart file: udec info shows its contents, RESTART in a deck continues from it"
+ALONE = "there is no command before this line to continue; at a terminal, end the line of the command with +"
+NO_COMMENT = "a comment after a command begins with ; # or !; one with * needs a line of its own"
 NO_WORD = "a line begins with a command, or with + if it continues the one before"
 CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
 
@@ -70,7 +70,7 @@ def number(token: Token, name: str, advice: str) -> int | float:
     if name[0] in INTEGER_NAMES:
         if not INTEGER.fullmatch(token.text):
             raise at(
-                UdecError(10, f"{quoted(token.text)} is not an integer", f"{name} is a whole number"), token
+                UdecError(10, f"{quoted(token.text)} is not an integer", f"{name} must be an integer"), token
             )
         digits = token.text.lstrip("+-0") or "0"
         if len(digits) > INTEGER_DIGITS:
@@ -144,9 +144,9 @@ class _Parser:
         rest = line.text[end:].lstrip(" \t=")
         text, last = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
         if text is None:
-            detail = f"{rest[0]} stands before the name, and not behind it as the last of the line"
+            detail = f"{rest[0]} stands before the name; it must be the last word of the line"
             place = Token(rest[0], line, len(line.text) - len(rest) + 1)
-            raise at(UdecError(10, detail, "put a name in quotes as a whole, or in none"), place)
+            raise at(UdecError(10, detail, "put the whole name in quotes, or none of it"), place)
         place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
@@ -217,7 +217,7 @@ class _Parser:
         if match(allowed, token.text) is not None:
             return
         if NUMBER.fullmatch(token.text) and allowed[0].values:
-            detail = f"{quoted(token.text)} stands where {allowed[0].form} should"
+            detail = f"{quoted(token.text)} stands in place of {allowed[0].form}"
             raise at(UdecError(10, detail, self._advice()), token)
         if self.command.first_error == 10 and match(self.command.words, token.text) is not None:
             detail = f"{self.command.first.upper()} is missing before {quoted(token.text)}"
@@ -238,7 +238,7 @@ class _Parser:
             self.call.positional.append(word.keyword.lower())
             return
         if word.argument in self.call.named:
-            raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} a second time"), token)
+            raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} twice"), token)
         self.call.places[word.argument] = (self._next() if word.values else token) or token
         self.call.named[word.argument] = self._value(word)
 

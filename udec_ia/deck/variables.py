@@ -27,7 +27,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
 FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
-IS_NAME = "a name is a letter and what follows it of letters, digits and _"
+IS_NAME = "a name is a letter, then letters, digits and _"
 IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
 LAST = ("stop", "end")  # commands after which a deck is not read any more
 
@@ -53,7 +53,7 @@ class Variables:
     def __init__(self, given: Values | None = None) -> None:
         for name in given or {}:
             if not NAME.fullmatch(name):
-                raise UdecError(10, f"{quoted(name)} is no name of a variable", IS_NAME)
+                raise UdecError(10, f"{quoted(name)} is not the name of a variable", IS_NAME)
         self.given = {name.upper(): spelt(name.upper(), value) for name, value in (given or {}).items()}
         self.defaults: dict[str, tuple[str, Token]] = {}
         self.used: dict[str, None] = {}
@@ -101,17 +101,17 @@ class Variables:
             )
         for name, value in zip(rest[::2], [*rest[1::2], None], strict=False):
             if not NAME.fullmatch(name.text):
-                advice = "here the name stands without $" if name.text.startswith("$") else FORM
-                raise at(UdecError(10, f"{quoted(name.text)} is no name of a variable", advice), name)
+                advice = "write the name without $ here" if name.text.startswith("$") else FORM
+                raise at(UdecError(10, f"{quoted(name.text)} is not the name of a variable", advice), name)
             if value is None:
                 place = Token("", name.line, name.end)
                 raise at(UdecError(7, f"no value follows {quoted(name.text)}", FORM), place)
             if not (NUMBER.fullmatch(value.text) or PLAIN.fullmatch(value.text)):
-                raise at(UdecError(10, f"{quoted(value.text)} is no value of a variable", IS_VALUE), value)
+                raise at(UdecError(10, f"{quoted(value.text)} is not a value of a variable", IS_VALUE), value)
             key = name.text.upper()
             if key in self.defaults:
                 before = self.defaults[key][1].line.number
-                raise at(UdecError(10, f"{key} has a default already, in line {before}"), name)
+                raise at(UdecError(10, f"{key} already has a default, in line {before}"), name)
             self.defaults[key] = value.text, name
 
     def _filled(self, line: Line, command: Command | None) -> Line:
@@ -131,7 +131,7 @@ class Variables:
             Token(use[0], line, use.start() + 1),
         )
         if not NAME.fullmatch(name):
-            raise at(UdecError(10, f"{quoted(use[0])} names no variable", IS_NAME), place)
+            raise at(UdecError(10, f"{quoted(use[0])} is not a variable", IS_NAME), place)
         self.used[name] = None
         if name in self.given:
             return self.given[name]

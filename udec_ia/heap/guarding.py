@@ -34,7 +34,7 @@ from udec_ia.heap.views import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
 
-ADVICE = "udec check says which pointer is wrong; if none is, the routine is: save the deck that leads here"
+ADVICE = "udec check shows which pointer is wrong; if none is, the routine is wrong: keep this deck"
 
 
 class Refused(Exception):

@@ -21,7 +21,7 @@ from udec_ia.heap.compiling import compiling
 from udec_ia.heap.kept import keep_code
 
 TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which linking.py was tried
-PACKAGE = __name__.partition(".")[0]
+KERNELS: set[Callable[..., Any]] = set()  # all that are made here; laws of the user's are compiled untold
 
 
 def wanted() -> bool:
@@ -32,6 +32,7 @@ def wanted() -> bool:
 
 def plain_kernel(function: Callable[..., Any], folder: Path, **flags: Any) -> Any:
     """`function` compiled. folder: where its machine code is kept; flags: as njit takes them."""
+    KERNELS.add(function)
     made = njit(cache=True, **flags)(function)
     keep_code(made, folder)
     return made
@@ -45,7 +46,7 @@ class _Teller(event.Listener):
 
     def on_start(self, told: Any) -> None:
         """A kernel begins, or what a kernel calls: that is a part of the same wait."""
-        ours = told.data["dispatcher"].py_func.__module__.partition(".")[0] == PACKAGE
+        ours = told.data["dispatcher"].py_func in KERNELS
         first = ours and all(isinstance(one, nullcontext) for one in self.open)
         self.open.append(compiling() if first else nullcontext())
         self.open[-1].__enter__()

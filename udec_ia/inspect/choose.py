@@ -38,13 +38,11 @@ def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any
     if there is no such group.
     """
     if len(at) and address is not None:
-        raise UdecError(10, "both an address and a point", "give one of them", parameter="at")
+        raise UdecError(10, "an address and a point", "give one of them", parameter="at")
     if not kind:
         if len(at) or address is not None:
             detail = f"{field} belongs to no group"
-            raise UdecError(
-                10, detail, "leave address and point out", parameter="at" if len(at) else "address"
-            )
+            raise UdecError(10, detail, "omit address and point", parameter="at" if len(at) else "address")
         return [Chosen(0)]
     if address is not None:
         if address not in table(array, kind)["address"]:
@@ -53,7 +51,7 @@ def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any
         return [Chosen(address)]
     if not len(at):
         detail = f"{field} of which {kind}?"
-        raise UdecError(7, detail, "give its address, or a point that it is nearest to", parameter="field")
+        raise UdecError(7, detail, "give its address, or a point near it", parameter="field")
     return _nearest(array, kind, _points(array, at))
 
 
@@ -71,7 +69,7 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
     address, place = _places(array, kind)
     if not len(address):
         if len(table(array, kind)):
-            raise UdecError(26, f"no {kind} has a place to be near to", "give its address", parameter="field")
+            raise UdecError(26, f"no {kind} has a position", "give its address", parameter="field")
         raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
     nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
     return [Chosen(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import update_wrapper
+from typing import Concatenate, ParamSpec, TypeVar
+
 from udec_ia.errors import UdecError
+from udec_ia.heap.array import MainArray
 from udec_ia.inspect.change import patch
 from udec_ia.layout.offsets import DTOL
 from udec_ia.methods.state import State
+from udec_ia.ops.commands import boundary as bounds
 from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.boundary import ZERO, Triple, boundary, number_of_conditions, set_function
+from udec_ia.ops.commands.boundary import ZERO, Triple, number_of_conditions
 from udec_ia.ops.commands.change import change
 from udec_ia.ops.commands.create import create
 from udec_ia.ops.commands.delete import delete
+from udec_ia.ops.commands.function import set_function
 from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
 from udec_ia.ops.commands.generate_automatic import generate_automatically
 from udec_ia.ops.commands.insitu import insitu
@@ -20,6 +27,20 @@ from udec_ia.ops.commands.uncut import why_uncut
 from udec_ia.ops.common.limits import real, reals, rows, whole
 from udec_ia.ops.common.ranges import limits_turned, why_no_block
 from udec_ia.transaction import command
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def on_shapes(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[State, P], R]:
+    """`op` as a method that takes what it takes: what looks at outlines, after these have been proved."""
+
+    def method(model: State, /, *args: P.args, **named: P.kwargs) -> R:
+        model._ready(shapes=True)
+        return op(model.array, *args, **named)
+
+    update_wrapper(method, op)
+    return method
 
 
 class Blocks(State):
@@ -144,43 +165,7 @@ class Blocks(State):
         self._tell_lost(conditions)
         return ib
 
-    @command
-    def boundary(
-        self,
-        x1: float,
-        x2: float,
-        y1: float,
-        y2: float,
-        *,
-        xvel: float | None = None,
-        yvel: float | None = None,
-        xforce: float = 0.0,
-        yforce: float = 0.0,
-        stress: Triple = ZERO,
-        xgrad: Triple = ZERO,
-        ygrad: Triple = ZERO,
-        viscous: bool = False,
-        sine: tuple[float, float] | None = None,
-        function: int | None = None,
-        free: bool = False,
-    ) -> int:
-        """BOUNDARY: conditions on what lies in the range (ops.commands.boundary). Returns their number."""
-        self._ready(shapes=True)
-        return boundary(
-            self.array,
-            (x1, x2, y1, y2),
-            xvel=xvel,
-            yvel=yvel,
-            xforce=xforce,
-            yforce=yforce,
-            stress=reals(3, stress=stress),
-            xgrad=reals(3, xgrad=xgrad),
-            ygrad=reals(3, ygrad=ygrad),
-            viscous=viscous,
-            sine=None if sine is None else reals(2, sine=sine),
-            function=function,
-            free=free,
-        )
+    boundary = command(on_shapes(bounds.boundary))
 
     @command
     def function(self, n: int, *tf: float) -> None:

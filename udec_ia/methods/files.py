@@ -40,13 +40,13 @@ class Files(State):
             self._prove(whole=True)
         broken = [str(one) for one in check(self.array)] if force else []
         if broken:
-            self.tell(f"the state is unsound, and the file is marked: {broken[0]}")
+            self.tell(f"the state is unsound, and the file is marked so: {broken[0]}")
         target = self.out / RESTART_FILE if path is None else Path(path)
         folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
         written = save(self.array, target, self.deck_log, self.laws.record(), self._recorder.series, broken)
         self.note([written])
         if makes:
-            self.inform(f"the folder {printable(str(folder))} was not there and has been made")
+            self.inform(f"the folder {printable(str(folder))} did not exist and was created")
         return written
 
     @beside
@@ -69,7 +69,9 @@ class Files(State):
         for sentence in said:
             self.tell(sentence)
         if unsound:
-            self.tell(f"taken by force: CYCLE and all that follows links is refused while {unsound[0]}")
+            self.tell(
+                f"taken by force: CYCLE and other commands that follow links are refused while {unsound[0]}"
+            )
         for warning in self.laws.note(laws):
             self.tell(warning)
         self._boxes.forget()
@@ -83,9 +85,11 @@ class Files(State):
         )
         if ci[NSPOIL] in MESSAGES:
             told = spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))
-            self.tell(f"{told}: look at it, and go on from one before that")
+            self.tell(f"{told}: inspect it, and continue from a state before that")
         if array.scheme != self.scheme:
-            self.inform(f"goes on with the words of {array.scheme.name}, as saved; --build is for START")
+            self.inform(
+                f"continues with the word scheme {array.scheme.name}, as saved; --build applies to START only"
+            )
 
     @beside
     def take_up(self, array: MainArray, lines: Sequence[str]) -> None:

@@ -79,8 +79,10 @@ class Looks(State):
         )
         if history:
             if n is not None or what != What():
-                advice = "give PLOT HISTORY for the one, PLOT 0 for the other"
-                raise UdecError(10, "histories are not plotted with blocks", advice, parameter="history")
+                advice = "use PLOT HISTORY for histories, PLOT 0 for blocks"
+                raise UdecError(
+                    10, "histories and blocks are not plotted together", advice, parameter="history"
+                )
             return self.draw_histories()
         self._ready()
         return self.draw(self.array, n or 0, what)

@@ -126,7 +126,7 @@ class State(Session):
         broken = check_common(self.array) or check_shapes(self.array)
         for one in broken:
             if whole or one.misleads:
-                advice = "put back what was changed, or RESTART from a sound file"
+                advice = "undo the change, or RESTART from a sound file"
                 raise UdecError(20, str(one), advice)
         self._touched, self._unproved = bool(broken), False
 

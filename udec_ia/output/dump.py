@@ -33,7 +33,7 @@ def raw(atlas: Atlas, n: int = 1, m: int | None = None) -> Listing:
     h = atlas.h
     m = len(h.ia) if m is None else m
     if not 1 <= n <= m <= len(h.ia):
-        advice = f"give two addresses in rising order, from 1 to {len(h.ia)}"
+        advice = f"give two addresses in increasing order, from 1 to {len(h.ia)}"
         raise UdecError(30, f"DUMP {n} {m}", advice, parameter="n")
     pointers = "  ".join(f"{name} {h.ci[getattr(g, name)]}" for name in POINTERS)
     return Listing([pointers], LINES, Stream(lambda: ((line,) for line in _lines(atlas, n, m))))

@@ -95,7 +95,7 @@ def _check_window(window: tuple[float, float, float, float] | None, reach: float
     wide, high, far = x2 - x1, y2 - y1, max(reach, *map(abs, window))
     if not (0 < wide < np.inf and 0 < high < np.inf):
         advice = "WINDOW takes x1 x2 y1 y2 with x1 below x2 and y1 below y2, in m"
-        raise UdecError(28, "there is nothing in the window", advice, parameter="window")
+        raise UdecError(28, "the window is empty", advice, parameter="window")
     if min(wide, high) < max(max(wide, high) / SLENDER, far / REMOTE, 1 / FARTHEST) or far > FARTHEST:
         detail = f"a window of {wide:g} m by {high:g} m, with blocks {far:g} m away from 0, cannot be drawn"
         advice = f"its sides may be as 1 to {SLENDER:g}, and {REMOTE:g} of them reach from 0 to all blocks"
@@ -137,9 +137,11 @@ class Plots:
         """What is to be said of the last PLOT, which asked for `what`: why something is not to be seen."""
         said = []
         if self.frame is not None and self.frame.written < len(self.frame.states):
-            said.append(f"{len(self.frame.states)} states, drawn with the next ones or when the frame ends")
+            said.append(
+                f"{len(self.frame.states)} states, which are drawn with later ones or when the frame ends"
+            )
         if what.displacements and self.frame is not None and len(self.frame.states) == 1:
-            said.append("displacements count from here on: PLOT 1 DISPLACEMENTS draws them")
+            said.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
         if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
             said.append(RIGID)
         return said

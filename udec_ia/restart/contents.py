@@ -166,7 +166,7 @@ class Contents:
     def _spend(self, place: str, size: int) -> None:
         self._left -= size
         if self._left < 0:
-            raise _damaged(place, "is said to be larger than the file")
+            raise _damaged(place, "is declared larger than the file")
 
 
 def _damaged(place: str, what: str) -> RefusedError:
@@ -199,7 +199,7 @@ def _check_type(found: Any, kind: Any, place: str) -> None:
 def _size_of_text(found: Any, place: str, limit: int | None = None) -> int:
     """Bytes of a text of fixed length."""
     if found.get_class() != h5t.STRING or found.is_variable_str():
-        raise _damaged(place, "is no text of fixed length")
+        raise _damaged(place, "is not a text of fixed length")
     size = int(found.get_size())
     if limit is not None and size > limit:
         raise _damaged(place, f"is a text of {size} bytes")

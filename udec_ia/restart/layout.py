@@ -85,7 +85,7 @@ def table_faults(table: Table) -> list[str]:
         if field.count > MAX_WORDS:
             found.append(f"there are too many of {field.name}")
         if field.target is not None and (field.real or field.target not in (*names, *SEVERAL)):
-            found.append(f"{field.name} points to {field.target}, which is no kind of group")
+            found.append(f"{field.name} points to {field.target}, which is not a kind of group")
     return found
 
 

@@ -35,7 +35,7 @@ from udec_ia.restart.recorded import recall
 from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
-FORCE = "udec check FILE lists all that is wrong; RESTART FILE FORCE takes it, to be looked at and mended"
+FORCE = "udec check FILE lists all faults; RESTART FILE FORCE reads it for inspection and repair"
 MAX_TABLE = 2**18  # bytes of another field table, which is read like a program
 
 
@@ -129,9 +129,9 @@ def opened(path: Path) -> Iterator[Contents]:
         if file.attribute("", "format") != b"udec_ia restart":
             raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)
         if tuple(file.attribute_numbers("", "format_version", "<i4", (2,))) != version:
-            raise RefusedError("is damaged: its first lines name another format version than the rest")
+            raise RefusedError("is damaged: its first lines and the rest name different format versions")
         if not file.has_attribute("", "complete") or file.attribute_numbers("", "complete", "i1") != 1:
-            raise RefusedError("is not complete: the program that wrote it did not come to the end")
+            raise RefusedError("is not complete: the program that wrote it did not finish")
         yield file
 
 
@@ -186,7 +186,9 @@ def read_scheme(file: Contents) -> Scheme:
     for scheme in ALL_SCHEMES.values():
         if widths == (scheme.int_bits, scheme.real_bits, scheme.ratio):
             return scheme
-    raise RefusedError("has words of {} and {} bits, {} to a real: there is no such scheme".format(*widths))
+    raise RefusedError(
+        "has words of {} and {} bits, {} to a real: there is no such word scheme".format(*widths)
+    )
 
 
 def read_common(file: Contents, scheme: Scheme, table: Table) -> dict[str, Any]:
@@ -218,7 +220,7 @@ def read_state(file: Contents, front: Words) -> Seen:
     scheme, ours, theirs = front.scheme, read_table(), front.table
     mfree, mtop = front.integer("MFREE"), front.integer("MTOP")
     if not (1 <= mfree <= mtop + 1 and mtop <= scheme.top_address and mtop % scheme.ratio == 0):
-        raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} cannot be in {scheme.name}")
+        raise RefusedError(f"is damaged: MFREE {mfree} and MTOP {mtop} are impossible in {scheme.name}")
     file.has_words("heap/IA", mfree - 1, scheme.int_type.itemsize)
     if theirs is ours:
         array = _array(front)
@@ -249,7 +251,7 @@ def _array(state: Words) -> MainArray:
     try:
         array = MainArray(state.scheme, max(mtop, 1))
     except (MemoryError, ValueError) as error:  # NumPy raises the latter beyond 2**63 bytes
-        raise RefusedError(f"asks for {mtop} words, more memory than there is") from error
+        raise RefusedError(f"needs {mtop} words, more than the memory available") from error
     for field in state.table.common:
         variable(array.h, field)[:] = state.common[field.name]
     return array

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from udec_ia.errors import UdecError
 
-OTHER_FILE = "RESTART reads files written by SAVE: give the name of one"
+OTHER_FILE = "RESTART reads files written by SAVE: give the name of such a file"
 OTHER_TABLE = "was written with another field table: "
 OLDER_FILE = "use another restart file, or run the deck again from START"
 
@@ -36,7 +36,7 @@ def refusing(path: Path) -> Iterator[None]:
     except OSError as error:
         raise UdecError(29, f"{path} cannot be read: {error.strerror or error}", OTHER_FILE) from error
     except MemoryError as error:
-        raise UdecError(29, f"{path} is larger than the memory that is left", OLDER_FILE) from error
+        raise UdecError(29, f"{path} is larger than the available memory", OLDER_FILE) from error
     except Exception as error:  # the HDF5 library has no common base class for its complaints
         what = f"{path} cannot be understood: {type(error).__name__}: {error}"
         raise UdecError(29, what, OLDER_FILE) from error

@@ -148,12 +148,12 @@ def _on_dask(runs: list[Run], folder: Path, address: str, timed: bool) -> Iterat
         from distributed import Client, KilledWorker
         from distributed import as_completed as completed
     except ImportError as error:
-        advice = 'install what belongs to it: python -m pip install "udec-ia[dask]"'
+        advice = 'install its packages: python -m pip install "udec-ia[dask]"'
         raise UdecError(23, "--dask needs dask.distributed", advice) from error
     try:
         client = Client(address, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
-        advice = "give the address that the scheduler prints when it begins, as in tcp://10.0.0.1:8786"
+        advice = "give the address that the scheduler prints when it starts, as in tcp://10.0.0.1:8786"
         raise ValueError(f"no dask scheduler at {address}: {error}; {advice}") from error
     with client:
         machines = {urlsplit(worker).hostname: worker for worker in client.nthreads()}

@@ -78,7 +78,7 @@ def rehearse(run: Run) -> None:
 
 def bury(run: Run, folder: Path) -> Result:
     """Leave the result of a run in `folder` whose process has died."""
-    message = "the process that ran it has died; was there too little memory?"
+    message = "the process that ran it has died, perhaps for want of memory"
     names = [one.name for one in read(run.quantities)]
     result = Result(
         run.name,

@@ -27,7 +27,7 @@ Given = Value | Iterable[Value]
 def values_of(name: str, given: Given) -> list[Value]:
     """The values of the variable `name`: one, several, or a text as above. ValueError for others."""
     if not NAME.fullmatch(name):
-        raise ValueError(f"{name!r} is no name of a variable: a letter, and letters, digits and _")
+        raise ValueError(f"{name!r} is not the name of a variable: use a letter, then letters, digits and _")
     found: list[Value]
     if isinstance(given, str):
         texts = [part.strip() for part in given.split(",")]
@@ -67,7 +67,7 @@ def _range(name: str, text: str) -> list[Value]:
     except (ValueError, OverflowError):
         raise ValueError(f"{name}={text}: {FORM}") from None
     if how not in ("", "log"):
-        raise ValueError(f"{name}={text}: {how!r} is no kind of range, log is one; {FORM}")
+        raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one); {FORM}")
     if not 2 <= n <= LONGEST:
         raise ValueError(f"{name}={text}: a range has 2 to {LONGEST} values, not {n}")
     if how == "log":

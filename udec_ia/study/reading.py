@@ -134,7 +134,7 @@ def _of_model(text: str, start: int) -> Quantity:
     what = recordable().get(OTHER_NAMES.get(typed.lower(), typed.upper()))
     if what is None:
         known = [*OTHER_NAMES, *(name for name, one in recordable().items() if not one.group)]
-        raise Wrong(text, start, f"this is no quantity: {_meant(typed, known) or FORMS}")
+        raise Wrong(text, start, f"this is not a quantity: {_meant(typed, known) or FORMS}")
     if what.group:
         name = what.field.name
         advice = f"write {what.group}(x, y).{name}, or max {what.group}.{name}"
@@ -170,7 +170,7 @@ def _where(text: str, found: re.Match[str], part: int, kind: str) -> str:
     if found[part] is None:
         return ""
     if found[part] != "where":
-        raise Wrong(text, found.start(part), "what comes behind it begins with: where")
+        raise Wrong(text, found.start(part), "the text after it must begin with: where")
     condition, begin = found[part + 1] or "", f"{kind} where"
     try:
         satisfying(_empty(), begin + condition)

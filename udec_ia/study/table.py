@@ -84,4 +84,4 @@ def _column(values: Sequence[Any]) -> Any:
 
 
 def _judge(front: bytes, _: int) -> str:
-    return "" if front.startswith(FIRST) else "is there, but is no table of a study"
+    return "" if front.startswith(FIRST) else "exists, but is not a table of a study"

@@ -24,7 +24,7 @@ from udec_ia.inspect.table import addresses as listed
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
-from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
 from udec_ia.study.runs import Run
 
 KICKS = 1000
@@ -108,23 +108,16 @@ class Noise:
         return (first[:, None] + self._fields[kind]).ravel()
 
 
-class _Kicked(Watch):
-    """Runs a CYCLE or SOLVE in pieces, with a kick after each. inner: what watches the run else."""
+class _Kicked(Around):
+    """Runs a CYCLE or SOLVE in pieces, with a kick after each."""
 
     def __init__(self, noise: Noise, inner: Watch) -> None:
-        self.noise, self.inner = noise, inner
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
-
-    @property
-    def reached(self) -> bool:  # type: ignore[override]
-        """As of the inner one."""
-        return self.inner.reached
+        super().__init__(inner)
+        self.noise = noise
 
     def begin(self) -> None:
         """As Watch.begin."""
-        self.inner.begin()
+        super().begin()
         self.noise.begin()
 
     def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
@@ -141,11 +134,3 @@ class _Kicked(Watch):
             if h.ci[g.MCTOT] % every == 0:
                 self.noise.kick(before)
         return done
-
-    def look(self) -> None:
-        """As Watch.look."""
-        self.inner.look()
-
-    def hand_on(self) -> int:
-        """As Watch.hand_on."""
-        return self.inner.hand_on()

@@ -68,8 +68,8 @@ def load(path: Path) -> Problem:
         space = runpy.run_path(str(path))
     except Exception as error:
         text = f"{type(error).__name__}: {error}"
-        raise ValueError(f"{printable(str(path))} is no problem: {printable(text, MESSAGE)}") from error
+        raise ValueError(f"{printable(str(path))} is not a problem: {printable(text, MESSAGE)}") from error
     text, blocks, solve = space["__doc__"], space.get("BLOCKS", ()), space.get("solve")
     if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
-        raise ValueError(f"{printable(str(path))} is no problem: it needs {PARTS}")
+        raise ValueError(f"{printable(str(path))} is not a problem: it needs {PARTS}")
     return Problem(path, cleandoc(text), tuple(blocks), solve, space.get("REALS", 32))

@@ -76,7 +76,7 @@ class Page:
     def text(self) -> str:
         """The page."""
         if not self.states:
-            raise ValueError("a page shows one state or more: add one")
+            raise ValueError("a page shows at least one state: add one")
         style, program = (WEB / "style.css").read_text("utf-8"), script(SCRIPTS)
         parts = {
             "policy": f"default-src 'none'; style-src {_digest(style)}; script-src {_digest(program)}",
@@ -124,4 +124,4 @@ def _digest(text: str) -> str:
 
 
 def _judge(front: bytes, _: int) -> str:
-    return "" if front.startswith(MARK) else "is there, and is no view that this program wrote"
+    return "" if front.startswith(MARK) else "exists, but is not a view written by this program"

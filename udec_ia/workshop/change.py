@@ -39,7 +39,7 @@ def add_commands(commands: Any) -> None:
     """Add them to those of `udec`."""
     from udec_ia.layout.table import SCHEMES
 
-    text = "write a restart file in the words of another scheme"
+    text = "write a restart file in another word scheme"
     convert = _change(commands, "convert", text, _convert, _convert_script)
     convert.add_argument(
         "--build", required=True, choices=SCHEMES, help="widths of integers and reals in bits"
@@ -55,7 +55,7 @@ def add_commands(commands: Any) -> None:
         help="'block@88.KXD = 0', 'zone@9.KZG(2) = 412', 'FRAC = 0.1' or '1234 = 7'",
     )
     for parser in (convert, patch):
-        parser.add_argument("--force", action="store_true", help="write it even if it is not sound")
+        parser.add_argument("--force", action="store_true", help="write it even if it is unsound")
 
 
 def _change(commands: Any, verb: str, text: str, look: Look, script: Script) -> argparse.ArgumentParser:
@@ -134,7 +134,7 @@ def _read(args: argparse.Namespace) -> Restored:
 
     if args.to.exists() and args.file.exists() and os.path.samefile(args.file, args.to):
         raise UdecError(
-            31, f"{args.to} is the file that is read", "give TO another name, and move it afterwards"
+            31, f"{args.to} is the file that is read", "give TO another name, and move the file afterwards"
         )
     return load_to_change(args.file)
 

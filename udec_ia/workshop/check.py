@@ -26,7 +26,7 @@ print(*seen.said, *found, *unjudged(seen.array, found), sep="\\n")"""
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    text = "prove that a restart file holds a sound block system, or list all that is wrong"
+    text = "prove that a restart file holds a sound block system, or list all faults"
     file(command(commands, "check", text, _look, lambda args: SCRIPT.format(file=str(args.file))))
 
 

@@ -27,7 +27,7 @@ def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
     """
     parser: argparse.ArgumentParser = commands.add_parser(verb, help=text, description=text)
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--python", action="store_true", help="print the same in Python, and do nothing")
+    parser.add_argument("--python", action="store_true", help="print the Python for it, and do nothing else")
     parser.set_defaults(action=partial(_obey, verb, look, script))
     return parser
 
@@ -37,6 +37,18 @@ def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
     parser.add_argument(name, type=Path, metavar=name.upper(), help="a restart file, sound or damaged")
 
 
+def word_scheme(parser: argparse.ArgumentParser) -> None:
+    """The argument --build NAME."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser.add_argument(
+        "--build",
+        choices=ALL_SCHEMES,
+        default=DEFAULT_SCHEME,
+        help="widths of integers and reals in bits (default: %(default)s)",
+    )
+
+
 def variables(parser: argparse.ArgumentParser) -> None:
     """The argument --set NAME=VALUE."""
     parser.add_argument(
@@ -44,7 +56,7 @@ def variables(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="what a variable of the deck stands for ($NAME), whatever its DEFAULT is; repeatable",
+        help="value of a variable of the deck ($NAME), in place of its DEFAULT; repeatable",
     )
 
 

@@ -7,24 +7,17 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from udec_ia.workshop.common import MISUSE, given, variables
+from udec_ia.workshop.common import MISUSE, given, variables, word_scheme
 
 VERBS = ("debug",)
 
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
     text = "run a deck under the debugger: stop it, look at every word, go back"
     parser = commands.add_parser("debug", help=text, description=text)
     parser.add_argument("deck", type=Path, help="file of commands")
-    parser.add_argument(
-        "--build",
-        choices=ALL_SCHEMES,
-        default=DEFAULT_SCHEME,
-        help="widths of integers and reals in bits (default: %(default)s)",
-    )
+    word_scheme(parser)
     parser.add_argument("--out", type=Path, default=Path(), help="folder for the files of the deck")
     parser.add_argument("--constitutive", action="append", metavar="LAW", help="as for udec run")
     parser.add_argument(

@@ -28,7 +28,7 @@ def add_commands(commands: Any) -> None:
     parser = command(commands, "diverge", TEXT, _diverge, _script)
     parser.add_argument("file", type=Path, metavar="DECK", help="a deck, or with --cycles a restart file")
     parser.add_argument(
-        "other", type=Path, nargs="?", metavar="OTHER", help="the other; left off, the same deck"
+        "other", type=Path, nargs="?", metavar="OTHER", help="the other one (default: the same deck)"
     )
     parser.add_argument("--builds", metavar="A,B", help="word schemes of the two decks (default: i32r64)")
     parser.add_argument("--constitutive", action="append", metavar="LAW", help="as for udec run")
@@ -36,18 +36,20 @@ def add_commands(commands: Any) -> None:
         "--other-constitutive",
         action="append",
         metavar="LAW",
-        help="of the other run, if it has not the same",
+        help="of the other run, if they differ",
     )
     variables(parser)
     parser.add_argument(
-        "--other-set", action="append", metavar="NAME=VALUE", help="of the other run, if it has not the same"
+        "--other-set", action="append", metavar="NAME=VALUE", help="of the other run, if they differ"
     )
-    parser.add_argument("--cycles", type=int, metavar="N", help="go on from two restart files so many cycles")
+    parser.add_argument(
+        "--cycles", type=int, metavar="N", help="continue from two restart files for this many cycles"
+    )
     parser.add_argument(
         "--tolerance",
         type=float,
         metavar="SHARE",
-        help="of the greatest number of a unit, that does not count",
+        help="share of the greatest number of a unit that does not count",
     )
     parser.add_argument(
         "--keep", nargs=2, type=Path, metavar=("A.h5", "B.h5"), help="files for both states after that cycle"

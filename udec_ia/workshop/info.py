@@ -31,11 +31,11 @@ print(costs(model.array, model.laws{seconds}).as_text(), end="")"""
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    text = "say what is in a restart file, which facilities its state uses, and what was asked for in vain"
+    text = "show what is in a restart file, which facilities its state uses, and what has no effect"
     parser = command(commands, "info", text, _look, _script)
     file(parser)
     parser.add_argument("--cost", action="store_true", help="measure what each facility costs, on a copy")
-    parser.add_argument("--budget", metavar="TIME", help="that measuring may take, as in 60s or 5m (20s)")
+    parser.add_argument("--budget", metavar="TIME", help="time for measuring, as in 60s or 5m (20s)")
     parser.add_argument(
         "--constitutive", action="append", metavar="LAW", help="laws that the state was calculated with"
     )

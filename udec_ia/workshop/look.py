@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
 OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
-LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows"}
+LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "rows to show"}
 STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
 COMMON = "common"
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.workshop.common import command, given, seconds
+from udec_ia.workshop.common import command, given, seconds, word_scheme
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
@@ -29,8 +29,6 @@ SHOWN = ("status", "cycles", "seconds", "message")  # columns that are printed, 
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
     parser = command(commands, "sweep", TEXT, _sweep, _script)
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands with variables ($F)")
     for option, metavar, text in REPEATED:
@@ -39,7 +37,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument(
         "--limit", metavar="TIME", help="processor time after which a run is ended: 60s, 5m, 1h"
     )
-    parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
+    word_scheme(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-sweep)")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
     parser.add_argument("--dask", default="", metavar="ADDRESS", help="run on the workers of this scheduler")

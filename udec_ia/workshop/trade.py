@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.workshop.common import command, given, seconds, variables
+from udec_ia.workshop.common import command, given, seconds, variables, word_scheme
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing, Tables
@@ -24,8 +24,6 @@ REPEATED = (
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-
     parser = command(commands, "trade", TEXT, _trade, _script)
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
     variables(parser)
@@ -35,7 +33,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument(
         "--budget", default="5m", metavar="TIME", help="time it all may take: 60s, 5m, 1h (5m)"
     )
-    parser.add_argument("--build", choices=ALL_SCHEMES, default=DEFAULT_SCHEME, help="as for udec run")
+    word_scheme(parser)
     parser.add_argument("--builds", metavar="A,B", help="word schemes to try (default: with half the reals)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-trade)")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")

@@ -48,7 +48,7 @@ def _chosen(option: str, given: str | None, default: str, known: Any) -> list[st
     """The words of a list with commas, in its order. ValueError for one that is not known."""
     words = (given or default).split(",")
     if not {*words} <= {*known}:
-        raise ValueError(f"{option} {given}: choose of {', '.join(known)}, with commas between")
+        raise ValueError(f"{option} {given}: choose from {', '.join(known)}, with commas between")
     return words
 
 

@@ -85,7 +85,9 @@ def _check_pointers(array: MainArray, found: dict[str, Any]) -> None:
                 values = integers(h, at, getattr(g, field.name), i)
                 for row in astray(values, str(field.target))[:1]:
                     owner = name_at(array, int(at[row]))
-                    raise Unsound(f"{field.name} of {owner} points to {values[row]}, no {field.target}")
+                    raise Unsound(
+                        f"{field.name} of {owner} points to {values[row]}, which is not a {field.target}"
+                    )
     for field in TABLE.common:
         if field.target:
             value = h.ci[[getattr(g, field.name)]]

@@ -77,7 +77,7 @@ def patch(array: MainArray, *assignments: str, force: bool = False) -> Patched:
         assign(former)
         array.h.ci[g.LREADY] = ready
         detail = f"the state would not be sound: {in_short(broken)}"
-        raise UdecError(28, detail, "nothing is changed: give with it all that belongs to it")
+        raise UdecError(28, detail, "nothing is changed: change with it everything that depends on it")
     return Patched(former, broken)
 
 
@@ -96,7 +96,7 @@ def read_patches(array: MainArray, assignments: Sequence[str]) -> list[Patch]:
     seen: set[int] = set()
     for one in patches:
         if one.place in seen:
-            raise UdecError(10, f"{one.what} is given two values", "give each place one")
+            raise UdecError(10, f"{one.what} is given two values", "give each place one value")
         seen.add(one.place)
     return patches
 
@@ -106,14 +106,14 @@ def _read(array: MainArray, atlas: Atlas, text: str) -> Patch:
     left, _, right = (part.strip() for part in text.partition("="))
     found = PLACE.fullmatch(left)
     if not (found and right):
-        raise UdecError(10, f"{text!r} is no assignment", FORM)
+        raise UdecError(10, f"{text!r} is not an assignment", FORM)
     if found["address"]:
         return _of_word(atlas, int(found["address"]), right)
     if found["kind"]:
         return _of_group(atlas, found["kind"].lower(), int(found["group"]), found, right)
     field = next((one for one in TABLE.common if one.name == found["name"].upper()), None)
     if field is None:
-        raise UdecError(10, f"{found['name']} is no variable of the common block", FORM)
+        raise UdecError(10, f"{found['name']} is not a variable of the common block", FORM)
     return _of_common(array, field, _element(field, found), right)
 
 
@@ -133,14 +133,14 @@ def _of_word(atlas: Atlas, address: int, text: str) -> Patch:
 def _of_group(atlas: Atlas, kind: str, address: int, found: re.Match[str], text: str) -> Patch:
     """A field of a group."""
     if kind not in KINDS:
-        raise UdecError(10, f"{kind} is no kind of group", f"there are {', '.join(KINDS)}")
+        raise UdecError(10, f"{kind} is not a kind of group", f"there are {', '.join(KINDS)}")
     if not atlas.holds(kind, address):
         there = called(atlas, atlas.span(address)) if 1 <= address <= len(atlas.h.ia) else "outside IA()"
         raise UdecError(10, f"there is no {kind} at {address}", f"what is there: {there}")
     field = next((one for one in TABLE.group(kind).fields if one.name == found["name"].upper()), None)
     if field is None:
         names = ", ".join(one.name for one in TABLE.group(kind).fields)
-        raise UdecError(10, f"{found['name']} is no field of a {kind}", f"there are {names}")
+        raise UdecError(10, f"{found['name']} is not a field of a {kind}", f"there are {names}")
     span = atlas.span(address)
     return _of_field(atlas, span, atlas.word(span, field, _element(field, found)), text)
 
@@ -149,7 +149,7 @@ def _of_field(atlas: Atlas, span: Span, word: Word, text: str) -> Patch:
     """An element of a field of a group, but not of what a history records: that is kept beside the array."""
     what = f"{word.name} of {called(atlas, span)}"
     if span.kind == HISTORY and word.field.role == "data":
-        raise UdecError(10, f"{what} says what was recorded", "HISTORY asks for another history")
+        raise UdecError(10, f"{what} says what was recorded", "HISTORY defines another history")
     if word.field.real:
         return _judged(what, atlas.h.ra, (word.first - 1) // atlas.ratio, text)
     return _judged(what, atlas.h.ia, word.first - 1, text)

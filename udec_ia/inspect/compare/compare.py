@@ -87,7 +87,7 @@ def chosen(only: Iterable[str]) -> set[tuple[str, str]]:
     for text in only or fields:
         kind, dot, name = text.partition(".")
         if kind not in fields:
-            raise ValueError(f"{text}: there is no kind of group {kind}: choose of {', '.join(fields)}")
+            raise ValueError(f"{text}: {kind} is not a kind of group: choose from {', '.join(fields)}")
         if dot and name.upper() not in fields[kind]:
             raise ValueError(f"{text}: {kind} has the fields {', '.join(fields[kind])}")
         found |= {(kind, name.upper())} if dot else {(kind, one) for one in ("", *fields[kind])}

@@ -87,11 +87,11 @@ def satisfying(atlas: Atlas, text: str) -> Found:
 
 
 def _no_kind(word: str) -> str:
-    """What to say of a word that is no kind of group; often it is a field of one."""
+    """What to say of a word that is not a kind of group; often it is a field of one."""
     has = next((kind.name for kind in TABLE.groups for field in kind.fields if field.name == word), None)
     meant = get_close_matches(word, KINDS, 1)
     advice = f"say {has} where {word} ..." if has else f"did you mean {meant[0]}?" if meant else ""
-    return f"no kind of group {word!r}: {advice or 'there are ' + ', '.join(KINDS)}"
+    return f"{word!r} is not a kind of group: {advice or 'there are ' + ', '.join(KINDS)}"
 
 
 class _Judge:

@@ -16,7 +16,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.jit import inlined, kernel
 from udec_ia.layout import offsets as g
 
 
@@ -48,15 +48,17 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
             return
 
 
+@inlined
+def velocities(h: Memory, ib: int) -> tuple[float, float, float]:
+    """KXD, KYD and KTD of block `ib`, with 64 bits."""
+    return np.float64(getr(h, ib, g.KXD)), np.float64(getr(h, ib, g.KYD)), np.float64(getr(h, ib, g.KTD))
+
+
 @kernel
 def carry_corners(h: Memory, ib: int) -> None:
     """Velocities of the corners of block `ib` from those of the block."""
     x, y = np.float64(getr(h, ib, g.KX)), np.float64(getr(h, ib, g.KY))
-    xd, yd, td = (
-        np.float64(getr(h, ib, g.KXD)),
-        np.float64(getr(h, ib, g.KYD)),
-        np.float64(getr(h, ib, g.KTD)),
-    )
+    xd, yd, td = velocities(h, ib)
     ip0 = iget(h, ib, g.KP)
     ip = ip0
     while True:

@@ -9,6 +9,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.energy.stored import inertia
 from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
@@ -23,11 +24,7 @@ def over(h: Memory, energy: float, ir: int, scale: Offset) -> float:
 @kernel
 def energy_of_body(h: Memory, ib: int, ir: int) -> float:
     """Twice the energy of motion of block `ib`, which has no grid-points."""
-    xd, yd, td = (
-        np.float64(getr(h, ib, g.KXD)),
-        np.float64(getr(h, ib, g.KYD)),
-        np.float64(getr(h, ib, g.KTD)),
-    )
+    xd, yd, td = velocities(h, ib)
     twice = over(h, getr(h, ib, g.KBM) * (xd * xd + yd * yd), ir, g.KRXM)
     twice += over(h, getr(h, ib, g.KBI) * td * td, ir, g.KRXI)
     if iget(h, ib, HEAD) == g.MSDEF:

@@ -21,6 +21,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import zone_area
+from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.layout import offsets as g
 
@@ -116,11 +117,7 @@ def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
 @kernel
 def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
     """Kinetic energy of block `ib`, which has no grid-points, at the velocities of the last half step."""
-    xd, yd, td = (
-        np.float64(getr(h, ib, g.KXD)),
-        np.float64(getr(h, ib, g.KYD)),
-        np.float64(getr(h, ib, g.KTD)),
-    )
+    xd, yd, td = velocities(h, ib)
     twice = getr(h, ib, g.KBM) * (xd * xd + yd * yd) + getr(h, ib, g.KBI) * td * td
     turning = abs(getr(h, ib, g.KTD))
     if soft is not None and iget(h, ib, HEAD) == g.MSDEF:

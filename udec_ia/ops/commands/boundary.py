@@ -1,4 +1,4 @@
-"""BOUNDARY and FUNCTION: boundary conditions (kernels.body.bounds).
+"""BOUNDARY: boundary conditions (kernels.body.bounds).
 
 Velocities and forces act on the grid-points of fully-deformable blocks that lie in the range, and on rigid
 and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges that have both
@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,8 +23,8 @@ from udec_ia.heap.memory import find, lose
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.ranges import edges_between, points_between
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import finite, held, not_negative, positive, whole
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.function import find_function, lose_sines, make_sine
+from udec_ia.ops.common.limits import finite, held, not_negative, positive, reals
 from udec_ia.ops.common.memory import require
 from udec_ia.ops.common.ranges import Range, check_range, why_nothing
 
@@ -55,7 +54,10 @@ class Load:
 
 def boundary(
     array: MainArray,
-    where: Range,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
     *,
     xvel: float | None = None,
     yvel: float | None = None,
@@ -76,6 +78,9 @@ def boundary(
     it lasts (s), from now on, or function: number of a FUNCTION; loads and velocities are multiplied by it.
     Errors 24, 26, 28.
     """
+    where = x1, x2, y1, y2
+    stress, xgrad, ygrad = reals(3, stress=stress), reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
+    sine = None if sine is None else reals(2, sine=sine)
     check_range(array, where)
     finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
     for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
@@ -90,23 +95,14 @@ def boundary(
     if free:
         return _set_free(array.h, where)
     fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
-    loads: dict[Target, Load] = {}
-    if moves:
-        for ib, ig in points_between(array.h, *map(float, where)).tolist():
-            loads.setdefault((ib, ig, 0, 0), Load()).add(xforce, yforce)
-    if presses:
-        for ib, ip in edges_between(array.h, *map(float, where)).tolist():
-            _load_edge(array.h, ib, ip, (stress, xgrad, ygrad), viscous, loads)
-    if not loads:
-        advice = "a range holds what lies inside it and not on its limits"
-        raise UdecError(24, _why_nothing(array.h, where, moves), advice, parameter="x1")
+    pressure = (stress, xgrad, ygrad) if presses else None
+    loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
-    words = len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG)
-    signal = _find_function(array.h, function) if function is not None else 0
-    require(array, words)
+    signal = find_function(array.h, function) if function is not None else 0
+    require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
     h = array.h
     if sine is not None:
-        signal = _make_sine(h, *sine)
+        signal = make_sine(h, *sine)
     if fix:
         _release(h, {target[:2] for target in loads if target[2] == 0}, fix)
     for target, load in loads.items():
@@ -115,17 +111,34 @@ def boundary(
     return len(loads)
 
 
+def _loads(
+    h: Memory, where: Range, force: tuple[float, float] | None, stress: Sequence[Triple] | None, viscous: bool
+) -> dict[Target, Load]:
+    """What targets in the range get: points if `force` is given, edges if `stress` is. Error 24 if none."""
+    loads: dict[Target, Load] = {}
+    if force is not None:
+        for ib, ig in points_between(h, *map(float, where)).tolist():
+            loads.setdefault((ib, ig, 0, 0), Load()).add(*force)
+    if stress is not None:
+        for ib, ip in edges_between(h, *map(float, where)).tolist():
+            _load_edge(h, ib, ip, stress, viscous, loads)
+    if not loads:
+        advice = "what lies on the limits of a range is outside it"
+        raise UdecError(24, _why_nothing(h, where, force is not None), advice, parameter="x1")
+    return loads
+
+
 def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> None:
     """Error 26 if no condition is given, 10 if those that are given cannot stand together."""
     if free and (condition or sine or function):
         raise UdecError(
-            10, "FREE stands alone", "give other conditions in a line of their own", parameter="free"
+            10, "FREE stands alone", "give other conditions on a line of their own", parameter="free"
         )
     if sine and function:
         advice = "a condition follows a sine or a function, not both"
         raise UdecError(10, "FUNCTION beside SINE", advice, parameter="function")
     if not (condition or free):
-        raise UdecError(26, "no velocity, and no force or stress that is not 0", "BOUNDARY 0 9 0 1 YVEL=0")
+        raise UdecError(26, "no velocity, and no force or stress other than 0", "BOUNDARY 0 9 0 1 YVEL=0")
 
 
 def _inside(where: Range, x: float, y: float) -> bool:
@@ -266,22 +279,7 @@ def _drop(h: Memory, gone: list[int]) -> None:
         puti(h, iu, HEAD, 0)
         lose(h, iu, g.NVBN)
     if signals:
-        _lose_sines(h, signals.difference(integers(h, _all(h), g.KUS).tolist()))
-
-
-def _lose_sines(h: Memory, unused: set[int]) -> None:
-    """Give back those of the signals `unused` that are sines: no command can name them."""
-    before = 0
-    for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
-        if isg not in unused or iget(h, isg, g.KTP):
-            before = isg
-            continue
-        if before:
-            puti(h, before, g.KT, iget(h, isg, g.KT))
-        else:
-            h.ci[g.ISGPNT] = iget(h, isg, g.KT)
-        puti(h, isg, HEAD, 0)
-        lose(h, isg, g.NVSG)
+        lose_sines(h, signals.difference(integers(h, _all(h), g.KUS).tolist()))
 
 
 def given_velocities(h: Memory) -> dict[int, int]:
@@ -322,70 +320,3 @@ def _set_free(h: Memory, where: Range) -> int:
     ]
     _free(h, gone)
     return len(gone)
-
-
-def _make_sine(h: Memory, frequency: float, lasts: float) -> int:
-    """A signal that is a sine of the given frequency for a time."""
-    isg = _make_signal(h)
-    putr(h, isg, g.KTFREQ, frequency)
-    begins = float(h.cd[g.TIME])
-    putr(h, isg, g.KTBEG, begins)
-    putr(h, isg, g.KTREST, begins - float(getr(h, isg, g.KTBEG)))
-    putr(h, isg, g.KTLAST, lasts)
-    return isg
-
-
-def _make_signal(h: Memory) -> int:
-    isg = int(find(h, g.NVSG))
-    puti(h, isg, HEAD, g.MSIG)
-    puti(h, isg, g.KT, int(h.ci[g.ISGPNT]))
-    h.ci[g.ISGPNT] = isg
-    return isg
-
-
-def _find_function(h: Memory, number: int) -> int:
-    """The signal that is FUNCTION `number`. Error 26 if there is none."""
-    for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
-        if iget(h, isg, g.KTP) and iget(h, isg, g.KTNUM) == number:
-            return isg
-    raise UdecError(26, f"FUNCTION {number}", f"define it before: FUNCTION {number} t1 f1 t2 f2 ...")
-
-
-def set_function(array: MainArray, number: int, points: Sequence[tuple[float, float]]) -> None:
-    """FUNCTION: factors over time, for boundary conditions; a function of the same number is replaced.
-
-    points: (time, factor), the times in ascending order. Errors 26 and 28.
-    """
-    if not points:
-        raise UdecError(26, "a function needs at least one point", "FUNCTION n t1 f1 t2 f2 ...")
-    if not 1 <= whole(n=number) <= array.scheme.top_address:
-        advice = f"a function has a number from 1 to {array.scheme.top_address}"
-        raise UdecError(28, f"n is {number}", advice, parameter="n")
-    for k, (t, f) in enumerate(points, 1):
-        finite(array, **{f"t{k}": t, f"f{k}": f})
-    for k, ((t1, f1), (t2, f2)) in enumerate(pairwise(points), 2):
-        if t2 <= t1:
-            raise UdecError(28, f"{t2:g} follows {t1:g}", "the times must ascend", parameter=f"t{k}")
-        finite(array, **{f"t{k} - t{k - 1}": t2 - t1, f"f{k} - f{k - 1}": f2 - f1})
-    require(array, size_of(array.h, g.NVSG) + len(points) * size_of(array.h, g.NVTP))
-    h = array.h
-    isg = next(
-        (
-            s
-            for s in chain(h, int(h.ci[g.ISGPNT]), g.KT)
-            if iget(h, s, g.KTP) and iget(h, s, g.KTNUM) == number
-        ),
-        0,
-    )
-    for it in chain(h, iget(h, isg, g.KTP), g.KTPN) if isg else ():
-        lose(h, it, g.NVTP)
-    isg = isg or _make_signal(h)
-    puti(h, isg, g.KTNUM, number)
-    first = 0
-    for t, f in reversed(points):
-        it = int(find(h, g.NVTP))
-        puti(h, it, g.KTPN, first)
-        putr(h, it, g.KTPT, t)
-        putr(h, it, g.KTPF, f)
-        first = it
-    puti(h, isg, g.KTP, first)

@@ -41,7 +41,7 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     """
     h = array.h
     if h.ci[g.NBLK] > 0:
-        raise UdecError(18, "", "cut the existing block with SPLIT, take parts away with DELETE")
+        raise UdecError(18, "", "cut the existing block with SPLIT, remove parts with DELETE")
     material_number(material)
     constitutive_number(constitutive)
     if len(corners) < 3:
@@ -75,7 +75,7 @@ def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
     if not smallest <= size <= largest:
         bits = array.scheme.real_bits
         detail = f"a block {size:g} across, where {bits}-bit reals bear {smallest:.0e} to {largest:.0e}"
-        raise UdecError(28, detail, "take another unit of length", parameter="x1")
+        raise UdecError(28, detail, "use another unit of length", parameter="x1")
     return size
 
 
@@ -109,7 +109,7 @@ def _check_outline(array: MainArray, corners: Sequence[Point]) -> None:
             raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
     x, y = corners[0]  # far from the origin the products of coordinates would lose the area
     if not sum((b[0] - x) * (a[1] - y) - (a[0] - x) * (b[1] - y) for a, b in edges) > 0:
-        raise UdecError(6, "its corners run anticlockwise", CLOCKWISE)
+        raise UdecError(6, "its corners are in anticlockwise order", CLOCKWISE)
 
 
 def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[int, int]]:

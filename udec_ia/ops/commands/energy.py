@@ -65,7 +65,7 @@ def switch(array: MainArray, on: bool) -> None:
     h = array.h
     if on and h.ci[g.LSCALE]:
         advice = "FRACTION without SCALED"
-        raise UdecError(26, "scaled masses have no energy that an account could tell of", advice)
+        raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[g.LENER] = int(on)
     for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT):
@@ -94,7 +94,7 @@ def begin(array: MainArray) -> None:
     if h.ci[g.LENER]:
         energy, reference = _energy(array), _height(array) - float(h.cd[g.EPOT])
         put = _put_in(h, energy)
-        held(array, "the energy that commands have put in", [put, reference], SUM_BITS)
+        held(array, "the energy put in by commands", [put, reference], SUM_BITS)
         h.cd[g.EPUT], h.cd[g.ESTOR], h.cd[g.EREF] = put, energy, reference
 
 

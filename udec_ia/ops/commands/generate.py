@@ -122,7 +122,7 @@ def generate(
     divide(array, ib, places, zones, paired)
     moved = zip(range(1, len(places) + 1), reversed(points), places, strict=True)
     return [
-        f"grid-point {number} ({x:g}, {y:g}) was placed on the block's outline at ({place.x:g}, {place.y:g})"
+        f"grid-point {number} ({x:g}, {y:g}) was moved onto the block's outline at ({place.x:g}, {place.y:g})"
         for number, (x, y), place in moved
         if math.hypot(place.x - x, place.y - y) > 1e-3 * float(h.cr[g.DTOL])
     ]
@@ -165,8 +165,8 @@ def block_to_zone(array: MainArray, where: Range) -> int:
         if iget(h, ib, HEAD) != g.MFDEF or iget(h, iget(h, ib, g.KBEX), g.KFG) == 0:
             return ib
     ib = blocks[0]
-    advice = "give a range that holds another block, or CHANGE it to RIGID first"
-    raise UdecError(28, f"block@{ib} is divided into zones already", advice, group=ib)
+    advice = "give a range with another block, or CHANGE it to RIGID first"
+    raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
 
 
 def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
@@ -204,7 +204,7 @@ def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
                 14,
                 f"grid-points {one + 1} and {two + 1} are {distance:g} apart, which leaves no room for "
                 f"rounding by {d:g}",
-                "set them farther apart, or take a smaller ROUND",
+                "move them farther apart, or use a smaller ROUND",
             )
     return found
 
@@ -263,7 +263,7 @@ def _check_pairs(zones: list[Triple]) -> None:
         raise UdecError(33, f"{len(zones)} zones cannot be made into pairs", advice, parameter="mixed")
     for k in range(0, len(zones), 2):
         if len({*zones[k], *zones[k + 1]}) != 4:
-            raise UdecError(33, f"zones {k + 1} and {k + 2} are no pair", advice, parameter="mixed")
+            raise UdecError(33, f"zones {k + 1} and {k + 2} are not a pair", advice, parameter="mixed")
 
 
 def _area(places: list[Place], zone: Triple) -> float:

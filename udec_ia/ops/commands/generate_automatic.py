@@ -47,7 +47,7 @@ def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
             raise UdecError(
                 14,
                 f"{detail}, which is rounded by {d:g}",
-                f"take a longer edge, or ROUND {0.9 * distance:.2g} before",
+                f"use a longer edge, or first ROUND {0.9 * distance:.2g} before",
                 parameter="edge",
             )
 

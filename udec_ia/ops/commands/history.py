@@ -41,7 +41,7 @@ def named(name: str) -> Recordable:
     """What is recorded under `name`, in any case; error 10 if there is nothing of that name."""
     found = recordable().get(name.upper())
     if found is None:
-        detail = f"{name} is no number that can be recorded"
+        detail = f"{name} is not a quantity that can be recorded"
         raise UdecError(10, detail, "field is a name of offsets/groups.table", parameter="field")
     return found
 

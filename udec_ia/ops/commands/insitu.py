@@ -64,10 +64,10 @@ def _no_stress(array: MainArray, where: Range) -> UdecError:
     if not blocks:
         return UdecError(24, why_no_block(array, where), parameter="x1")
     if any(iget(array.h, ib, HEAD) == g.MFDEF for ib in blocks):
-        advice = f"GENERATE divides one into zones, CHANGE {limits} SDEF does without"
+        advice = f"GENERATE divides a block into zones; CHANGE {limits} SDEF needs no zones"
         return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
     detail = f"all blocks there are rigid and carry no stress, such as block@{blocks[0]}"
-    advice = f"make the blocks deformable before: CHANGE {limits} SDEF, with BULK and G of their material"
+    advice = f"first make the blocks deformable: CHANGE {limits} SDEF, with BULK and G of their material"
     return UdecError(24, detail, advice, parameter="x1")
 
 

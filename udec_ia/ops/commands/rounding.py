@@ -16,7 +16,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.ops.common.memory import all_or_nothing, find_room, keep_spare
 
-STIFFER = "give a greater rounding length, or stiffer joints"
+STIFFER = "use a larger rounding length, or stiffer joints"
 Point = tuple[float, float]
 STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
 
@@ -26,7 +26,7 @@ def too_short(d: float, shortest: float, x: float, y: float, when: str = "") -> 
     return UdecError(
         14,
         f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}",
-        "the rounding length must not exceed half the shortest edge, nor the shortest part of an edge that "
+        "the rounding length must not exceed half the shortest edge or the shortest part of an edge that "
         "GENERATE has put between a corner and a point",
         parameter="d",
     )
@@ -85,7 +85,7 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
         raise _too_deep(h, iget(h, ip, g.KNB), iget(h, iq, g.KNB), overlap, place, advice)
     found = _found_without_contact(array)
     if found:
-        detail = f"with {h.cr[g.DTOL]:g} {found} would lie in another block without a contact"
+        detail = f"with {h.cr[g.DTOL]:g} {found} would lie inside another block without a contact"
         raise UdecError(14, detail, advice, parameter="d")
 
 
@@ -118,8 +118,8 @@ def update_flagged(array: MainArray) -> None:
     bring_up(array)
     found = _found_without_contact(array)
     if found:
-        advice = "put back what was moved, or RESTART from a sound file"
-        raise UdecError(OVERLAP_TOO_GREAT, f"{found} lies in another block without a contact", advice)
+        advice = "undo the change, or RESTART from a sound file"
+        raise UdecError(OVERLAP_TOO_GREAT, f"{found} lies inside another block without a contact", advice)
 
 
 def _found_without_contact(array: MainArray) -> str:

@@ -114,11 +114,14 @@ def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = 
     positive(array, f=f)
     if (safe or scaled) and f > 1:
         raise UdecError(
-            28, f"{f:g} of the safe bound is not safe", "FRACTION f SAFE takes f up to 1", parameter="f"
+            28,
+            f"{f:g} of the safe bound is not safe",
+            "f in FRACTION f SAFE must not exceed 1",
+            parameter="f",
         )
     if scaled and array.h.ci[g.LENER]:
         advice = "ENERGY OFF, or FRACTION without SCALED"
-        raise UdecError(26, "scaled masses have no energy that an account could tell of", advice)
+        raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
     array.h.cr[g.FRAC] = f
     array.h.ci[g.LSAFE] = int(safe or scaled)
     array.h.ci[g.LSCALE] = int(scaled)
@@ -174,7 +177,7 @@ def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:
         advice = f"addresses are 1 plus a multiple of {ratio}"
         raise UdecError(30, f"{ia} is not the address of a group", advice, parameter="ia")
     if ioff < 1:
-        advice = "offsets count from 1: offset 1 is the first real of a group, HELP RSET"
+        advice = "offsets count from 1: offset 1 is the first real of a group (HELP RSET)"
         raise UdecError(30, f"offset {ioff}", advice, parameter="ioff")
     if ia + ioff * ratio - 1 > last:
         place = f"offset {ioff} from address {ia}"

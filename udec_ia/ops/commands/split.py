@@ -123,11 +123,11 @@ def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest
     if status == REFUSED_SHORT and rounding_is_open(array.h):
         bits = array.scheme.real_bits
         detail = f"{place} it leaves an edge shorter than {shortest:g}, the finest for {bits}-bit reals here"
-        advice = "move the line, take the origin nearer to the blocks, or a --build with 64-bit reals"
+        advice = "move the line, put the origin nearer to the blocks, or use a --build with 64-bit reals"
         raise UdecError(27, detail, advice, group=ib)
     if status == REFUSED_SHORT:
         detail = f"the cut {place} leaves an edge shorter than {shortest:g}"
-        raise UdecError(14, detail, "move the line, or take a smaller rounding length before", group=ib)
+        raise UdecError(14, detail, "move the line, or first use a smaller rounding length", group=ib)
     raise UdecError(
         27,
         place,

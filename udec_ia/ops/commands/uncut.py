@@ -38,7 +38,7 @@ def why_uncut(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y
     if touched:
         return f"the line only touches block@{touched}, along an edge or at a corner; {LONGER}"
     (ax, ay), (bx, by) = low.min(axis=0), high.max(axis=0)
-    return f"the line passes no block; all blocks lie in x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
+    return f"the line meets no block; all blocks lie in x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
 
 
 def _along(block: Outline, line: Any, slack: float) -> tuple[Any, bool]:

@@ -49,9 +49,9 @@ def whole(**number: SupportsIndex) -> int:
         integer = operator.index(value)
     except TypeError:
         detail = f"{value!r} is not an integer"
-        raise UdecError(10, detail, f"{name} is a whole number", parameter=name) from None
+        raise UdecError(10, detail, f"{name} must be an integer", parameter=name) from None
     if abs(integer) > LARGEST:
-        raise UdecError(28, f"{name} is {integer}", f"integers end at {LARGEST}", parameter=name)
+        raise UdecError(28, f"{name} is {integer}", f"the largest integer is {LARGEST}", parameter=name)
     return integer
 
 
@@ -92,7 +92,7 @@ def finite(array: MainArray, **numbers: float) -> None:
     largest = float(np.finfo(array.scheme.real_type).max)
     for name, value in numbers.items():
         if not abs(real(**{name: value})) <= largest:
-            advice = f"{array.scheme.real_bits}-bit reals end at {largest:.2g}"
+            advice = f"{array.scheme.real_bits}-bit reals hold numbers up to {largest:.2g}"
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
 
 

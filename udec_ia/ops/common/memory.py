@@ -42,7 +42,7 @@ def _overflow(array: MainArray) -> UdecError:
         if s.top_address >= need and s.real_bits == array.scheme.real_bits
     ]
     if array.fixed and need <= array.scheme.top_address:
-        advice = f"this line needs --mtop {need} at least: leave --mtop out to let the array grow"
+        advice = f"this line needs at least --mtop {need}: omit --mtop to let the array grow"
     else:
         advice = f"run from START with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
     return UdecError(1, f"{need} words are needed, the main array has {int(ci[g.MTOP])}", advice)
@@ -78,7 +78,7 @@ def refit(array: MainArray, mtop: int | None) -> None:
     if not array.refit(mtop):
         used = int(array.h.ci[g.MFREE]) - 1
         detail = f"{used} words are in use, and --mtop is {mtop}"
-        advice = f"--mtop may be {used} to {array.scheme.top_address}: leave it out to let the array grow"
+        advice = f"--mtop may be {used} to {array.scheme.top_address}: omit it to let the array grow"
         raise UdecError(1, detail, advice)
 
 

@@ -14,7 +14,7 @@ from udec_ia.ops.common.lists import chain
 
 Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 Point = tuple[float, float]
-NO_BLOCK_YET = "there is no block yet: BLOCK makes the first"
+NO_BLOCK_YET = "there is no block yet: create one with BLOCK"
 
 
 def check_range(array: MainArray, where: Range) -> None:
@@ -61,5 +61,5 @@ def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point
     away, name, points = nearest
     place = " to ".join(f"({x:g}, {y:g})" for x, y in points)
     here = f"x {x1:g} to {x2:g}, y {y1:g} to {y2:g}"
-    limit = "" if away else ", on a limit and not inside"
+    limit = "" if away else ", on a limit and so outside"
     return f"no {what} in {here}, the nearest is {name} at {place}{limit}"

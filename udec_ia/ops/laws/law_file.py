@@ -89,7 +89,7 @@ def read_laws(given: Given | Iterable[Given] | None) -> dict[str, Law]:
         for law in found:
             if law.name in laws:
                 detail = f"{law.name} is defined by {laws[law.name].origin} and by {law.origin}"
-                raise _wrong(detail, "give one of them another number")
+                raise _wrong(detail, "use another number for one of them")
             laws[law.name] = law
     return laws
 
@@ -139,7 +139,7 @@ def _of_file(path: Path) -> list[Law]:
     try:
         exec(compile(text, file, "exec", dont_inherit=True), space)
     except SyntaxError as error:
-        wrong = _wrong(f"{error.msg}", "this is not Python")
+        wrong = _wrong(f"{error.msg}", "this is not valid Python")
         raise _place(wrong, error.filename or file, error.lineno or 1, error.offset or 0) from error
     except (Exception, SystemExit) as error:
         raise _place(_wrong(f"{type(error).__name__}: {error}"), file, _line(error, file) or 1) from error
@@ -169,7 +169,7 @@ def _plain(name: str, function: Any) -> FunctionType:
     """The Python function that was given, or that the given one was compiled from."""
     plain = getattr(function, "py_func", function)
     if not isinstance(plain, FunctionType):
-        raise _wrong(f"{name} is no function", f"a law is a function: def {name}{FORMS[RESULTS[name]]}")
+        raise _wrong(f"{name} is not a function", f"a law is a function: def {name}{FORMS[RESULTS[name]]}")
     return plain
 
 
@@ -232,7 +232,7 @@ def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
             advice = 'return float("nan") instead: the run then stops with error 35'
             raise _wrong_step(f"{function.__name__} raises an exception", advice, function, step)
         if checked and step.opname in NAMED and step.argval in UNCHECKED:
-            advice = "index the array itself, or what its method ravel returns"
+            advice = "index the array itself, or the result of its method ravel"
             raise _wrong_step(f"numba does not check the indices of {step.argval}", advice, function, step)
     space = dict(function.__globals__)
     copy = FunctionType(
@@ -259,7 +259,7 @@ def _not_compiled(name: str, error: Exception, code: CodeType) -> UdecError:
     reasons = [line for line in said if line and not line.startswith(("Failed in", "- "))]
     reason = " ".join(reasons[: 2 if reasons[0].endswith(":") else 1]) if reasons else type(error).__name__
     lines = re.findall(rf'File "[^"]*{re.escape(Path(code.co_filename).name)}", line (\d+)', "\n".join(said))
-    advice = "laws are compiled: take numbers, math and NumPy functions, and functions of the same file"
+    advice = "laws are compiled: use numbers, math and NumPy functions, and functions of the same file only"
     return _wrong(f"{name} cannot be compiled: {reason}", advice, code, int(lines[-1]) if lines else 0)
 
 

@@ -63,7 +63,7 @@ class LawBook:
         """Take note of the laws that a state was made with. Returns a warning for each that has changed."""
         self.recorded = dict(recorded)
         return [
-            f"{name} of {self.given[name].origin} has another text than {name} of {printable(origin)}, "
+            f"{name} of {self.given[name].origin} differs from {name} of {printable(origin)}, "
             "which the restart file was made with"
             for name, (origin, digest) in recorded.items()
             if name in self.given and self.given[name].digest != digest

@@ -91,9 +91,9 @@ def mesh(corners: ArrayLike, edge: float, paired: bool = True, real: type = np.f
             points, zones = relax(points, ring, zones)
     points = points.astype(real).astype(np.float64)
     if not (areas(points, zones) > 0).all():
-        advice = "take a longer edge, the origin nearer to the block, or --build with 64-bit reals"
+        advice = "use a longer edge, put the origin nearer to the block, or use a --build with 64-bit reals"
         raise UdecError(
-            28, "zones are too small for the digits of their coordinates", advice, parameter="edge"
+            28, "zones are too small for the precision of their coordinates", advice, parameter="edge"
         )
     return _corners_first(points, zones, ring, np.concatenate([[0], np.cumsum(parts[:-1])]))
 

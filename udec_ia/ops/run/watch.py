@@ -194,3 +194,22 @@ class Watch:
             series.add(rows[due][:, [0, 1, 2 + i]])
         self._count[0] = 0
         return len(rows)
+
+
+class Around(Watch):
+    """A watch of which only `run` is another's: all else is done, and known, by `inner`."""
+
+    def __init__(self, inner: Watch) -> None:
+        self.inner = inner
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    def begin(self) -> None:
+        self.inner.begin()
+
+    def look(self) -> None:
+        self.inner.look()
+
+    def hand_on(self) -> int:
+        return self.inner.hand_on()
