@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import re
 import tempfile
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ import numpy as np
 from udec_ia import Model, UdecError
 from udec_ia.kernels.drive.unbalanced import force_ratio
 from udec_ia.layout.offsets import MCTOT
+from udec_ia.ops.run.remarks import on_resolution
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LEFT_OUT = ("PLOT", "P ", "PRINT", "SAVE", "STOP", "END")
@@ -27,8 +27,8 @@ TURNS, SLICE = 7, 0.04  # of each scheme, by turns, and how long one takes at le
 class Run(NamedTuple):
     """One scene in one scheme.
 
-    model: None if IA() was too small. looks: of each, cycle and the centroids of all blocks, shape (n, 2).
-    digits: True if the program warned that last digits count.
+    model: None if IA() was too small. looks: of each, cycle and the centroids of all blocks, (n, 2).
+    digits: True if CYCLE warns of the last digits.
     """
 
     model: Model | None
@@ -98,13 +98,9 @@ def centroids(m: Model) -> np.ndarray:
 
 def run(text: str, build: str) -> Run:
     """The deck `text` in the words of `build`."""
-    said: list[str] = []
-    listener = logging.Handler(logging.WARNING)
-    listener.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
-    logging.getLogger("udec_ia").addHandler(listener)
     with tempfile.TemporaryDirectory() as folder:
         m = Model(build, out=folder)
-        m.tell = m.inform = said.append
+        m.tell = m.inform = lambda _: None
         looks, begun = [], 0
         try:
             for line in pieces(text):
@@ -113,14 +109,14 @@ def run(text: str, build: str) -> Run:
                 m.run(line)
                 if int(m.h.ci[MCTOT]) > begun:
                     begun = int(m.h.ci[MCTOT])
+                    if len(looks[-1][1]) != len(m.table("block")):
+                        looks.clear()  # blocks were taken away: what counts is what comes of it
                     looks.append((begun, centroids(m)))
         except UdecError as error:
             if error.number not in (1, 2):
                 raise
             return Run(None, [], False)
-        finally:
-            logging.getLogger("udec_ia").removeHandler(listener)
-    return Run(m, looks, any("last digit" in one for one in said))
+    return Run(m, looks, any(on_resolution(m.array)))
 
 
 def forces(m: Model) -> tuple[float, float]:

@@ -22,6 +22,8 @@ from udec_ia.layout.offsets import MFREE, NBLK
 
 DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"
 SIDE, RADIUS, DENSITY, KN, STEP = 5**0.5, 1.115, 2000.0, 1e8, 0.002  # of the deck; s, m, kg/m3, N/m
+NARROW = "i32r32"
+PRICED = "ball", "wall of squares", "slab, 1,000 blocks"
 LEFT_OUT = ("PLOT", "P B", "SAVE", "STOP", "END")
 
 
@@ -150,9 +152,11 @@ def prices() -> Iterator[str]:
     taken = []
     for name, made in SCENES.items():
         text = made()
-        runs = {build: run(text, build) for build in ALL_SCHEMES}
-        yield loss(name, text, runs[DEFAULT_SCHEME], runs["i32r32"])
-        taken.append(price(name, runs))
+        builds = ALL_SCHEMES if name in PRICED else (NARROW, DEFAULT_SCHEME)
+        runs = {build: run(text, build) for build in builds}
+        yield loss(name, text, runs[DEFAULT_SCHEME], runs[NARROW])
+        if name in PRICED:
+            taken.append(price(name, runs))
     yield "\n" + head("IA() in use and time of a cycle", *ALL_SCHEMES)
     yield from taken
 
