@@ -105,6 +105,7 @@ def run(text: str, build: str) -> Run:
         try:
             for line in pieces(text):
                 if not looks and line.upper().startswith(("CYC", "SOLVE")):
+                    m.run("CYCLE 0")  # which puts a large model's groups where they will stay
                     looks.append((0, centroids(m)))
                 m.run(line)
                 if int(m.h.ci[MCTOT]) > begun:

@@ -27,6 +27,7 @@ def draw(price: Price, title: str, base: Path) -> list[Path]:
     rows = [row for row in price.rows if math.isfinite(row.error)]
     if not rows:
         return []
+    rows = [row for row in rows if row.error > 0] or rows  # what is its own reference says nothing
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
