@@ -33,7 +33,7 @@ from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
 from udec_ia.ops.common.limits import not_negative, whole
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.soft import soft_or_loaded_in
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.remarks import (
     on_laws,
@@ -134,7 +134,7 @@ class Model(Files, Blocks, Numbers, Looks):
         unrest, mean = Unrest(), criterion == MEAN
         watch = Watch(self.array, self._recorder.series, ratio, mean, unrest)
         cycles = self._cycle(limit, watch, ended)
-        h, kinds = self.array.h, soft(self.array)
+        h, kinds = self.array.h, soft_or_loaded_in(self.array.h)
         reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(ratio)))
         largest, average = map(float, force_ratios(h, kinds))
         worst, lively = (

@@ -10,6 +10,7 @@ from mechanics import on_base
 
 from udec_ia import Model
 from udec_ia.kernels.drive import passes as module
+from udec_ia.kernels.drive import recording
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
 
@@ -45,7 +46,7 @@ def loaded() -> Model:
         (strained, None, set()),
         (strained, lambda m: m.energy("on"), {"note_forces", "note_stresses", "note_contact"}),
         (loaded, None, {"apply_bounds"}),
-        (loaded, lambda m: m.energy("on"), {"apply_bounds", "note_forces", "note_contact"}),
+        (loaded, lambda m: m.energy("on"), {"apply_bounds", "note_rigid", "note_loads", "note_contact"}),
     ],
 )
 def test_a_cycle_asks_for_what_it_runs(
@@ -68,5 +69,18 @@ def test_a_cycle_asks_for_what_it_runs(
     monkeypatch.setattr(module, "entry_if", lambda wanted, kernel, h: 0)  # another test may have compiled it
     found = module.passes(m.array.h, soft(m.array), (), -1.0, False, ())
     assert asked == ALWAYS | wanted
-    assert sum(1 for one in found if one) == len(asked) + 1  # and the update
+    assert sum(1 for one in found if one and isinstance(one, int)) == len(asked) + 1  # and the update
+    assert not any(found[module.MEASURES])
     assert m.array.h.ci[g.JPHASE] == g.AT_BLOCKS
+
+
+def test_of_histories_of_the_whole_model_those_are_measured_that_there_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+    m = rigid()
+    m.history(5, "KXD", at=(1, 1.5))
+    m.history(5, "kinetic")
+    monkeypatch.setattr(recording, "entry", lambda kernel, *_: asked.append(kernel.__name__) or 1)
+    assert recording.measures(m.array.h) == (0, 0, 1, 0, 0)
+    assert asked == ["measure_kinetic"]

@@ -72,10 +72,12 @@ def _damping(r: random.Random) -> str:
 
 def slope(r: random.Random) -> str:
     """A block that slides or stays."""
+    material, left, right = _material(r), r.uniform(0, 1), r.uniform(4, 8)
+    low, high = (left + (right - left) * (x + 1) / 16 - 0.5 for x in (9, 12))  # the cuts begin in the base
     return (
-        f"START\nPROP MAT=1 {_material(r)}\nBLOCK 0,-2 0,10 14,10 14,-2\n"
-        f"SPLIT -1,{r.uniform(0, 1):.3f} 15,{r.uniform(4, 8):.3f}\n"
-        f"SPLIT 9,3 {r.uniform(7, 8.5):.3f},11\nSPLIT 12,4 12,11\nDELETE 0,8 4,10\nDELETE 12,14 4,10\n"
+        f"START\nPROP MAT=1 {material}\nBLOCK 0,-2 0,10 14,10 14,-2\n"
+        f"SPLIT -1,{left:.3f} 15,{right:.3f}\nSPLIT 9,{low:.3f} {r.uniform(7, 8.5):.3f},11\n"
+        f"SPLIT 12,{high:.3f} 12,11\nDELETE 0,8 4,10\nDELETE 12,14 4,10\n"
         f"FIX 0,14 -2,4\nROUND {r.uniform(0.1, 0.4):.3f}\nGRAVITY 0,-9.81\n{_fraction(r)}"
         f"{_damping(r) if r.random() < 0.5 else ''}CYCLE {r.randint(2000, 6000)}\nSTOP\nEND\n"
     )

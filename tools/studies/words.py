@@ -1,23 +1,29 @@
-"""What the widths of integers and reals cost and bear, shown on the ball of Appendix II-1.
+"""What the widths of integers and reals cost, bear and lose.
 
     python tools/studies/words.py
 
-prints the tables of docs/words.md: the deck examples/ball-rolling.dat is run in all five word schemes,
-without its plots, and held against the formulas for a disc that rolls.
+prints the tables of docs/words.md. First those that are alike wherever they are made: the deck
+examples/ball-rolling.dat is run in all five word schemes, without its plots, and held against the formulas
+for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scenes.py, and what each takes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import hypot
 from pathlib import Path
 from typing import NamedTuple
 
+from word_scenes import SCENES, Run, losses, rest, run, times, way
+
 from udec_ia import Model
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE, NBLK
 
 DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"
 SIDE, RADIUS, DENSITY, KN, STEP = 5**0.5, 1.115, 2000.0, 1e8, 0.002  # of the deck; s, m, kg/m3, N/m
+NARROW = "i32r32"
+PRICED = "ball", "wall of squares", "slab, 1,000 blocks"
 LEFT_OUT = ("PLOT", "P B", "SAVE", "STOP", "END")
 
 
@@ -113,5 +119,49 @@ def report() -> str:
     return "\n\n".join("\n".join(table) for table in (sizes(), errors(balls), cost(balls))) + "\n"
 
 
+def loss(name: str, text: str, wide: Run, narrow: Run) -> str:
+    """A row: what 32-bit reals lose in a scene."""
+    places, most, every, parted = losses(wide, narrow)
+    ends = [rest(text, one) for one in (wide, narrow)]
+    cells = [f"{way(wide):.2g} m", *(f"{part:.0e}" for part in (places, most, every))]
+    said = "yes" if narrow.digits else "no"
+    return row(name, *cells, f"cycle {parted:,}" if parted else "-", ", ".join(dict.fromkeys(ends)), said)
+
+
+def price(name: str, runs: dict[str, Run]) -> str:
+    """A row: kB of IA() in use, and time of a cycle: in us for the default scheme, of others a part of it."""
+    models = {build: one.model for build, one in runs.items() if one.model is not None}
+    took = times(models)
+    cells = []
+    for build in ALL_SCHEMES:
+        if build not in models:
+            cells.append("no room")
+            continue
+        held = (int(models[build].h.ci[MFREE]) - 1) * ALL_SCHEMES[build].int_bits / 8000
+        share = f"{took[build] / took[DEFAULT_SCHEME]:.2f}"
+        cells.append(
+            f"{held:,.0f} kB, {share if build != DEFAULT_SCHEME else f'{1e6 * took[build]:,.1f} us'}"
+        )
+    return row(name, *cells)
+
+
+def prices() -> Iterator[str]:
+    """What 32-bit reals lose in each scene; then memory and time, which differ from run to run."""
+    names = "places", "greatest force", "all forces", "part", "force ratio at the end, 64 and 32 bits"
+    yield head("32-bit reals lose", "way", *names, "told before the run")
+    taken = []
+    for name, made in SCENES.items():
+        text = made()
+        builds = ALL_SCHEMES if name in PRICED else (NARROW, DEFAULT_SCHEME)
+        runs = {build: run(text, build) for build in builds}
+        yield loss(name, text, runs[DEFAULT_SCHEME], runs[NARROW])
+        if name in PRICED:
+            taken.append(price(name, runs))
+    yield "\n" + head("IA() in use and time of a cycle", *ALL_SCHEMES)
+    yield from taken
+
+
 if __name__ == "__main__":
-    print(report(), end="")
+    print(report())
+    for line in prices():
+        print(line, flush=True)

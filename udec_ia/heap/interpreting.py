@@ -42,6 +42,24 @@ def interpreted() -> Iterator[None]:
         mode.python = before
 
 
+class Sparing:
+    """A kernel that a small model has little for: what it would cost to compile, Python does many times over.
+
+    It runs as Python until that has been handed `most` groups in this process, and from then on compiled.
+    """
+
+    def __init__(self, kernel: Callable[..., Any], most: int) -> None:
+        self.kernel, self.left = kernel, most
+
+    def __call__(self, groups: int, *args: Any) -> Any:
+        """Call the kernel with `args`. groups: how many it goes through."""
+        self.left -= groups
+        if self.left < 0:
+            return self.kernel(*args)
+        with interpreted():
+            return self.kernel(*args)
+
+
 class Observed:
     """One array of a memory, whose elements are read and written through it. name: ia, ra, ci, cr or cd."""
 

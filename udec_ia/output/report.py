@@ -9,7 +9,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.drive.unbalanced import unbalanced
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.common.soft import soft_or_loaded_in
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -50,7 +50,9 @@ class Report:
             self.progress = Progress(stream, self.total, tdel, frac, self.started)
         self.shown = done
         made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
-        self.progress.update(done, float(h.cd[g.TIME]), float(unbalanced(h, soft_in(h))[0]), made, broken)
+        self.progress.update(
+            done, float(h.cd[g.TIME]), float(unbalanced(h, soft_or_loaded_in(h))[0]), made, broken
+        )
 
     def close(self) -> None:
         """Take the progress off the screen; the last line tells how far a command came that was cut short."""

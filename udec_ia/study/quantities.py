@@ -13,7 +13,7 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.inspect.look.condition import satisfying
-from udec_ia.kernels.drive.recording import quantity
+from udec_ia.kernels.drive.recording import measured
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy import balance
 from udec_ia.ops.commands.recordable import Recordable
@@ -51,7 +51,7 @@ class OfModel(Quantity):
         """See Quantity."""
         h, what = state.array.h, self.what
         if what.kind == g.WHOLE_MODEL:
-            return float(quantity(h, what.number))
+            return measured(h, what.number)
         index = getattr(g, what.field.name)
         part = {"double": h.cd, "real": h.cr, "int": h.ci}[what.field.type]
         return float(part[index])

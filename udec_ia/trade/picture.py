@@ -13,10 +13,12 @@ from udec_ia.trade.trade import Price
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 SIZE = (7.5, 6.5)  # inches
 COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
 FRONT = "#33302b"
+SHORT, LONG = 8, 1e3  # axes, by the greatest over the smallest number on them
 SMALLEST = 1e-16  # error that is drawn for none
 
 
@@ -25,6 +27,7 @@ def draw(price: Price, title: str, base: Path) -> list[Path]:
     rows = [row for row in price.rows if math.isfinite(row.error)]
     if not rows:
         return []
+    rows = [row for row in rows if row.error > 0] or rows  # what is its own reference says nothing
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -57,8 +60,21 @@ def _panel(panel: Axes, price: Price, rows: list[Row], x: list[float], label: st
     panel.set(xscale="log", yscale="log")
     panel.set_xlabel(label, fontsize=9, color=INK)
     panel.set_ylabel("greatest error", fontsize=9, color=INK)
+    _number(panel.xaxis, x)
+    _number(panel.yaxis, error)
     panel.tick_params(labelsize=8, colors=INK)
     panel.grid(color="#e4e0d8", linewidth=0.6)
+
+
+def _number(axis: Axis, values: list[float]) -> None:
+    """Plain numbers along a logarithmic axis, several even where all `values` are of one size."""
+    from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
+
+    times = max(values) / min(values)
+    marks = LogLocator(subs=(1,) if times > LONG else (1, 2, 5))
+    axis.set_major_locator(marks if times > SHORT else AutoLocator())
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
 
 
 def _best_until(k: int, x: list[float], error: list[float]) -> bool:

@@ -22,6 +22,7 @@ from udec_ia.kernels.drive.passes import (
     CHANGES,
     CONTACT,
     FORCES,
+    LOADS,
     MOTION,
     RELAX,
     STRESSES,
@@ -49,7 +50,7 @@ def has_to_judge(h: Memory) -> bool:
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
-    soft: None if all blocks are rigid and free of boundary conditions, else True. laws: of blocks, None if
+    soft: None if all blocks are rigid, else True. laws: of blocks, None if
     `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). passes: see
     drive.passes. Stops early, too, when a safe time-step has to be judged.
     """
@@ -67,6 +68,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 call_entry(passes[RELAX], h)
             if passes[FORCES] != 0:
                 call_entry(passes[FORCES], h)
+            if passes[LOADS] != 0:
+                call_entry(passes[LOADS], h)
             fastest = move_all(h, soft, laws)
             if passes[STRESSES] != 0:
                 call_entry(passes[STRESSES], h)

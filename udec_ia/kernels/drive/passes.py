@@ -16,39 +16,43 @@ from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.openings import note_openings
 from udec_ia.kernels.drive.peaks import look_at_motion
-from udec_ia.kernels.drive.recording import record
+from udec_ia.kernels.drive.recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.relax import relax
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.contacts import note_contact
-from udec_ia.kernels.energy.works import note_forces, note_rigid, note_stresses
+from udec_ia.kernels.energy.works import note_forces, note_loads, note_rigid, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, STRESSES, CONTACT, CHANGES, RECORD, REST, OPENINGS = range(12)
+UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, LOADS, STRESSES = range(8)
+CONTACT, CHANGES, MEASURES, RECORD, REST, OPENINGS = range(8, 14)
 
 
 def passes(
     h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float, mean: bool, marks: Any
 ) -> tuple[Any, ...]:
-    """Addresses in the order above, 0 for what a run does not need.
+    """Addresses in the order above, 0 for what a run does not need; of MEASURES as many.
 
-    soft: as in run_cycles. recorded: what `record` is called with beside `h`, () if nothing is recorded.
+    soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
     ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
     A run of slow blocks does not need THROUGH; one that does stops before it.
     """
-    keeps, strains, how = h.ci[g.LENER] != 0, h.ci[g.NSOFT] > 0, h.ci[g.LREST]
+    keeps, loaded, how = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, h.ci[g.LREST]
+    asked = measures(h) if recorded else NOT_MEASURED
     none = h.cr.dtype.type(0)
     pair = none, none
     return (
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
-        entry(apply_bounds, h) if h.ci[g.IBNPNT] else 0,
+        entry(apply_bounds, h) if loaded else 0,
         entry(look_at_motion, h) if how in (g.KINETIC, g.ADAPTIVE) else 0,
         entry(relax, h) if how in (g.LOCAL, g.COMBINED) or h.ci[g.LSCALE] else 0,
         entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
-        entry(note_stresses, h) if keeps and strains else 0,
+        entry(note_loads, h) if keeps and loaded else 0,
+        entry(note_stresses, h) if keeps and soft is not None else 0,
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
         entry(change_map, h, NOBODY, 0, 0),
-        entry(record, h, *recorded) if recorded else 0,
+        asked,
+        entry(record, h, *recorded, asked) if recorded else 0,
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
         entry(note_openings, h, marks) if len(marks) else 0,
     )

@@ -7,35 +7,80 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
+from udec_ia.heap.apart import call_entry, entry
 from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.drive.unbalanced import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 
-UNBALANCED, RATIO, KINETIC, STRAIN = 0, 1, 2, 3
 INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
 
 
-@kernel
-def quantity(h: Memory, which: int) -> float:
-    """Quantity `which` of the whole model, in the order of ops.commands.recordable.QUANTITIES."""
-    if which == UNBALANCED:
-        return float(unbalanced(h, True)[0])
-    if which == RATIO:
-        return float(force_ratio(h, True))
-    if which == KINETIC:
-        return kinetic(h, True)
-    if which == STRAIN:
-        return strain_of_contacts(h) + strain_of_blocks(h, True)
-    return height(h) - h.cd[g.EREF]
+@apart
+def measure_unbalanced(h: Memory, row: Any, i: int) -> bool:
+    """Put the greatest unbalanced force into `row`, at `i`."""
+    row[i] = unbalanced(h, True)[0]
+    return True
+
+
+@apart
+def measure_ratio(h: Memory, row: Any, i: int) -> bool:
+    """The same for the force ratio."""
+    row[i] = force_ratio(h, True)
+    return True
+
+
+@apart
+def measure_kinetic(h: Memory, row: Any, i: int) -> bool:
+    """The same for the kinetic energy."""
+    row[i] = kinetic(h, True)
+    return True
+
+
+@apart
+def measure_strain(h: Memory, row: Any, i: int) -> bool:
+    """The same for the strain energy."""
+    row[i] = strain_of_contacts(h) + strain_of_blocks(h, True)
+    return True
+
+
+@apart
+def measure_potential(h: Memory, row: Any, i: int) -> bool:
+    """The same for the potential of gravity against that at ENERGY ON."""
+    row[i] = height(h) - h.cd[g.EREF]
+    return True
+
+
+# Of the whole model, in the order of ops.commands.recordable.QUANTITIES.
+MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
+NOT_MEASURED = (0,) * len(MEASURED)
+
+
+def measures(h: Memory) -> tuple[Any, ...]:
+    """Addresses of these (heap.apart), 0 for those that no history asks for."""
+    asked, ih = set(), h.ci[g.IHPNT]
+    while ih != 0:
+        if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+            asked.add(int(iget(h, ih, g.KHF)))
+        ih = iget(h, ih, g.KH)
+    row = np.empty(0)
+    return tuple(entry(one, h, row, 0) if k in asked else 0 for k, one in enumerate(MEASURED))
+
+
+def measured(h: Memory, which: int) -> float:
+    """Quantity `which` of the whole model, in that order."""
+    row = np.empty(1)
+    MEASURED[which](h, row, 0)
+    return float(row[0])
 
 
 @kernel
 def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
-    """What history `ih` has to record now; not a number if its group has gone."""
+    """The number of a group or of the common block that history `ih` records.
+
+    Not a number if its group has gone.
+    """
     kind, group = iget(h, ih, g.KHK), iget(h, ih, g.KHG)
-    if kind == g.WHOLE_MODEL:
-        return quantity(h, offset)
     if kind == g.COMMON_BLOCK:
         if type_code == DOUBLE:
             return float(h.cd[offset])
@@ -47,10 +92,11 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
 
 
 @apart
-def record(h: Memory, places: Any, rows: Any, count: Any) -> bool:
+def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool:
     """Add a row with what is due after this cycle: cycle, time, and NaN for what is not due.
 
     Returns True if anything was. places: see ops.commands.history.places. count: number of rows, in an array.
+    measures: addresses of what measures the whole model, as `measures` gives them.
     """
     row = rows[count[0]]
     due = False
@@ -59,7 +105,10 @@ def record(h: Memory, places: Any, rows: Any, count: Any) -> bool:
     while ih != 0:
         row[2 + i] = np.nan
         if h.ci[g.MCTOT] % iget(h, ih, g.KHN) == 0:
-            row[2 + i] = number_now(h, ih, places[i, 0], places[i, 1])
+            if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+                call_entry(measures[places[i, 0]], h, row, int64(2 + i))
+            else:
+                row[2 + i] = number_now(h, ih, places[i, 0], places[i, 1])
             due = True
         i += 1
         ih = iget(h, ih, g.KH)

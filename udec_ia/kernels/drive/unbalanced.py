@@ -158,7 +158,10 @@ def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
 
 @kernel
 def unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
-    """Greatest unbalanced force, what it acts on, and their mean as in `greatest`; soft as in run_cycles."""
+    """Greatest unbalanced force, what it acts on, and their mean as in `greatest`.
+
+    soft: None if all blocks are rigid and free of boundary conditions.
+    """
     if soft is not None:
         return greatest_under_loads(h)
     return greatest(h, soft)

@@ -14,7 +14,7 @@ from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.drive.cycle import has_to_judge, run_cycles
 from udec_ia.kernels.drive.openings import LOOK
-from udec_ia.kernels.drive.passes import OPENINGS, RECORD, REST
+from udec_ia.kernels.drive.passes import MEASURES, OPENINGS, RECORD, REST
 from udec_ia.layout import offsets as g
 
 CHECK = 10  # cycles between two looks at the force ratio
@@ -54,7 +54,7 @@ def run_watched(
         completed = run_cycles(h, asked, laws[0], laws[1], laws[2], passes)
         done += completed
         if recorded and h.ci[g.MCTOT] > before:
-            call_entry(passes[RECORD], h, places, rows, count)
+            call_entry(passes[RECORD], h, places, rows, count, passes[MEASURES])
         if len(marks) > 0 and h.ci[g.MCTOT] > before and h.ci[g.MCTOT] % LOOK == 0:
             call_entry(passes[OPENINGS], h, marks)
         if completed < asked or h.ci[g.NERR] != 0:

@@ -133,9 +133,9 @@ def stress_power(h: Memory, ib: int, ahead: bool) -> float:
     return total
 
 
-@kernel
-def note_loads(h: Memory) -> None:
-    """The loads of the boundary conditions."""
+@apart
+def note_loads(h: Memory) -> bool:
+    """The same for the loads of the boundary conditions."""
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:
         fx, fy, x, y = load(h, iu)
@@ -153,6 +153,7 @@ def note_loads(h: Memory) -> None:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             h.cd[g.WBOUND] += (np.float64(fx) * (vx + ux) + fy * (vy + uy)) * h.cr[g.TDEL] * 0.5
         iu = iget(h, iu, g.KU)
+    return True
 
 
 @apart
@@ -173,13 +174,12 @@ def note_forces(h: Memory) -> bool:
                 taken = np.float64(stress_power(h, ib, True)) * h.cr[g.TDEL] * 0.5
                 h.cd[g.WYIELD] += taken + strain_of_block(h, ib)
         ib = iget(h, ib, g.KB)
-    note_loads(h)
     return True
 
 
 @apart
 def note_rigid(h: Memory) -> bool:
-    """The same where all blocks are rigid and no condition acts on them."""
+    """The same where all blocks are rigid."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:

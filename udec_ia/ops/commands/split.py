@@ -25,7 +25,7 @@ from udec_ia.ops.commands.rounding import update_flagged
 from udec_ia.ops.common.forces import renew_forces
 from udec_ia.ops.common.limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.ops.common.memory import find_room, keep_spare
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.soft import soft, soft_or_loaded_in
 
 CROSSINGS = 64  # of one block that are looked for at first
 ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
@@ -107,7 +107,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
         *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
-        cutting(h, soft(array)),
+        cutting(h, soft_or_loaded_in(h)),
     )
     if status == NO_MEMORY:
         try:

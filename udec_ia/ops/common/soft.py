@@ -1,4 +1,7 @@
-"""What the passes of the cycle need to know of deformable blocks and boundary conditions (report 4.2)."""
+"""What kernels need to know of deformable blocks and boundary conditions (report 4.2).
+
+What is None here is left out of the machine code: a rigid scene neither compiles nor tests what it has not.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,15 @@ from udec_ia.layout import offsets as g
 
 
 def soft(array: MainArray) -> Any:
-    """None if all blocks are rigid and no condition acts on them: the rest is not compiled then."""
+    """None if all blocks are rigid, else True: what the passes of the cycle look at."""
     return soft_in(array.h)
 
 
 def soft_in(h: Memory) -> Any:
     """The same of a memory."""
+    return True if h.ci[g.NSOFT] else None
+
+
+def soft_or_loaded_in(h: Memory) -> Any:
+    """None if no condition acts on blocks either: for what adds up loads, or cuts what they act on."""
     return True if h.ci[g.NSOFT] or h.ci[g.IBNPNT] else None

@@ -27,9 +27,9 @@ Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 
 class Bound(NamedTuple):
     """The laws as kernels take them.
 
-    blocks: None if all blocks are rigid and no condition acts on them, as in `soft`, so that they need no
-    machine code of their own. joints: None if no contact follows one of the laws. book: where they come from.
-    own_blocks: True if a deformable block follows one.
+    blocks: None if all blocks are rigid, as in `soft`, so that they need no machine code of their own.
+    joints: None if no contact follows one of the laws. book: where they come from. own_blocks: True if a
+    deformable block follows one.
     """
 
     blocks: Laws | None

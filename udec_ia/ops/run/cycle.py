@@ -14,6 +14,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import OVERFLOW, MainArray
 from udec_ia.heap.compiling import working_time
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.body.blocks import TOO_FAR
 from udec_ia.kernels.body.laws import LAW_FAILED
 from udec_ia.kernels.body.masses import make_masses
@@ -36,6 +37,7 @@ from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
+NOT_FINITE = Sparing(not_finite, 200)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -177,7 +179,7 @@ def _run(
 
 def _check_finite(array: MainArray) -> None:
     """Error 36 if the run has ended with a force, a velocity, a stress or an energy beyond the reals."""
-    h, group = array.h, int(not_finite(array.h))
+    h, group = array.h, int(NOT_FINITE(int(array.h.ci[g.NBLK]), array.h))
     if group != 0:
         kind, *here = ("contact", g.KXC, g.KYC) if iget(h, group, HEAD) == g.MCON else ("block", g.KX, g.KY)
         x, y = (float(getr(h, group, k)) for k in here)

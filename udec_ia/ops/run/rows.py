@@ -20,12 +20,14 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
 ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
+ADD_CONTACTS = Sparing(add_contacts, 200)  # in 0.1 s
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
@@ -140,7 +142,7 @@ class Rows:
         """The stiffness of all contacts that are not virtual."""
         row = np.zeros(int(self.h.ci[g.MFREE]) + 1, np.int32)
         row[self.address] = np.arange(len(self.address))
-        add_contacts(self.h, row, self.frame, self.weight, self.own, self.sum)
+        ADD_CONTACTS(int(self.h.ci[g.NCON]), self.h, row, self.frame, self.weight, self.own, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""

@@ -15,7 +15,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.kernels.drive.passes import passes
-from udec_ia.kernels.drive.recording import record
+from udec_ia.kernels.drive.recording import measures, record
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.ops.commands.history import Definition, definitions, places
 from udec_ia.ops.run.unrest import Unrest
@@ -144,7 +144,7 @@ class Watch:
         self._places = places(self.array)
         self._rows = np.empty((ROWS, 2 + len(self.series)))
         if len(self._places):
-            record(self.array.h, self._places, self._rows, self._count)
+            record(self.array.h, self._places, self._rows, self._count, measures(self.array.h))
         self.hand_on()
         if self.unrest is not None:
             self.unrest.begin(self.array)
