@@ -38,6 +38,12 @@ def addresses(array: MainArray, kind: str) -> Any:
     return _Reader(array).addresses(kind)
 
 
+def all_addresses(array: MainArray) -> dict[str, Any]:
+    """The same of every kind."""
+    reader = _Reader(array)
+    return {kind: reader.addresses(kind) for kind in reader.groups}
+
+
 class _Reader:
     """Reads one field of many groups at a time."""
 
@@ -46,6 +52,7 @@ class _Reader:
         self.scheme = array.scheme
         self.groups: dict[str, Group] = {group.name: group for group in read_table().groups}
         self.layouts = layouts(array.scheme.ratio)
+        self.found: dict[str, Any] = {}  # addresses by kind: lists hang on lists
 
     def rows(self, kind: str) -> Any:
         """The table of all groups of `kind`."""
@@ -73,8 +80,14 @@ class _Reader:
 
     def addresses(self, kind: str) -> Any:
         """Addresses of all groups of `kind`, in list order; those of blocks block by block."""
+        if kind not in self.found:
+            self.found[kind] = self.reached(kind)
+        return self.found[kind]
+
+    def reached(self, kind: str) -> Any:
+        """The same, found along the lists."""
         if kind in LISTS:
-            return self.listed(kind)
+            return self.main_list(kind)
         if kind == "corner":
             return self.corners()
         heads = np.concatenate([np.empty(0, np.int64), *self.heads(kind)])
@@ -95,7 +108,7 @@ class _Reader:
                 found = self.field(group.name, field.name, owners)
                 yield found if field.target == "soft" else found[found != 0]
 
-    def listed(self, kind: str) -> Any:
+    def main_list(self, kind: str) -> Any:
         """Addresses along a main list: taken as they come, then tested all at once.
 
         If that has led astray, the list is followed again with care, which says where it breaks.
