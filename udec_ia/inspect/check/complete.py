@@ -234,13 +234,13 @@ class Reach:
         pair, place = ragged(self.o.count[a])
         i = self.o.first[a][pair] + place
         inside = self.o.arc[i]
-        for (low, high), (least, greatest) in zip(self.near, self.blocks, strict=True):
-            inside &= (high[i] >= least[b][pair]) & (low[i] <= greatest[b][pair])
+        for (low, high), (low_of, high_of) in zip(self.near, self.blocks, strict=True):
+            inside &= (high[i] >= low_of[b][pair]) & (low[i] <= high_of[b][pair])
         i, b = i[inside], b[pair[inside]]
         pair, place = ragged(self.o.count[b])
         i, j = i[pair], self.o.first[b][pair] + place
-        for (low, high), (least, greatest) in zip(self.far, self.o.boxes, strict=True):
-            meet = (high[i] >= least[j]) & (low[i] <= greatest[j])
+        for (low, high), (low_of, high_of) in zip(self.far, self.o.boxes, strict=True):
+            meet = (high[i] >= low_of[j]) & (low[i] <= high_of[j])
             i, j = i[meet], j[meet]
         return i, j
 
