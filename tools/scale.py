@@ -4,10 +4,11 @@
     python tools/scale.py --blocks 1000000                with these
     python tools/scale.py check diff --blocks 100000      these commands alone
 
-Each command is a process of its own, as a user starts it. Times are processor times of the whole process, the
-least of some turns. Memory is the most that the process has held, beyond what it holds with a model of
-four blocks, over the size of the files that it reads. SAVE is a deck that reads the file and writes it, less
-one that reads it. The exit status is 1 if a limit is missed: MEMORY times the file, and of time LIMITS.
+Each command is a process of its own, as a user starts it, of modules that were compiled to bytecode
+before. Times are processor times of the whole process, the least of some turns. Memory is the most that the
+process has held, beyond what it holds with a model of four blocks, over the size of the files that it reads,
+or of the one that it writes, if that is larger. SAVE is a deck that reads the file and writes it, less one
+that reads it. The exit status is 1 if a limit is missed: MEMORY times the file, and of time LIMITS.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ LIMITS = {"check": 2.0}  # s for 100,000 blocks, and ten times as much for ten t
 LIMIT, BLOCKS = 3.0, 100_000
 RESTART = "RESTART"
 A, B = "a.h5", "b.h5"  # a state, and one of some cycles later, of the same blocks
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 COMMANDS = {
     "info": ["info", A],
     "what": ["what", A, "1"],
@@ -56,10 +58,11 @@ DECKS = {"restart.dat": f"RESTART {A}\nSTOP\n", "save.dat": f"RESTART {A}\nSAVE 
 
 
 class Cost(NamedTuple):
-    """Of a process: processor time in s, and the most memory that it has held, in bytes."""
+    """Of a process: processor time in s, the most memory that it has held, and what it wrote, in bytes."""
 
     seconds: float
     memory: int
+    written: int = 0
 
 
 def make(blocks: int) -> None:
@@ -78,7 +81,9 @@ def spawned(command: list[str]) -> Cost:
     """Run a command to its end. RuntimeError if it ends in trouble; 1 is that something differs."""
     with open("said.txt", "wb") as said:
         actions = [(os.POSIX_SPAWN_DUP2, said.fileno(), 1), (os.POSIX_SPAWN_DUP2, said.fileno(), 2)]
-        process = os.posix_spawn(sys.executable, [sys.executable, *command], os.environ, file_actions=actions)
+        process = os.posix_spawn(
+            sys.executable, [sys.executable, *command], ENVIRONMENT, file_actions=actions
+        )
         _, status, usage = os.wait4(process, 0)
     if os.waitstatus_to_exitcode(status) not in (0, 1):
         raise RuntimeError(f"{command}: {Path('said.txt').read_text()[-2000:]}")
@@ -91,7 +96,8 @@ def cost(command: str, turns: int) -> Cost:
     for _ in range(turns):
         Path("to.h5").unlink(missing_ok=True)
         costs.append(spawned(["-m", "udec_ia", *COMMANDS[command]]))
-    return Cost(min(one.seconds for one in costs), min(one.memory for one in costs))
+    written = Path("to.h5").stat().st_size if Path("to.h5").exists() else 0
+    return Cost(min(one.seconds for one in costs), min(one.memory for one in costs), written)
 
 
 def measure(blocks: int, chosen: list[str], turns: int) -> dict[str, Cost]:
@@ -105,8 +111,8 @@ def measure(blocks: int, chosen: list[str], turns: int) -> dict[str, Cost]:
 def row(blocks: int, command: str, costs: dict[str, Cost], start: dict[str, Cost]) -> tuple[str, bool]:
     """A line of the table, and whether a limit is missed."""
     size = Path(A).stat().st_size
-    read = size * len({A, B} & {*COMMANDS[command]} or {A})
-    seconds, times = costs[command].seconds, (costs[command].memory - start[command].memory) / read
+    files = max(size * len({A, B} & {*COMMANDS[command]} or {A}), costs[command].written)
+    seconds, times = costs[command].seconds, (costs[command].memory - start[command].memory) / files
     begin = start[command].seconds
     if command == "SAVE":
         seconds, begin = seconds - costs[RESTART].seconds, 0.0

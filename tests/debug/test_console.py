@@ -120,7 +120,10 @@ def test_wrong_commands_are_told(tmp_path: Path) -> None:
     assert "no command nonsense" in said
 
 
-COMMANDS = "step rs rc goto print watch break delete what who walk junk wrote why born info list c where"
+COMMANDS = (
+    "step rs rc goto print watch break delete "
+    "what who walk junk dump map graph wrote why born info list c where"
+)
 ARGUMENTS = ["", "1", "3", "40", "block@1.KX", "TIME", "412", "pass", "group", "made", "x@y.z", "-", "line 4"]
 
 

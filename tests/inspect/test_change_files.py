@@ -58,6 +58,19 @@ COMMANDS = {
 }
 
 
+def test_what_leads_astray_is_named(source: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The pointer goes before the words that are lost with it, and the way to the rest of it is told."""
+    at = block(source)
+    assert main(["patch", str(source), "bad.h5", f"block@{at}.KP = 5", "--force"]) == 0
+    assert (
+        f"NOT SOUND: invariant 2: KP of block@{at} points to 5, which is no corner" in capsys.readouterr().out
+    )
+    assert main(["convert", "bad.h5", "to.h5", "--build", "i64r64"]) == 1
+    said = capsys.readouterr().err
+    assert f"KP of block@{at} points to 5, which is no corner" in said
+    assert "udec check bad.h5 lists all that is wrong in it" in said
+
+
 @pytest.mark.parametrize("verb", COMMANDS)
 def test_all_goes_along(verb: str, source: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Deck, with what was done, laws and recorded numbers, whose groups are called as they are now."""

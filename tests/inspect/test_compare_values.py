@@ -232,7 +232,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["diff", a, b, "--python", "--most", "3"]) == 0
     exec(compile_(capsys.readouterr().out), {})
     script = capsys.readouterr().out
-    assert main(["diff", a, b, "--most", "3"]) == 1
+    assert main(["diff", a, b, "--limit", "3"]) == 1  # as find and walk call it
     assert capsys.readouterr().out == script
     assert main(["diff", a, b, "--json"]) == 1
     assert {*json.loads(capsys.readouterr().out)} == {"summary", "alone", "differences"}

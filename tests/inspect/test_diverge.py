@@ -170,5 +170,6 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["diverge", str(one), "--builds", "i32r64,i64r64"]) == 0
     for wrong in ([str(one)], [str(one), "--builds", "i8"], [*kept, "--cycles", "-1"], [str(one), "no.dat"]):
         assert main(["diverge", *wrong]) == 2
+    assert capsys.readouterr().err.endswith("udec diverge: no.dat: No such file or directory\n")
     assert main(["diverge", str(one), str(two), "--python"]) == 0
     assert "of_deck" in capsys.readouterr().out

@@ -6,7 +6,6 @@ on when they lead beyond what has been run. Names of words are those of places.p
 
 from __future__ import annotations
 
-import cmd
 import signal
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -14,6 +13,7 @@ from threading import current_thread, main_thread
 from typing import Any, TextIO
 
 from udec_ia.debug import answers
+from udec_ia.debug.looks import Looks
 from udec_ia.debug.places import place
 from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, shown
 from udec_ia.debug.session import Debugger, Leave, Resume
@@ -21,9 +21,7 @@ from udec_ia.debug.timeline import Gone
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.inspect import look
 from udec_ia.inspect.change import patch
-from udec_ia.inspect.check import check
 from udec_ia.inspect.look.atlas import TABLE
 from udec_ia.layout import offsets as g
 from udec_ia.signals import hold, passing
@@ -43,7 +41,7 @@ ALIASES = {
 }
 
 
-class Console(cmd.Cmd):
+class Console(Looks):
     """Asks for commands while a run stands. script: lines that are taken first. ends: quit after them.
 
     deck: the lines of the deck, for `list`.
@@ -311,31 +309,6 @@ class Console(cmd.Cmd):
             word = place(self.debugger.atlas, name)
             self.say(f"{word.name} = {shown(word.value(self.debugger.array.h))} {word.unit}".rstrip())
 
-    def do_what(self, text: str) -> None:
-        """what ADDRESS: what a word is, and its group."""
-        self._look("what", text)
-
-    def do_who(self, text: str) -> None:
-        """who ADDRESS: all words that point there."""
-        self._look("who", text)
-
-    def do_walk(self, text: str) -> None:
-        """walk LIST [ADDRESS]: along a list."""
-        self._look("walk", text)
-
-    def do_find(self, text: str) -> None:
-        """find KIND where CONDITION: groups for which it is true."""
-        self.stdout.write(look.find(self.debugger.atlas, text).as_text())
-
-    def do_junk(self, _: str) -> None:
-        """junk: how full the memory is."""
-        self._look("junk", "")
-
-    def do_check(self, _: str) -> None:
-        """check: all violations of the invariants."""
-        found = check(self.debugger.array)
-        self.tell(map(str, found) if found else iter(["sound"]))
-
     def do_wrote(self, text: str) -> None:
         """wrote NAME: who has given a word the value that it has: cycle, pass, routine, line."""
         self._of_the_past(answers.wrote, text)
@@ -353,14 +326,6 @@ class Console(cmd.Cmd):
     def _of_the_past(self, answer: Any, text: str) -> None:
         word = place(self.debugger.atlas, text)
         self.tell(answer(self.debugger.timeline, self.debugger.event, word))
-
-    def _look(self, name: str, text: str) -> None:
-        given = [int(word) if word.isdigit() else word for word in text.split()]
-        try:
-            listing = getattr(look, name)(self.debugger.atlas, *given)
-        except TypeError:
-            raise ValueError(f"see help {name}") from None
-        self.stdout.write(listing.as_text())
 
     # ---- completion
 

@@ -10,11 +10,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.kinds import forget
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, Layout, layouts, read_table
+
+PIECE = 16384  # groups that are copied together: they fit in the machine's caches
 
 
 def relocate(array: MainArray, order: dict[str, Any]) -> Any:
@@ -33,10 +36,13 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
         free += layout.size * len(order[kind])
     words = np.zeros_like(h.ia[: free - 1])
     for kind, (group, layout) in kinds.items():
-        rows = _copies(h.ia, order[kind], group, layout, moved)
+        start, size = int(moved[order[kind][0]]) - 1, layout.size
+        rows = words[start : start + size * len(order[kind])].reshape(-1, size)
+        for first in range(0, len(rows), PIECE):
+            rows[first : first + PIECE] = _copies(
+                h.ia, order[kind][first : first + PIECE], group, layout, moved
+            )
         _relink(rows, group, layout, moved[order[kind]])
-        start = moved[order[kind][0]] - 1
-        words[start : start + rows.size] = rows.ravel()
     h.ia[: free - 1] = words
     h.ia[free - 1 : int(h.ci[g.MFREE]) - 1] = 0
     for field in table.common:
@@ -53,7 +59,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
 
 def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:
     """The words of the groups at `addresses`, one row each, with all addresses in them renewed."""
-    rows = ia[(addresses - 1)[:, np.newaxis] + np.arange(layout.size)]
+    rows = sliding_window_view(ia, layout.size)[addresses - 1]
     for field in group.fields:
         if field.target is not None:
             column = slice(layout.offset[field.name], layout.offset[field.name] + field.count)

@@ -38,6 +38,12 @@ def addresses(array: MainArray, kind: str) -> Any:
     return _Reader(array).addresses(kind)
 
 
+def all_addresses(array: MainArray) -> dict[str, Any]:
+    """The same of every kind."""
+    reader = _Reader(array)
+    return {kind: reader.addresses(kind) for kind in reader.groups}
+
+
 class _Reader:
     """Reads one field of many groups at a time."""
 
@@ -46,6 +52,7 @@ class _Reader:
         self.scheme = array.scheme
         self.groups: dict[str, Group] = {group.name: group for group in read_table().groups}
         self.layouts = layouts(array.scheme.ratio)
+        self.found: dict[str, Any] = {}  # addresses by kind: lists hang on lists
 
     def rows(self, kind: str) -> Any:
         """The table of all groups of `kind`."""
@@ -73,13 +80,19 @@ class _Reader:
 
     def addresses(self, kind: str) -> Any:
         """Addresses of all groups of `kind`, in list order; those of blocks block by block."""
+        if kind not in self.found:
+            self.found[kind] = self.reached(kind)
+        return self.found[kind]
+
+    def reached(self, kind: str) -> Any:
+        """The same, found along the lists."""
         if kind in LISTS:
-            return self.listed(kind)
+            return self.main_list(kind)
         if kind == "corner":
             return self.corners()
         heads = np.concatenate([np.empty(0, np.int64), *self.heads(kind)])
         links = [field.name for field in self.groups[kind].fields if field.role == "next"]
-        return self.chains(kind, links[0], heads) if links else self.sound(kind, heads)
+        return self.chains(kind, links[0], heads) if links else heads
 
     def heads(self, kind: str) -> Iterator[Any]:
         """Addresses of groups of `kind` that pointers of other groups lead to, of the first ones of lists."""
@@ -93,9 +106,10 @@ class _Reader:
                     codes = [code for code, name in SOFT.items() if name == kind]
                     owners = owners[np.isin(self.field(group.name, "HEAD", owners), codes)]
                 found = self.field(group.name, field.name, owners)
-                yield found if field.target == "soft" else found[found != 0]
+                some = slice(None) if field.target == "soft" else found != 0
+                yield self.sound(kind, found[some], f"{field.name} of {group.name}", owners[some])
 
-    def listed(self, kind: str) -> Any:
+    def main_list(self, kind: str) -> Any:
         """Addresses along a main list: taken as they come, then tested all at once.
 
         If that has led astray, the list is followed again with care, which says where it breaks.
@@ -127,12 +141,12 @@ class _Reader:
     def corners(self) -> Any:
         """Addresses of all corners: round all blocks at once along the reverse lists, then turned about."""
         blocks = self.addresses("block")
-        start = here = self.sound("corner", self.field("block", "KP", blocks))
+        start = here = self.sound("corner", self.field("block", "KP", blocks), "KP of block", blocks)
         owner = np.arange(len(blocks))
         found, owners = [here], [owner]
         seen = np.zeros(int(self.h.ci[g.MFREE]), bool)
         while len(here):
-            here = self.sound("corner", self.field("corner", "KR", here))
+            here = self.sound("corner", self.field("corner", "KR", here), "KR of corner", here)
             if seen[here].any():
                 raise Unsound(f"the reverse list through corner@{here[seen[here]][0]} does not close")
             seen[here] = True
@@ -148,13 +162,17 @@ class _Reader:
         """The last address that a group of `kind` can have."""
         return int(self.h.ci[g.MFREE]) - self.layouts[kind].size
 
-    def sound(self, kind: str, addresses: Any) -> Any:
-        """`addresses` as int64, if all of them are addresses of groups of `kind`."""
+    def sound(self, kind: str, addresses: Any, field: str = "a pointer", owners: Any = None) -> Any:
+        """`addresses` as int64, if all of them are addresses of groups of `kind`; else Unsound.
+
+        field: what they stand in, of the groups at the addresses `owners`.
+        """
         addresses = addresses.astype(np.int64)
         good = (addresses >= 1) & (addresses <= self.last_address(kind))
         good &= (addresses - 1) % self.scheme.ratio == 0
         if kind in HEADS and good.all():
             good = np.isin(self.field(kind, "HEAD", addresses), HEADS[kind])
         if not good.all():
-            raise Unsound(f"a pointer leads to {addresses[~good][0]}, which is no {kind}")
+            source = field if owners is None else f"{field}@{owners[~good][0]}"
+            raise Unsound(f"{source} points to {addresses[~good][0]}, which is no {kind}")
         return addresses

@@ -7,8 +7,10 @@ so that a damaged heap ends in Unsound and never in a hang.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
+
+import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
@@ -53,9 +55,9 @@ def follow(words: Any, first: int, step: int, last: int, ratio: int) -> tuple[li
     return found, iad
 
 
-def one_of(values: Any, few: tuple[int, ...]) -> Any:
+def one_of(values: Any, few: Sequence[int]) -> Any:
     """True for each of `values` that is one of a `few` numbers."""
-    good = values == few[0]
+    good = np.asarray(values == few[0])
     for other in few[1:]:
         good |= values == other
     return good

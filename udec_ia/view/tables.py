@@ -6,7 +6,9 @@ from typing import Any
 
 from udec_ia.heap.memory import JNEXT
 from udec_ia.inspect.census import CHOICES
+from udec_ia.inspect.check.codes import in_words
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED
+from udec_ia.inspect.look.fields import NOT_ALLOWED
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, Layout, layouts, read_table
 
@@ -36,6 +38,7 @@ def tables(ratios: set[int]) -> dict[str, Any]:
         "heads": [[head.group, head.value, f"{head.name}: {head.text}"] for head in TABLE.heads],
         "codes": [[code.field, code.value, f"{code.name}: {code.text}"] for code in TABLE.codes],
         "choices": CHOICES | {"any": KINDS},
+        "notAllowed": NOT_ALLOWED,
         "layouts": {
             ratio: {kind: _layout(kind, layouts(ratio)[kind], ratio) for kind in KINDS} for ratio in ratios
         },
@@ -53,6 +56,8 @@ def _field(field: Field, place: int) -> dict[str, Any]:
         "role": field.role,
         "unit": field.unit.strip("-"),
         "text": field.text,
+        "allowed": field.allowed,
+        "range": in_words(field) if field.allowed else "finite",
     }
 
 

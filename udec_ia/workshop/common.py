@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from udec_ia.errors import DAMAGED, UdecError
+
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing, Tables
 
@@ -90,6 +92,10 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
     except (IndexError, ValueError) as error:
         print(f"udec {verb}: {error}", file=sys.stderr)
         return MISUSE
+    except UdecError as error:
+        if error.number == DAMAGED and "file" in args:  # it is no run that has done this
+            error.advice = f"udec check {args.file} lists all that is wrong in it"
+        raise
     _print(found, args.json)
     return found.status
 

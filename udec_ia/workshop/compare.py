@@ -34,7 +34,12 @@ def add_commands(commands: Any) -> None:
         help="ignore smaller differences: m=1e-6, N/m=1, relative=1e-9, ulp=4",
     )
     parser.add_argument(
-        "--most", dest="limit", type=int, metavar="N", help="rows of a table to show (default: 20)"
+        "--most",
+        "--limit",
+        dest="limit",
+        type=int,
+        metavar="N",
+        help="rows of a table to show (default: 20)",
     )
 
 

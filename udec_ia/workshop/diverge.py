@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
+from udec_ia.printable import printable
 from udec_ia.workshop.common import command, given, variables
 
 if TYPE_CHECKING:
@@ -120,7 +121,9 @@ def _diverge(args: argparse.Namespace) -> Listing:
             each = zip(paths, builds, _laws(args), _values(args), (first, second), strict=True)
             runs = [_run(args, *one) for one in each]
             found = diverge(runs[0], runs[1], Judge(args.tolerance))
-        except (UdecError, OSError) as error:
+        except OSError as error:
+            raise ValueError(f"{printable(str(error.filename))}: {error.strerror}") from error
+        except UdecError as error:
             raise ValueError(str(error)) from error
         if isinstance(found, int):
             return Listing([f"no difference in {found} cycles"])

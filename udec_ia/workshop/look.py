@@ -8,7 +8,6 @@ udec walk FILE block 88                             udec graph FILE 412 --depth 
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
@@ -23,7 +22,6 @@ VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
 OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "rows to show"}
-STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
 COMMON = "common"
 
 
@@ -156,21 +154,13 @@ def _junk(_: argparse.Namespace) -> Call:
 
 
 def _dump(args: argparse.Namespace) -> Call:
+    from udec_ia.inspect.look.dump import limits
+
     radix = {} if args.radix == 10 else {"radix": args.radix}
     if args.words == COMMON and not args.raw and not radix:
         return Call("common")
-    limits = () if args.words is None else _limits(args.words)
-    return Call("raw", limits, module="udec_ia.output.dump") if args.raw else Call("dump", limits, radix)
-
-
-def _limits(words: str) -> tuple[int, int]:
-    """First and last address of 412, 412-500 or 412/20."""
-    given = STRETCH.fullmatch(words)
-    if given is None:
-        forms = f"412, 412-500 (to address 500), 412/20 (20 words), or {COMMON} alone"
-        raise ValueError(f"{words}: give {forms}")
-    first, last, many = given.groups(default="")
-    return int(first), int(last) if last else int(first) + int(many or 1) - 1
+    given = () if args.words is None else limits(args.words)
+    return Call("raw", given, module="udec_ia.output.dump") if args.raw else Call("dump", given, radix)
 
 
 def _find(args: argparse.Namespace) -> Call:

@@ -17,7 +17,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check.groups import KIND_CODE, TABLE, TARGETS
 from udec_ia.inspect.look.atlas import Atlas, junk_list
 from udec_ia.inspect.look.names import called
-from udec_ia.inspect.table import addresses
+from udec_ia.inspect.table import all_addresses
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
@@ -32,7 +32,7 @@ def movable(array: MainArray) -> dict[str, Any]:
     words, free = len(array.h.ia), int(array.h.ci[g.MFREE])
     if not 1 <= free <= words + 1:
         raise Unsound(f"MFREE is {free}, which is no address in an array of {words} words")
-    found = {group.name: addresses(array, group.name) for group in TABLE.groups}
+    found = all_addresses(array)
     _check_words(array, found)
     _check_pointers(array, found)
     return found

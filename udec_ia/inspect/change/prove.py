@@ -23,9 +23,10 @@ def prove(array: MainArray) -> list[Violation]:
 
 
 def in_short(broken: Sequence[Violation]) -> str:
-    """The first of some violations, in words."""
+    """Some violations in words: those that mislead go before the words that are lost because of them."""
     more = [f"and {len(broken) - SHOWN} more"] if len(broken) > SHOWN else []
-    return "; ".join([*map(str, broken[:SHOWN]), *more])
+    first = sorted(broken, key=lambda one: not one.misleads)
+    return "; ".join([*map(str, first[:SHOWN]), *more])
 
 
 def too_coarse(array: MainArray) -> list[Violation]:

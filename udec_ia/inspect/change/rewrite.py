@@ -20,6 +20,7 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray, variable
+from udec_ia.heap.interpreting import interpreted
 from udec_ia.heap.words import Scheme
 from udec_ia.inspect.change.movable import movable, name_at
 from udec_ia.inspect.translate import Translation, words_of
@@ -48,15 +49,18 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     _check_addresses(found, to)
     work = Translation(words_of(array), TABLE, to, found)
     words, common = work.words(), work.variables()
-    _check_fit(array, work.fit, to)
+    fit = work.fit
+    _check_fit(array, fit, to)
+    del found, work  # where groups were and are, which takes as much memory as the words themselves
     fresh = MainArray(to, int(common["MTOP"][0]))
     fresh.fixed = array.fixed
     fresh.h.ia[: len(words)] = words
     for field in TABLE.common:
         variable(fresh.h, field)[:] = common[field.name]
     if to.real_bits != array.scheme.real_bits:
-        tolset(fresh.h, fresh.h.cr[g.DTOL])
-    return Rewritten(fresh, work.fit)
+        with interpreted():  # it is a few numbers: numba need not be loaded for them
+            tolset(fresh.h, fresh.h.cr[g.DTOL])
+    return Rewritten(fresh, fit)
 
 
 def _check_addresses(found: dict[str, Any], to: Scheme) -> None:

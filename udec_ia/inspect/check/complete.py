@@ -86,8 +86,9 @@ class Joined:
 def check_complete(state: State, o: Outlines, touch: Touches) -> None:
     """Invariant 8."""
     joined = Joined(state, o, touch)
+    reach = Reach(o)
     for a, b in _close_blocks(o):
-        i, j = _corners_in_reach(o, np.concatenate((a, b)), np.concatenate((b, a)))
+        i, j = reach.corners(np.concatenate((a, b)), np.concatenate((b, a)))
         for found, what in ((_arc_in_edge(o, i, j), "edge"), (_arc_in_arc(o, i, j), "arc")):
             _check_meetings(state, o, joined, found, what)
         apart = ~joined.joins(a, b)
@@ -213,27 +214,35 @@ def _close_blocks(o: Outlines) -> Iterator[tuple[Numbers, Numbers]]:
         first = beyond
 
 
-def _corners_in_reach(o: Outlines, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
-    """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the edge of j.
+class Reach:
+    """Which corners with an arc can meet which edges: boxes around arcs against those of blocks and edges.
 
-    A point of its arc is at most D away from a corner, another D deep under the edge or beside its end, and
+    A point of an arc is at most D away from its corner, another D deep under the edge or beside its end, and
     as much farther along the edge as the arc is awry.
     """
-    pair, place = ragged(o.count[a])
-    i, b = o.first[a[pair]] + place, b[pair]
-    reach = o.d + o.slack[i]
-    inside = o.arc[i]
-    for axis in (0, 1):
-        at = o.p[i, axis]
-        inside &= (at >= o.low[b, axis] - reach) & (at <= o.high[b, axis] + reach)
-    i, b = i[inside], b[inside]
-    pair, place = ragged(o.count[b])
-    i, j = i[pair], o.first[b[pair]] + place
-    for axis, (low, high) in enumerate(o.boxes):
-        at, reach = o.p[i, axis], FAR * o.d + o.slack[i] + AWRY * np.abs(o.r[i])
-        near = (at >= low[j] - reach) & (at <= high[j] + reach)
-        i, j = i[near], j[near]
-    return i, j
+
+    def __init__(self, o: Outlines) -> None:
+        self.o = o
+        at, near = o.p.T, o.d + o.slack
+        far = FAR * o.d + o.slack + AWRY * np.abs(o.r)
+        self.near = [(x - near, x + near) for x in at]
+        self.far = [(x - far, x + far) for x in at]
+        self.blocks = [(low.copy(), high.copy()) for low, high in zip(o.low.T, o.high.T, strict=True)]
+
+    def corners(self, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
+        """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the edge of j."""
+        pair, place = ragged(self.o.count[a])
+        i = self.o.first[a][pair] + place
+        inside = self.o.arc[i]
+        for (low, high), (low_of, high_of) in zip(self.near, self.blocks, strict=True):
+            inside &= (high[i] >= low_of[b][pair]) & (low[i] <= high_of[b][pair])
+        i, b = i[inside], b[pair[inside]]
+        pair, place = ragged(self.o.count[b])
+        i, j = i[pair], self.o.first[b][pair] + place
+        for (low, high), (low_of, high_of) in zip(self.far, self.o.boxes, strict=True):
+            meet = (high[i] >= low_of[j]) & (low[i] <= high_of[j])
+            i, j = i[meet], j[meet]
+        return i, j
 
 
 def _arc_in_edge(o: Outlines, i: Numbers, j: Numbers) -> Meetings:

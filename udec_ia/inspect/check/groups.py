@@ -8,7 +8,7 @@ is tested before it is used and every walk is bounded, whatever the words say.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -33,7 +33,6 @@ TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
 SHORT = 64  # items of a list that is walked together with others
 INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
 STRETCH = 256  # places in which groups are counted by a byte
-OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
 TARGETS |= {"item": ("corner", "contact"), "soft": tuple(SOFT.values()), "any": tuple(KIND_CODE)}
 
 
@@ -110,6 +109,7 @@ class State:
         self.offset = {name: at for layout in self.layout.values() for name, at in layout.offset.items()}
         self.words = memoryview(self.h.ia)
         self.found: list[Violation] = []
+        self._shift = self.ratio.bit_length() - 1  # groups begin on reals: an address as the place of a real
         self.free = min(max(int(self.h.ci[g.MFREE]), 1), len(self.h.ia) + 1)
         self.address: dict[str, Numbers] = {}
         self.owner: dict[str, Numbers] = {}
@@ -148,10 +148,10 @@ class State:
 
     def read(self, addresses: Numbers, name: str, i: int = 0) -> Numbers:
         """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field."""
-        k = self.offset[name] + i
+        k = self.offset[name] + i - 1
         if FIELDS[name].real:
-            return np.asarray(self.h.ra[(addresses - 1) // self.ratio + k - 1], np.float64)
-        return np.asarray(self.h.ia[addresses + k - 1], np.int64)
+            return np.asarray(self.h.ra[k:].take((addresses - 1) >> self._shift), np.float64)
+        return np.asarray(self.h.ia.take(addresses + k), np.int64)
 
     def column(self, kind: str, name: str, i: int = 0) -> Numbers:
         """The same of all groups of `kind` in use; it is read once and kept."""
@@ -172,15 +172,24 @@ class State:
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
-        before = addresses - 1
-        place = before // self.ratio
-        inside = (addresses > 0) & (addresses < self.free) & (place * self.ratio == before)
-        place[~inside] = 0
-        there = inside & (self._kind_at[place] == KIND_CODE[kind])
-        place = place[there]
-        row = np.full(addresses.shape, -1, INDEX)
-        row[there] = self._row[kind][self._before[kind][place // STRETCH] + self._nth_at[place]]
-        return row
+        place = self._places(addresses)
+        there = self._kind_at.take(place) == KIND_CODE[kind]
+        if not there.any():
+            return np.full(addresses.shape, -1, INDEX)
+        nth = self._before[kind].take(place // STRETCH) + self._nth_at.take(place)
+        return np.where(there, self._row[kind].take(nth, mode="clip"), INDEX(-1))
+
+    def holds(self, kinds: Sequence[str], addresses: Numbers) -> Numbers:
+        """True for each address at which a group in use of one of the `kinds` begins."""
+        codes = [KIND_CODE[kind] for kind in kinds]
+        return np.asarray(one_of(self._kind_at.take(self._places(addresses)), codes))
+
+    def _places(self, addresses: Numbers) -> Numbers:
+        """Where in `_kind_at` each address stands; the last place, which is of no group, for nonsense."""
+        before, last = addresses - 1, len(self._kind_at) - 1
+        place = before >> self._shift
+        astray = (before < 0) | (place > last) | (before & (self.ratio - 1) != 0)
+        return np.where(astray, last, place)
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""
@@ -257,7 +266,9 @@ class State:
             corners.append(np.array(found, np.int64))
             owners.append(np.full(len(found), block))
         at, owner = np.concatenate(corners), np.concatenate(owners)
-        if _first_repeated(at) < len(at):  # the first list that a corner stands in has it
+        there = np.zeros(len(self._kind_at), bool)
+        there[(at - 1) >> self._shift] = True
+        if np.count_nonzero(there) < len(at):  # the first list that a corner stands in has it
             once = np.sort(np.unique(at, return_index=True)[1])
             at, owner = at[once], owner[once]
         self._enter("corner", at)
@@ -441,53 +452,3 @@ def corner_before(rings: Rings) -> Numbers:
     count = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(corner) else rings.count
     here = np.arange(len(corner))
     return corner[np.where(here == first, first + count[rings.owner[corner]] - 1, here - 1)]
-
-
-def check_pointers(state: State) -> None:
-    """Invariants 2 and 6: every pointer is 0, where it may be, or the base of a group in use of its kind."""
-    for kind, addresses in state.address.items():
-        for field in TABLE.group(kind).fields:
-            if field.target is None or not len(addresses):
-                continue
-            targets = TARGETS[field.target]
-            for i in range(field.count):
-                values = state.read(addresses, field.name, i)
-                good = (values == 0) & (field.allowed == OPTIONAL)
-                for target in targets:
-                    good |= state.rows(target, values) >= 0
-                for row in np.flatnonzero(~good):
-                    state.report(
-                        6 if field.role in ("backlink", "triple") else 2,
-                        f"{field.name} of {kind}@{addresses[row]} points to {values[row]}, "
-                        f"which is no {' or '.join(targets)} in use",
-                    )
-    _check_block_extensions(state)
-    _check_heads(state)
-
-
-def _check_block_extensions(state: State) -> None:
-    blocks = state.address["block"]
-    extension = state.column("block", KBEX)
-    heads = state.h.ia[blocks - 1]
-    for row in np.flatnonzero(one_of(heads, tuple(SOFT)) | (extension != 0)).tolist():
-        kind = SOFT.get(int(heads[row]))
-        if kind is None and extension[row] != 0:
-            what = "but a rigid block has no extension"
-        elif kind is not None and state.rows(kind, extension[row : row + 1])[0] < 0:
-            what = f"which is no {kind} in use"
-        else:
-            continue
-        state.report(2, f"{KBEX} of block@{blocks[row]} points to {extension[row]}, {what}")
-
-
-def _check_heads(state: State) -> None:
-    """Pointers of the common block to a group that is not the head of a list (the outer domain)."""
-    heads = {group.list_head for group in TABLE.groups}
-    for field in TABLE.common:
-        if field.role != "head" or field.name in heads or field.target is None:
-            continue
-        value = state.common(field.name)
-        needed = bool(len(state.address[field.target]))
-        row = state.rows(field.target, np.array([value]))[0]
-        if row < 0 and (value != 0 or needed):
-            state.report(2, f"{field.name} points to {value}, which is no {field.target} in use")

@@ -32,7 +32,7 @@ from udec_ia.inspect.check.geometry import (
     outlines,
     touches,
 )
-from udec_ia.inspect.check.groups import State, Violation, check_pointers
+from udec_ia.inspect.check.groups import State, Violation
 from udec_ia.inspect.check.history import check_histories
 from udec_ia.inspect.check.map import check_map
 from udec_ia.inspect.check.members import check_members, check_zone_areas
@@ -40,6 +40,7 @@ from udec_ia.inspect.check.memory import check_memory
 from udec_ia.inspect.check.outer import check_outer
 from udec_ia.inspect.check.pieces import check_pieces
 from udec_ia.inspect.check.place import check_places
+from udec_ia.inspect.check.pointers import check_pointers
 from udec_ia.layout import offsets as g
 
 

@@ -10,9 +10,11 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import variable
+from udec_ia.heap.slack import give_back
 from udec_ia.inspect.compare.match import Matching
 from udec_ia.inspect.compare.values import NONE, Apart, Tolerance, reals_apart, whole_apart
 from udec_ia.inspect.look.atlas import KINDS, TABLE
@@ -20,6 +22,7 @@ from udec_ia.layout.table import Field
 
 COMMON = "common"  # what the variables of the common block stand under
 MEMORY = ("JUNK", "MFREE", "MTOP", "NWANT", "NSPARE")
+PIECE = 16384  # pairs that are compared together: they fit in the machine's caches
 ADDRESSES = ("IERAD",)  # variables that are pointers to any group
 
 
@@ -27,7 +30,7 @@ class Differing(NamedTuple):
     """A field of a kind of groups, or a variable of the common block, whose values differ.
 
     kind: COMMON for a variable. one, two: addresses (n,) of the groups, or numbers of the elements, from 0.
-    values: in the one (n,) and in the other (n,). share: differences as shares of the greatest value (n,).
+    values: in the one (n,) and in the other (n,). greatest: of all values, 0.0 of what are no reals.
     """
 
     kind: str
@@ -37,7 +40,7 @@ class Differing(NamedTuple):
     two: Any
     values: tuple[Any, Any]
     apart: Apart
-    share: Any
+    greatest: float
     many: int
 
     @property
@@ -45,6 +48,12 @@ class Differing(NamedTuple):
         """KXD, or KZG(2)."""
         several = self.field.count > 1 and self.kind != COMMON
         return self.field.name + (f"({self.element + 1})" if several else "")
+
+    @property
+    def share(self) -> Any:
+        """Differences as shares of the greatest value (n,)."""
+        with np.errstate(invalid="ignore"):
+            return self.apart.absolute / self.greatest if self.greatest > 0 else self.apart.absolute
 
 
 class Compared(NamedTuple):
@@ -73,6 +82,7 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     """
     wanted = chosen(only)
     matching = Matching(one, two)
+    give_back()
     fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
     fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
     alone = {kind: matching.left(kind) for kind in KINDS if not only or (kind, "") in wanted}
@@ -97,12 +107,30 @@ def chosen(only: Iterable[str]) -> set[tuple[str, str]]:
 def _groups(matching: Matching, wanted: set[tuple[str, str]], tolerance: Tolerance) -> Iterable[Differing]:
     one, two = matching.sides
     for kind, at in matching.pairs.items():
+        if not len(at[0]):
+            continue
+        changed = _changed(matching, kind, at)
         for words in zip(one.atlas.shapes[kind], two.atlas.shapes[kind], strict=True):
             field = words[0].field
-            if (kind, field.name) not in wanted or not len(at[0]):
+            alike = not changed[words[0].first : words[0].last + 1].any()
+            if (kind, field.name) not in wanted or (alike and (matching.in_place or not field.target)):
                 continue
             values = one.atlas.gather(words[0], at[0]), two.atlas.gather(words[1], at[1])
             yield _differing(matching, (kind, field, words[0].element), at, values, tolerance)
+
+
+def _changed(matching: Matching, kind: str, at: Any) -> Any:
+    """True for each word of a group that differs in any of the pairs at (n,) and (n,); all in two schemes."""
+    one, two = matching.sides
+    size = one.atlas.layout[kind].size
+    if one.h.ia.dtype != two.h.ia.dtype or one.atlas.ratio != two.atlas.ratio:
+        return np.ones(size, bool)
+    found = np.zeros(size, bool)
+    rows = [sliding_window_view(side.h.ia, size) for side in matching.sides]
+    for first in range(0, len(at[0]), PIECE):
+        a, b = (words[where[first : first + PIECE] - 1] for words, where in zip(rows, at, strict=True))
+        found |= (a != b).any(axis=0)
+    return found
 
 
 def _common(matching: Matching, wanted: set[tuple[str, str]], tolerance: Tolerance) -> Iterable[Differing]:
@@ -131,10 +159,8 @@ def _differing(
     else:
         apart = whole_apart(values[0] != values[1])
     rows = apart.rows
-    with np.errstate(invalid="ignore"):
-        share = apart.absolute / greatest if greatest > 0 else apart.absolute
     some = values[0][rows], values[1][rows]
-    return Differing(*of, at[0][rows], at[1][rows], some, apart, share, len(values[0]))
+    return Differing(*of, at[0][rows], at[1][rows], some, apart, greatest, len(values[0]))
 
 
 def _lead_apart(matching: Matching, values: tuple[Any, Any]) -> Any:

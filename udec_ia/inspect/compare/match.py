@@ -22,6 +22,7 @@ match group by group. Nothing is trusted: of a damaged heap the groups that the 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,12 @@ class Matching:
         for kind in KEYS:
             self._by_keys(kind, as_many=False)
         self._rest()
+
+    @cached_property
+    def in_place(self) -> bool:
+        """True if every group matches one of its own address: then equal pointers mean equal groups."""
+        whole = all(not len(at) for kind in KINDS for at in self.left(kind))
+        return whole and all(np.array_equal(a, b) for a, b in self.pairs.values())
 
     def left(self, kind: str) -> Pairs:
         """Addresses of groups that match none: those of the one (n,), and those of the other (m,)."""

@@ -14,6 +14,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.layout import offsets as g
 
+MANY, SHORT = 50, 64  # so many lists are followed together, as long as they are as short as this
 LOST = -1  # the number of a group that matches none, and of what is no group
 
 
@@ -66,8 +67,14 @@ class Side:
 
         A list ends where it leads to no group of the kind, or to one that was in a list before.
         """
-        words, starts = memoryview(self.h.ia), memoryview(self.atlas.starts)
         number, step = KINDS.index(kind) + 1, self.word(kind, link).first - 1
+        if len(heads) > MANY:
+            rows, at, over = self._together(number, heads, step)
+            seen_at = np.zeros(len(self._number), bool)
+            seen_at[(at - 1) // self.atlas.ratio] = True
+            if over and np.count_nonzero(seen_at) == len(at):
+                return at[np.argsort(rows, kind="stable")], np.bincount(rows, minlength=len(heads))
+        words, starts = memoryview(self.h.ia), memoryview(self.atlas.starts)
         free, seen = len(starts), bytearray(len(starts))
         found, many = list[int](), list[int]()
         for head in heads.tolist():
@@ -78,6 +85,26 @@ class Side:
                 iad = words[iad + step]
             many.append(len(found) - before)
         return np.array(found, np.int64), np.array(many, np.int64)
+
+    def _together(self, number: int, heads: Any, step: int) -> tuple[Any, Any, bool]:
+        """The same of short lists, one step of all of them at a time; False if some are longer.
+
+        Rows of the heads, and addresses; a group that is in two lists comes twice.
+        """
+        starts, here, live = self.atlas.starts, heads, np.arange(len(heads), dtype=np.int32)
+        rows, found = list[Any](), list[Any]()
+        for k in range(SHORT):
+            good = (here > 0) & (here < len(starts))
+            good[good] = starts[here[good]] == number
+            if k:
+                good &= here != heads[live]
+            here, live = here[good], live[good]
+            rows.append(live)
+            found.append(here)
+            here = self.h.ia[here + step].astype(np.int64)
+            if not len(live):
+                break
+        return np.concatenate(rows), np.concatenate(found), not len(live)
 
     def listed(self, kind: str) -> Any:
         """All groups of a kind in the order of their main list; others after them, by address.

@@ -7,6 +7,7 @@ as they are, several to a line; what is the same over and over is told once.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
@@ -31,6 +32,7 @@ from udec_ia.inspect.look.fields import (
 from udec_ia.inspect.look.listing import Listing, Stream
 from udec_ia.inspect.look.names import leads_to, names
 
+STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
 AT_ONCE = 1024  # spans that are looked at together
 PIECE = 2**16  # words that are in no group and looked at together
 VALUE = 13  # characters of a value
@@ -64,6 +66,15 @@ def dump(atlas: Atlas, first: int | None = None, last: int | None = None, radix:
         f"IA() has {top} words of {bits} bits, {atlas.ratio} to a real, and {atlas.free - 1} have been in use"
     )
     return Listing([said], ("group", *COLUMNS), Stream(rows), widths=_widths(atlas, radix), headed=True)
+
+
+def limits(words: str) -> tuple[int, int]:
+    """First and last address of 412, 412-500 or 412/20. ValueError for what is none of these."""
+    given = STRETCH.fullmatch(words)
+    if given is None:
+        raise ValueError(f"{words}: give 412, 412-500 (to address 500), 412/20 (20 words), or common alone")
+    first, last, many = given.groups(default="")
+    return int(first), int(last) if last else int(first) + int(many or 1) - 1
 
 
 def common(atlas: Atlas) -> Listing:

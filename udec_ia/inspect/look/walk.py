@@ -66,8 +66,11 @@ def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int
         return f"around domain@{start}", _once("item", (((iad, ib), iad) for iad, ib in loop(atlas.h, start)))
     if along in LINKS and start is not None:
         return f"from {start} along {along}", _linked(atlas, along, start)
-    lists = [*MAIN, *(f"{kind} ADDRESS" for kind in AROUND), *(f"{name} ADDRESS" for name in LINKS)]
-    raise ValueError(f"no list {along}: there are {', '.join(lists)}")
+    around = " and ".join(f"{kind} ADDRESS" for kind in AROUND)
+    raise ValueError(
+        f"no list {along}: there are {', '.join(MAIN)}; "
+        f"{around} for the list around one; and from an ADDRESS along {', '.join(LINKS)}"
+    )
 
 
 def _once(kind: str, steps: Iterable[tuple[Hashable, int]]) -> Iterator[int]:

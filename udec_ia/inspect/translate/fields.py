@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.words import Scheme
@@ -88,10 +89,11 @@ class Translation:
             return ()
         ia = np.zeros(places.used, self.scheme.int_type)
         for kind, at in places.at.items():
+            rows: Any = sliding_window_view(ia, new[kind].size, writeable=True) if len(at) else ()
             for first in range(0, len(at), PIECE):
                 piece = slice(first, first + PIECE)
                 words = self._groups(groups[kind], Rows(kind, at[piece]))
-                ia[(places.start[kind][piece] - 1)[:, np.newaxis] + np.arange(new[kind].size)] = words
+                rows[places.start[kind][piece] - 1] = words
         for link in (JNEXT, JSIZE, JSIZES) if places.stays else ():
             first = places.junk[places.junk[:, 1] > link[0], 0] - 1 + link[0]
             ia[first] = self.state.ia[first]
@@ -100,7 +102,7 @@ class Translation:
     def _groups(self, group: Group, rows: Rows) -> Any:
         """The words of groups by the new table, a row each."""
         old, new = (lay_out(one, s.ratio) for one, s in self._both(group))
-        words = self.state.ia[(rows.at - 1)[:, np.newaxis] + np.arange(old.size)]
+        words = sliding_window_view(self.state.ia, old.size)[rows.at - 1]
         reals = words.view(self.state.scheme.real_type)
         before = {field.name: field for field in self.state.table.group(group.name).fields}
         held = {}

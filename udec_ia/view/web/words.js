@@ -27,7 +27,7 @@ export function nameOf(heap, span) {
 export function called(heap, span) {
   const name = nameOf(heap, span);
   if (heap.kind(span) === heap.table.junk) return `${name}, ${junkPlace(heap, span)}`;
-  const blocks = owners(heap, span).map((block) => `block@${block}`);
+  const blocks = owners(heap, span).map((ib) => (heap.holds("block", ib) ? `block@${ib}` : "no block"));
   return blocks.length && heap.kind(span) !== "block" ? `${name} of ${blocks.join(" and ")}` : name;
 }
 
@@ -42,15 +42,30 @@ export function meaning(heap, word, kind) {
   const { field } = word;
   const value = heap.value(word);
   if (value === undefined) return plain("left out of this page");
-  if (field.target) return leadsTo(heap, field.target, Number(value));
+  if (field.target) return leadsTo(heap, field, Number(value));
   if (field.role === "head") {
     const head = heap.table.heads.find(([owner, code]) => owner === kind && code === Number(value));
     return head ? plain(head[2]) : { text: "no head code of its kind", to: 0, sound: false };
   }
-  const code =
-    field.type === "int" &&
-    heap.table.codes.find(([name, one]) => name === field.name && one === Number(value));
-  return plain(code ? code[2] : field.text);
+  const number = Number(value);
+  if (Number.isFinite(number) && isAllowed(field, number)) return plain(coded(heap, field, number));
+  return { text: `${heap.table.notAllowed}, ${field.range}: ${field.text}`, to: 0, sound: false };
+}
+
+/** True if the table allows a field the number. */
+function isAllowed(field, number) {
+  const within = ([low, high]) => number >= low && (high === null || number <= high);
+  return field.allowed.length === 0 || field.allowed.some(within);
+}
+
+/** The name of a code, or those of the flags that add up to it; the text of the table if there is none. */
+function coded(heap, field, number) {
+  const told = heap.table.codes.filter(([name]) => name === field.name);
+  const one = told.find(([, code]) => code === number);
+  if (one) return one[2];
+  const flags = told.filter(([, flag]) => flag > 0 && (number & flag) === flag);
+  const sum = flags.reduce((all, [, flag]) => all + flag, 0);
+  return (sum === number && flags.map(([, , text]) => text).join(", ")) || field.text;
 }
 
 function plain(text) {
@@ -58,15 +73,18 @@ function plain(text) {
 }
 
 /** What a pointer leads to, or that it is not what the table says. */
-export function leadsTo(heap, target, to) {
-  if (to === 0) return plain("nothing");
-  if (!(to >= 1 && to <= heap.state.top)) return { text: `outside IA(), no ${target}`, to: 0, sound: false };
+export function leadsTo(heap, field, to) {
+  const { target } = field;
+  const kinds = heap.table.choices[target] ?? [target];
+  const astray = `, no ${target === "any" ? "group" : kinds.join(" or ")}`;
+  if (to === 0)
+    return isAllowed(field, 0) ? plain("nothing") : { text: `nothing${astray}`, to: 0, sound: false };
+  if (!(to >= 1 && to <= heap.state.top)) return { text: `outside IA()${astray}`, to: 0, sound: false };
   const span = heap.spanOf(to);
   if (span < 0) return plain(`${to}, left out of this page`);
   if (heap.holds(target, to)) return { text: called(heap, span), to, sound: true };
-  const begins = heap.first[span] === to;
-  const place = begins ? called(heap, span) : `word ${to - heap.first[span] + 1} of ${nameOf(heap, span)}`;
-  return { text: `${place}, no ${target}`, to, sound: false };
+  const within = heap.first[span] === to ? "" : `word ${to - heap.first[span] + 1} of `;
+  return { text: `${within}${called(heap, span)}${astray}`, to, sound: false };
 }
 
 /** All words that hold the address of a span: [{ span, name, first }]; span -1: the common block. */

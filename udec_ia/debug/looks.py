@@ -1,0 +1,66 @@
+"""The debugger's commands that look into the memory where one stands: those of the workshop."""
+
+from __future__ import annotations
+
+import cmd
+from typing import Any
+
+from udec_ia.debug.session import Debugger
+from udec_ia.inspect import look
+from udec_ia.inspect.check import check
+from udec_ia.inspect.look.dump import limits
+
+COMMON = "common"  # the words of the common block
+
+
+class Looks(cmd.Cmd):
+    """They print what `udec what`, `udec who` ... print of a file."""
+
+    debugger: Debugger
+
+    def do_what(self, text: str) -> None:
+        """what ADDRESS: what a word is, and its group."""
+        self._look("what", text)
+
+    def do_who(self, text: str) -> None:
+        """who ADDRESS: all words that point there."""
+        self._look("who", text)
+
+    def do_walk(self, text: str) -> None:
+        """walk LIST [ADDRESS]: along a list."""
+        self._look("walk", text)
+
+    def do_find(self, text: str) -> None:
+        """find KIND where CONDITION: groups for which it is true."""
+        self.stdout.write(look.find(self.debugger.atlas, text).as_text())
+
+    def do_dump(self, text: str) -> None:
+        """dump [ADDRESS[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
+        atlas = self.debugger.atlas
+        found = look.common(atlas) if text == COMMON else look.dump(atlas, *(limits(text) if text else ()))
+        self.stdout.writelines(f"{line.text}\n" for line in found.lines())
+
+    def do_map(self, _: str) -> None:
+        """map: the memory, a letter for each kind of group."""
+        self._look("heap_map", "")
+
+    def do_graph(self, text: str) -> None:
+        """graph ADDRESS [DEPTH]: the pointers around a group."""
+        self._look("graph", text)
+
+    def do_junk(self, _: str) -> None:
+        """junk: how full the memory is."""
+        self._look("junk", "")
+
+    def do_check(self, _: str) -> None:
+        """check: all violations of the invariants."""
+        found = check(self.debugger.array)
+        self.stdout.writelines(f"{line}\n" for line in (map(str, found) if found else ("sound",)))
+
+    def _look(self, name: str, text: str) -> None:
+        given: list[Any] = [int(word) if word.isdigit() else word for word in text.split()]
+        try:
+            listing = getattr(look, name)(self.debugger.atlas, *given)
+        except TypeError:
+            raise ValueError(f"see help {name}") from None
+        self.stdout.write(listing.as_text())
