@@ -36,6 +36,7 @@ from udec_ia.ops.common.limits import not_negative, whole
 from udec_ia.ops.common.soft import soft_or_loaded_in
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.remarks import (
+    on_joints,
     on_laws,
     on_loads,
     on_moduli,
@@ -219,6 +220,7 @@ class Model(Files, Blocks, Numbers, Looks):
             self.inform(describe(self.array, self._runaway.safe))
         self.remark(on_moduli(self.array, self.laws.block_laws))
         self.remark(on_laws(self.array))
+        self.remark(on_joints(self.array))
         self.remark(on_loads(self.array))
         self.remark(on_rounding(self.array))
         self.remark(on_resolution(self.array))

@@ -10,6 +10,9 @@ import pytest
 from scenes import play
 
 from udec_ia import Model
+from udec_ia.heap.accessors import puti
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.unrest import at_strength
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.dat"))
 
@@ -149,7 +152,7 @@ def test_rest_without_damping(tmp_path: Path) -> None:
 
 
 def wall(build: str, out: Path, shift: float = 0.0) -> Model:
-    """20 x 10 squares of 1 m on a fixed base, whose rests differ by more than a tenth in 32-bit reals."""
+    """20 x 10 squares of 1 m on a fixed base: a last digit of 32-bit places is 2 % of a force there."""
     m = Model(build, out=out)
     m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.6)
     m.round(0.05)
@@ -164,20 +167,29 @@ def wall(build: str, out: Path, shift: float = 0.0) -> Model:
 
 
 @pytest.mark.parametrize(
-    ("build", "shift", "due"), [("i32r32", 0.0, True), ("i32r64", 0.0, False), ("i32r64", 1e10, True)]
+    ("build", "shift", "soft", "due"),
+    [
+        ("i32r32", 0.0, True, True),  # overlaps of blocks that deform are differences of places
+        ("i32r32", 0.0, False, False),
+        ("i32r64", 0.0, False, False),
+        ("i32r64", 1e10, False, True),
+    ],
 )
 def test_what_the_reals_resolve_is_said_before_the_run(
-    build: str, shift: float, due: bool, tmp_path: Path
+    build: str, shift: float, soft: bool, due: bool, tmp_path: Path
 ) -> None:
     """The last digit of a coordinate times KN, against half the weight of a block, 10 kN/m."""
     m = wall(build, tmp_path, shift)
+    if soft:
+        m.property(1, bulk=1e9, g=1e9)
+        m.change(0, 1, 9, 10, type="sdef")
     said = told(m)
     m.cycle(0)
     m.cycle(0)
     assert len(said) == due
     force = 1e8 * (shift + 20.0 if shift else 20.0) * float(np.finfo(m.h.cr.dtype).eps)
     share = force / 1e4
-    assert (share > 0.005) == due
+    assert (share > 0.005 and (soft or build != "i32r32")) == due
     # the farthest corner is looked for by a bound, 0.2 m too far; per cent are said with one digit behind
     if due:
         found = float(said[0].partition("% of the")[0].split()[-1]) / 100
@@ -242,3 +254,71 @@ def test_words_are_arguments_by_name(tmp_path: Path) -> None:
         m.fraction(0.5, "safe")  # type: ignore[misc]
     with pytest.raises(TypeError, match=r"property\(\) got an unexpected keyword argument 'desnity'"):
         m.property(1, desnity=2000)  # type: ignore[call-arg]
+
+
+def test_what_damps_is_said_when_a_deck_begins_to_run(tmp_path: Path) -> None:
+    """Once, and again when it has changed; that nothing does is not said beside the remark of SOLVE."""
+    begin = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8\nBLOCK 0,0 0,2 1,2 1,0\nSPLIT -1,1 2,1\n"
+    printed = Model(out=tmp_path).run(f"{begin}CYCLE 1\nCYCLE 1\nDAMP 0.5 5 MASS\nCYCLE 1\nCYCLE 1\n")
+    assert printed is not None
+    assert printed.count("damping: none; only friction takes energy") == 1
+    alpha = 0.5 * 2 * np.pi * 5  # mass damping has half of what both would be
+    assert printed.count("damping: MASS damping takes ALPHA = ") == 1
+    assert f"ALPHA = {alpha:.3g} 1/s of every velocity, critical at {alpha / (4 * np.pi):.3g} Hz" in printed
+    printed = Model(out=tmp_path).run(f"{begin}SOLVE 0.1 LIMIT 1\n")
+    assert printed is not None
+    assert "there is no damping" in printed
+    assert "damping: none" not in printed
+
+
+def test_slivers_are_named_before_the_run(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.round(0.001)
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1)
+    m.split(-1, 1.02, 5, 1.02)
+    said = told(m)
+    m.cycle(0)
+    (text,) = (text for text in said if "sliver" in text)
+    assert text.startswith("1 of 3 blocks are slivers")
+    assert "4 m long, is 0.02 m wide" in text
+
+
+def test_a_law_of_the_users_has_a_strength_of_its_own(tmp_path: Path) -> None:
+    """Contacts that follow it are not said to slip, although F and COH of their material are 0."""
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.gravity(0, -10)
+    m.block(0, 0, 0, 2, 1, 2, 1, 0)
+    m.split(-1, 1, 2, 1)
+    m.fix(0, 1, 0, 1)
+    m.cycle(50)
+    assert len(at_strength(m.h)) == 2
+    for row in m.table("contact"):
+        puti(m.array.h, int(row["address"]), g.KCC, 2)
+    assert len(at_strength(m.h)) == 0
+
+
+def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None:
+    """Which of them a contact takes is the map's affair: said once, and not where it does not matter."""
+    m = Model(out=tmp_path)
+    for material, density in ((1, 2000), (2, 2500), (3, 3000)):
+        m.property(material, density=density, kn=1e8, ks=1e8, friction=0.5)
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1)
+    m.split(2, 1, 2, 3)
+    m.change(0, 4, 0, 1, material=2)
+    m.fix(0, 4, 0, 1)
+    said = told(m)
+    m.cycle(1)
+    m.property(3, friction=0.1)  # of no block
+    m.cycle(1)
+    assert not [text for text in said if "meet" in text]
+    m.property(2, friction=0.1, kn=2e8)
+    m.cycle(1)
+    m.cycle(1)
+    (text,) = (text for text in said if "meet" in text)
+    assert text.startswith(
+        "materials 1 and 2 meet and differ in KN and FRICTION: a contact between them takes"
+    )

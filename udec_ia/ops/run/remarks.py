@@ -25,6 +25,11 @@ OURS = {field.name for field in read_table().common if field.ours and field.allo
 OF_LAWS = {  # properties that constitutive number 1 does not look at, by their places in the common block
     one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in OURS
 }
+OF_JOINTS = {  # properties of joints, by their places in the common block
+    one.keyword.upper(): getattr(g, one.array)
+    for one in read_table().properties
+    if one.array in ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")
+}
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
 Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of what a block puts on a contact: force of a last digit from which on it is said
@@ -98,6 +103,25 @@ def on_laws(array: MainArray, groups: Groups = listed) -> Iterator[str]:
             yield (
                 f"{' and '.join(given[m])} of material {m}: constitutive number 1 does not look at that; "
                 "CHANGE x1 x2 y1 y2 CONSTITUTIVE=2, and give a law of that number (--constitutive)"
+            )
+
+
+def on_joints(array: MainArray, groups: Groups = listed) -> Iterator[str]:
+    """CYCLE: contacts between materials with other joint properties, where the map decides which hold."""
+    h = array.h
+    used = np.unique(integers(h, groups(array, "block"), g.KMAT))
+    if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values()):
+        return
+    contacts = groups(array, "contact")
+    contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
+    pairs = np.sort([integers(h, integers(h, contacts, k), g.KMAT) for k in (g.KB1, g.KB2)], axis=0)
+    for one, two in np.unique(pairs, axis=1).T.tolist():
+        differ = [word for word, k in OF_JOINTS.items() if h.cr[k + one - 1] != h.cr[k + two - 1]]
+        if differ:
+            yield (
+                f"materials {one} and {two} meet and differ in {' and '.join(differ)}: a contact between "
+                "them takes the joint properties of one of its blocks, whichever the map names first; "
+                "give both materials the same joint properties, or see KCM in PRINT CONTACTS"
             )
 
 
