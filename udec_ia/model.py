@@ -35,6 +35,7 @@ from udec_ia.methods.numbers import Numbers
 from udec_ia.ops.common.limits import not_negative, whole
 from udec_ia.ops.common.soft import soft_or_loaded_in
 from udec_ia.ops.run.cycle import cycle, finish
+from udec_ia.ops.run.damped import UNDAMPED, damping
 from udec_ia.ops.run.remarks import (
     on_joints,
     on_laws,
@@ -43,6 +44,7 @@ from udec_ia.ops.run.remarks import (
     on_resolution,
     on_rest,
     on_rounding,
+    on_slivers,
 )
 from udec_ia.ops.run.scaling import relaxations_due
 from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
@@ -116,7 +118,9 @@ class Model(Files, Blocks, Numbers, Looks):
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
         criterion = criterion_of(criterion)
         if not static:
-            self.remark(on_rest(self.array))
+            found = list(on_rest(self.array))
+            self.remark(found)
+            self._said = self._said | {UNDAMPED} if found else self._said  # that is said then
             return self._to_rest(ratio, limit, criterion)
         self.inform(STATIC)
         begun = self.undo.before
@@ -218,11 +222,12 @@ class Model(Files, Blocks, Numbers, Looks):
         self._runaway.judge(self.array, self.explain_step)
         if self.explain_step:
             self.inform(describe(self.array, self._runaway.safe))
+            self.remark([damping(self.array.h)], self.inform)
         self.remark(on_moduli(self.array, self.laws.block_laws))
         self.remark(on_laws(self.array))
         self.remark(on_joints(self.array))
         self.remark(on_loads(self.array))
-        self.remark(on_rounding(self.array))
+        self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
         self.remark(on_resolution(self.array))
 
     @once

@@ -109,12 +109,12 @@ class Session:
         """Tell `text`."""
         self.tell(text)  # not bound beforehand: a monitor changes it
 
-    def remark(self, remarks: Iterable[str]) -> None:
-        """Tell `remarks`, each once."""
+    def remark(self, remarks: Iterable[str], tell: Callable[[str], None] | None = None) -> None:
+        """Tell `remarks`, each once, by `tell` if it is not a warning."""
         for text in remarks:
             if text not in self._said:
                 self._said = self._said | {text}
-                self.tell(text)
+                (tell or self.tell)(text)
 
     def summary_of(self, array: MainArray) -> str:
         """The line that sums up the run until now, of files that are written by now."""

@@ -30,7 +30,7 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
-from udec_ia.ops.run.renewal import ahead, put_step, renew
+from udec_ia.ops.run.renewal import ahead, put_step
 from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
 from udec_ia.ops.run.scaling import renew_relaxations
 from udec_ia.ops.run.timestep import kind_of, time_step
@@ -169,7 +169,7 @@ def _run(
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
                 runaway.look(array)
-                renew(array)
+                runaway.renew(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)

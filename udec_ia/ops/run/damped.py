@@ -38,6 +38,20 @@ def what_damps(h: Memory) -> list[str]:
     return found
 
 
+UNDAMPED = "damping: none; only friction takes energy"
+
+
+def damping(h: Memory) -> str:
+    """One line for the beginning of a run: what damps, how much and on what, or UNDAMPED.
+
+    Of MASS damping also the frequency at which it is critical: nothing swings more slowly.
+    """
+    found = what_damps(h)
+    if h.cr[g.ALPHA] and not h.ci[g.LREST]:
+        found[0] += f", critical at {h.cr[g.ALPHA] / (4 * np.pi):.3g} Hz"
+    return f"damping: {'; '.join(found)}" if found else UNDAMPED
+
+
 def fraction_of_critical(h: Memory, w: float) -> float:
     """Of Rayleigh damping, for what swings at `w` (rad/s)."""
     return float(h.cr[g.ALPHA]) / (2 * w) + float(h.cr[g.BETA]) * w / 2 if w > 0 else 0.0

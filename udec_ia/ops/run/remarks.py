@@ -31,6 +31,7 @@ OF_JOINTS = {  # properties of joints, by their places in the common block
     if one.array in ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")
 }
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
+SLENDER = 100  # length over mean width of a block, from which on it is a sliver
 Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of what a block puts on a contact: force of a last digit from which on it is said
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
@@ -152,6 +153,27 @@ def on_rounding(array: MainArray) -> Iterator[str]:
             f"where the mean edge has {mean:.3g} m, makes "
             f"the rounding length {h.cr[g.DTOL]:.3g} m and allows overlaps up to half of that: "
             "cut elsewhere, or DELETE the sliver"
+        )
+
+
+def on_slivers(array: MainArray) -> Iterator[str]:
+    """CYCLE, before the first one: blocks much longer than they are wide on the average."""
+    h = array.h
+    if h.ci[g.MCTOT]:
+        return
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    mass, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KBM, g.KBRO))
+    area = mass / h.cr[g.DENS + integers(h, blocks, g.KMAT) - 1]
+    with np.errstate(divide="ignore"):
+        slender = 4 * reach * reach / area
+    many, k = int((slender > SLENDER).sum()), int(slender.argmax())
+    if many:
+        x, y = (float(getr(h, int(blocks[k]), at)) for at in (g.KX, g.KY))
+        yield (
+            f"{many} of {len(blocks)} blocks are slivers, more than {SLENDER} times as long as wide; "
+            f"block@{blocks[k]} at ({x:.4g}, {y:.4g}), {2 * reach[k]:.3g} m long, is "
+            f"{area[k] / (2 * reach[k]):.2g} m wide: the time-step is as short as their masses are small; "
+            "cut elsewhere, or DELETE them"
         )
 
 

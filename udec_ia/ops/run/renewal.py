@@ -18,6 +18,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.layout import offsets as g
+from udec_ia.ops.run.rows import Limit
 from udec_ia.ops.run.scaling import RESCALE, scale_anew
 from udec_ia.ops.run.timestep import bound, damped
 
@@ -31,17 +32,20 @@ def ahead(array: MainArray, n: int) -> int:
     return min(n, every - int(ci[g.MCTOT]) % every)
 
 
-def renew(array: MainArray) -> None:
-    """What is due between two cycles."""
+def renew(array: MainArray) -> Limit | None:
+    """What is due between two cycles; the bound if it has made the time-step shorter."""
     h = array.h
     if h.ci[g.LSCALE]:
         if h.ci[g.MCTOT] % RESCALE == 0:
             scale_anew(array)
     elif h.ci[g.LSAFE] and (has_to_judge(h) or h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
-        step = float(h.cr[g.FRAC]) * damped(bound(array).step, float(h.cr[g.BETA]))
+        safe = bound(array)
+        step = float(h.cr[g.FRAC]) * damped(safe.step, float(h.cr[g.BETA]))
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
             put_step(array, step)
+            return safe
+    return None
 
 
 def put_step(array: MainArray, step: float) -> None:

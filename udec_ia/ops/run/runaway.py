@@ -40,8 +40,9 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.chatter import JUDGE, Chatter
+from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction
+from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction, shortened
 
 OUT_OF_NOWHERE = 37
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
@@ -83,7 +84,7 @@ class Runaway:
         self.chatter = Chatter(tell)
         self._judged = (0.0, 0.0, -1)  # step, BETA and contacts made at that time
         self._warned = (0.0, 0.0)  # step and BETA
-        self._suspected = self._own_laws = False
+        self._suspected = self._own_laws = self._shortened = False
         self._account: Account | None = None
 
     def judge(self, array: MainArray, anew: bool = False) -> None:
@@ -99,6 +100,14 @@ class Runaway:
         if warning and not alike(step, beta, *self._warned):
             self._warned = step, beta
             self.tell(warning)
+
+    def renew(self, array: MainArray) -> None:
+        """Have a SAFE time-step or scaled masses renewed that are due; tell once that a step is shorter."""
+        before = float(array.h.cr[g.TDEL])
+        safe = renew(array)
+        if safe is not None and not self._shortened:
+            self._shortened = True
+            self.tell(shortened(array, before, safe))
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
         """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow laws of the user's."""

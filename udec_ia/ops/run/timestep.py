@@ -138,6 +138,16 @@ def instability(array: MainArray, safe: Limit) -> str:
     )
 
 
+def shortened(array: MainArray, before: float, safe: Limit) -> str:
+    """What is said of a SAFE time-step of `before` s that has become shorter in a run."""
+    h = array.h
+    return (
+        f"the SAFE time-step is {h.cr[g.TDEL]:.3g} s instead of {before:.3g} s from cycle "
+        f"{int(h.ci[g.MCTOT])} on: {_place(h, safe.address)} "
+        "is held more stiffly than when the run began; it may become shorter still"
+    )
+
+
 def describe(array: MainArray, safe: Limit) -> str:
     """One line: the time-step, its shares of estimate and safe bound, and which groups set these."""
     step = float(array.h.cr[g.TDEL])

@@ -233,10 +233,15 @@ class Unrest:
         )
 
 
-def _closed(h: Memory) -> tuple[Any, Any, Any, Any]:
-    """Contacts that bear a force: addresses, normal and shear forces, places of their materials."""
+def _closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
+    """Contacts that bear a force: addresses, normal and shear forces, places of their materials.
+
+    springs: only those of constitutive number 1, whose strength is known: a law of the user's has its own.
+    """
     contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
     contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+    if springs:
+        contacts = contacts[integers(h, contacts, g.KCC) == 1]
     fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
     return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
 
@@ -248,8 +253,8 @@ def overlap(h: Memory) -> float:
 
 
 def at_strength(h: Memory) -> Any:
-    """Contacts whose shear force is their strength, the most loaded one first."""
-    contacts, fn, fs, m = _closed(h)
+    """Contacts of springs and friction whose shear force is their strength, the most loaded one first."""
+    contacts, fn, fs, m = _closed(h, springs=True)
     slipping = np.abs(fs) >= 0.999 * (h.cr[g.COH + m] + h.cr[g.AMU + m] * fn)
     order = np.argsort(-fn[slipping], kind="stable")
     return contacts[slipping][order]
@@ -257,7 +262,7 @@ def at_strength(h: Memory) -> Any:
 
 def slipped_farthest(h: Memory) -> str:
     """The contact that has slipped farthest since it closed: what its spring does not hold of its shear."""
-    contacts, _, fs, m = _closed(h)
+    contacts, _, fs, m = _closed(h, springs=True)
     if not len(contacts):
         return ""
     held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
