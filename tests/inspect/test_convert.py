@@ -429,7 +429,7 @@ def test_a_broken_list_is_named() -> None:
     array = base().copy()
     corner = int(table(array, "corner")["address"][3])
     puti(array.h, corner, g.KNB, corner)
-    with pytest.raises(Unsound, match=rf"KNB of corner@{corner}.* points to {corner}, no block"):
+    with pytest.raises(Unsound, match=rf"KNB of corner@{corner}.* points to {corner}, which is not a block"):
         convert(array, scheme("i64r64"))
     array = base().copy()
     bound = int(array.h.ci[g.IBNPNT])

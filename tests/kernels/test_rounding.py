@@ -131,7 +131,7 @@ def least_that_fits(deck: str, out: Path) -> Model:
         assert error.line is not None
         assert error.line > reached, "the size that the error named did not do for its line"
         reached = error.line
-        m = Model(mtop=int(error.advice.partition("--mtop ")[2].split()[0]), out=out)
+        m = Model(mtop=int(error.advice.partition("--mtop ")[2].split()[0].rstrip(":")), out=out)
     return m
 
 

@@ -164,7 +164,7 @@ def again(scene: Scene, model: Model, after: Callable[[Model], Model] | None = N
     return differences(essence(scene.model.array), essence(replay(model, scene.steps, after).array))
 
 
-SEEDS = [3, 8, 12, 17, 23, 26, 32, 39]
+SEEDS = [3, 12, 23, 26, 39]
 
 
 @pytest.mark.parametrize("seed", SEEDS)

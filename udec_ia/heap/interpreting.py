@@ -45,11 +45,11 @@ def interpreted() -> Iterator[None]:
 class Sparing:
     """A kernel that a small model has little for: what it would cost to compile, Python does many times over.
 
-    It runs as Python until that has been handed `most` groups in this process, and from then on compiled.
+    It runs as Python until that has been handed `limit` groups in this process, and from then on compiled.
     """
 
-    def __init__(self, kernel: Callable[..., Any], most: int) -> None:
-        self.kernel, self.left = kernel, most
+    def __init__(self, kernel: Callable[..., Any], limit: int) -> None:
+        self.kernel, self.left = kernel, limit
 
     def __call__(self, groups: int, *args: Any) -> Any:
         """Call the kernel with `args`. groups: how many it goes through."""

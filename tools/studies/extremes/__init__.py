@@ -1,0 +1,1 @@
+"""Scenes at the extremes, one study a file: docs/stability.md."""
