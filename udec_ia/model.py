@@ -120,7 +120,8 @@ class Model(Files, Blocks, Numbers, Looks):
         if not static:
             found = list(on_rest(self.array))
             self.remark(found)
-            self._said = self._said | {UNDAMPED} if found else self._said  # that is said then
+            if found:  # CYCLE need not say it again
+                self._said = self._said | {UNDAMPED}
             return self._to_rest(ratio, limit, criterion)
         self.inform(STATIC)
         begun = self.undo.before

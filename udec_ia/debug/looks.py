@@ -8,9 +8,7 @@ from typing import Any
 from udec_ia.debug.session import Debugger
 from udec_ia.inspect import look
 from udec_ia.inspect.check import check
-from udec_ia.inspect.look.dump import limits
-
-COMMON = "common"  # the words of the common block
+from udec_ia.inspect.look.dump import ALONE, limits
 
 
 class Looks(cmd.Cmd):
@@ -37,7 +35,7 @@ class Looks(cmd.Cmd):
     def do_dump(self, text: str) -> None:
         """dump [ADDRESS[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
         atlas = self.debugger.atlas
-        found = look.common(atlas) if text == COMMON else look.dump(atlas, *(limits(text) if text else ()))
+        found = look.common(atlas) if text == ALONE else look.dump(atlas, *(limits(text) if text else ()))
         self.stdout.writelines(f"{line.text}\n" for line in found.lines())
 
     def do_map(self, _: str) -> None:

@@ -22,7 +22,6 @@ VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
 OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "rows to show"}
-COMMON = "common"
 
 
 class Call(NamedTuple):
@@ -95,7 +94,7 @@ def _add_dump(commands: Any) -> None:
         "words",
         nargs="?",
         metavar="WORDS",
-        help=f"412, 412-500 (to 500), 412/20 (20 words) or {COMMON}; all if left off",
+        help="412, 412-500 (to 500), 412/20 (20 words) or common; all if left off",
     )
     form = dump.add_mutually_exclusive_group()
     form.add_argument("--raw", action="store_true", help="as DUMP of 1980 does: several words to a line")
@@ -154,10 +153,10 @@ def _junk(_: argparse.Namespace) -> Call:
 
 
 def _dump(args: argparse.Namespace) -> Call:
-    from udec_ia.inspect.look.dump import limits
+    from udec_ia.inspect.look.dump import ALONE, limits
 
     radix = {} if args.radix == 10 else {"radix": args.radix}
-    if args.words == COMMON and not args.raw and not radix:
+    if args.words == ALONE and not args.raw and not radix:
         return Call("common")
     given = () if args.words is None else limits(args.words)
     return Call("raw", given, module="udec_ia.output.dump") if args.raw else Call("dump", given, radix)

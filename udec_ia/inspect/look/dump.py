@@ -32,6 +32,7 @@ from udec_ia.inspect.look.fields import (
 from udec_ia.inspect.look.listing import Listing, Stream
 from udec_ia.inspect.look.names import leads_to, names
 
+ALONE = "common"  # the common block, where a stretch of addresses is asked for
 STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
 AT_ONCE = 1024  # spans that are looked at together
 PIECE = 2**16  # words that are in no group and looked at together
@@ -72,7 +73,8 @@ def limits(words: str) -> tuple[int, int]:
     """First and last address of 412, 412-500 or 412/20. ValueError for what is none of these."""
     given = STRETCH.fullmatch(words)
     if given is None:
-        raise ValueError(f"{words}: give 412, 412-500 (to address 500), 412/20 (20 words), or common alone")
+        forms = f"412, 412-500 (to address 500), 412/20 (20 words), or {ALONE} alone"
+        raise ValueError(f"{words}: give {forms}")
     first, last, many = given.groups(default="")
     return int(first), int(last) if last else int(first) + int(many or 1) - 1
 

@@ -156,8 +156,10 @@ def share(h: Memory, ib: int, jb: int) -> bool:
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
-    """What `cut_path` calls by its address (heap.apart), 0 for what it need not. soft: None if
-    all blocks are rigid and free of boundary conditions."""
+    """What `cut_path` calls by its address (heap.apart), 0 for what it need not.
+
+    soft: None if all blocks are rigid and free of boundary conditions.
+    """
     return updating(h), entry(change_map, h, NOBODY, ALL, 0), entry(share, h, 0, 0) if soft is not None else 0
 
 

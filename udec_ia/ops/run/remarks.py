@@ -107,13 +107,13 @@ def on_laws(array: MainArray, groups: Groups = listed) -> Iterator[str]:
             )
 
 
-def on_joints(array: MainArray, groups: Groups = listed) -> Iterator[str]:
+def on_joints(array: MainArray) -> Iterator[str]:
     """CYCLE: contacts between materials with other joint properties, where the map decides which hold."""
     h = array.h
-    used = np.unique(integers(h, groups(array, "block"), g.KMAT))
+    used = np.unique(integers(h, listed(array, "block"), g.KMAT))
     if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values()):
         return
-    contacts = groups(array, "contact")
+    contacts = listed(array, "contact")
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
     pairs = np.sort([integers(h, integers(h, contacts, k), g.KMAT) for k in (g.KB1, g.KB2)], axis=0)
     for one, two in np.unique(pairs, axis=1).T.tolist():
