@@ -309,7 +309,7 @@ def interrupt_lines(n: int, seed: int, seconds: float, build: str = "i32r64") ->
 # ---- signals to processes
 
 MEANT = {signal.SIGINT: 130, signal.SIGTERM: 143}
-SAVED = re.compile(r"is saved in (\S+)")
+SAVED = re.compile(r"(?:is|are) saved in (\S+)")
 TYPED = """SPLIT -1 {0:.3f} 7 {1:.3f}
 CYCLE {2}
 FIX 0 {3} 0 {3}

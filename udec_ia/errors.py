@@ -210,7 +210,7 @@ class UdecError(Exception):
         if self.source is not None and self.column is not None:
             lines += [f"    {self.source}", "    " + " " * (self.column - 1) + "^"]
         lines += [printable(self.advice, MESSAGE)] if self.advice else []
-        state = "the damaged state" if self.number == DAMAGED else "the results so far"
-        saved = f"{state} is saved in {self.saved}"
+        what = "the damaged state is" if self.number == DAMAGED else "the results so far are"
+        saved = f"{what} saved in {self.saved}"
         lines += [printable(saved, MESSAGE)] if self.saved else []
         return "\n".join(lines)

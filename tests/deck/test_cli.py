@@ -45,7 +45,7 @@ def test_an_error_ends_with_status_1_and_says_where(in_folder: Path) -> None:
     assert 'deck.dat:2:12: error 10: unrecognised parameter: "DENSITEE"\n' in done.stderr
     assert "\n    PROP MAT=1 DENSITEE=2000\n               ^\ndid you mean DENSITY?" in done.stderr
     saved = in_folder / "rescue.h5"
-    assert f"is saved in {saved}" in done.stderr
+    assert f"are saved in {saved}" in done.stderr
     assert saved.exists()
 
 

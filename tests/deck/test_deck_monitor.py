@@ -75,7 +75,7 @@ def test_an_error_saves_the_state_names_the_file_and_ends_the_run() -> None:
     model, error = refused("START\nGRAVITY 0\n")
     assert model.calls[1:] == [("save", ((Path("results") / "rescue.h5").absolute(),), {}), ("stop", (), {})]
     assert error.saved == str(Path("results/rescue.h5"))
-    assert str(error).endswith(f"is saved in {error.saved}")
+    assert str(error).endswith(f"are saved in {error.saved}")
 
 
 def test_a_failing_save_does_not_hide_the_error() -> None:

@@ -288,6 +288,7 @@ def test_other_threads_hold_nothing() -> None:
 def test_ctrl_c_in_a_short_command_ends_the_run_after_it(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    blocks(tmp_path).run(line)  # where a command has to wait for the compiler, Ctrl-C ends it at once
     m, make = blocks(tmp_path), Undo.keep
 
     def keep(self: Undo, array: MainArray) -> None:

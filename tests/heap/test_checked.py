@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from numba.core import config
+from planted import scene
 
 ROOT = Path(__file__).parents[2]
 TESTS = ROOT / "tests"
@@ -19,13 +20,7 @@ ASTRAY = re.compile(
     r"\w+ \(\w+/\w+\.py\) (?:reads|writes|gives back) .* at (-?\d+): that is (.+)"
 )
 THERE = {"a block": "a block", "junk": "a group that was given back", "in a block": "a word of block@"}
-DECK = """START
-ROUND 0.1
-BLOCK 0,0 0,2 1,2 1,0
-SPLIT -1,1 2,1
-PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
-FIX 0,1 0,1
-GRAVITY 0,-10
+DECK = """RESTART start.h5
 CYCLE 30
 SAVE end.h5
 STOP
@@ -103,6 +98,7 @@ def test_a_deck_gives_the_same_words(tmp_path: Path) -> None:
     for given in ([], ["--checked"]):
         folder = tmp_path / f"run{len(given)}"
         folder.mkdir()
+        scene(str(folder)).save(folder / "start.h5")
         (folder / "a.dat").write_text(DECK)
         done = run("-m", "udec_ia", *given, "a.dat", cwd=folder)
         assert done.returncode == 0, done.stderr

@@ -15,7 +15,7 @@ from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"
 GAP = (20.0, 40.0, 10.0, 20.0)
-SETTLED, CYCLES, SLICE = 1500, 21_500, 2150
+SETTLED, CYCLES, SLICE = 1500, 21_500, 4300
 LINKS = ("KCCOD", "KCP1", "KCP2", "KD1", "KD2", "KL1", "KL2")
 
 

@@ -280,7 +280,7 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
     assert gap.min(axis=0).max() <= 1e-9 * np.abs(here).max()
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", SEEDS[:3])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
     scene = play(seed, cycles=(5, 20))
 

@@ -138,8 +138,7 @@ def width(model: Model) -> float:
     return float(np.ptp(xs))
 
 
-@pytest.mark.parametrize("stress", [8e5, 1.6e6])
-@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize(("stress", "direction"), [(8e5, 1), (1.6e6, -1)])
 def test_a_corner_slides_over_such_an_edge_without_a_break_in_force(stress: float, direction: int) -> None:
     """The heavy block is pushed on the column, and sideways until its corner has passed the column's top.
 

@@ -7,7 +7,7 @@ measures all commands at greater sizes.
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from math import isqrt
 from pathlib import Path
@@ -26,6 +26,14 @@ from udec_ia.output.plot import Frame, What
 
 ALL = (-1.0, 1e6, -1.0, 1e6)
 WORSE = 9  # times the time for four times the size: 4 in proportion, 16 for the square
+
+
+@pytest.fixture(autouse=True)
+def _no_garbage_is_looked_for() -> Iterator[None]:
+    """All that a process of the tests has loaded takes a second to go through."""
+    gc.disable()
+    yield
+    gc.enable()
 
 
 def grid(n: int) -> Model:
@@ -59,7 +67,6 @@ def times(build: Callable[[int], Model], run: Callable[[Model], object], n: int)
         state, best = model.array, float("inf")
         for _ in range(3):
             model.array = state.copy()
-            gc.collect()
             start = process_time()
             run(model)
             best = min(best, process_time() - start)

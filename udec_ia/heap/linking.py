@@ -6,7 +6,8 @@ forms. Its *part* is what other kernels link in: code that is neither optimised 
 *whole*, made when Python calls the kernel, takes in the parts of all kernels below it, and is optimised,
 translated and kept on disk.
 
-A part is made once for the types of its arguments, not once more for every literal it is called with.
+A part is made once for the types of its arguments, not once more for every literal it is called with. And
+what numba would look for in every function, though no kernel has it, is not looked for.
 """
 
 from __future__ import annotations
@@ -23,6 +24,9 @@ from numba.extending import models, register_model, typeof_impl
 from udec_ia.heap.compiling import compiling
 from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
+
+
+NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
 
 
 class _NoEnvironment:
@@ -72,7 +76,9 @@ class _KernelCompiler(Compiler):
         state = self.state
         state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        return super().define_pipelines()
+        (pipeline,) = super().define_pipelines()
+        pipeline.passes = [one for one in pipeline.passes if one[0]._name not in NOT_IN_KERNELS]
+        return [pipeline]
 
 
 class _PartCompiler(_KernelCompiler):
