@@ -25,7 +25,6 @@ from udec_ia.heap.compiling import compiling
 from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
-
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
 
 
