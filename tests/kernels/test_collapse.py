@@ -40,7 +40,7 @@ def links(m: Model) -> list[tuple[int, ...]]:
 def played(last: int, watched: int = CYCLES) -> Model:
     """The deck up to cycle `last`; proved sound from cycle `watched` on.
 
-    After every command, every cycle that changes the map, and every fiftieth of the others.
+    After every command, every cycle that changes the map, and every two hundredth of the others.
     """
     m = Model()
     now = 0
@@ -53,7 +53,7 @@ def played(last: int, watched: int = CYCLES) -> Model:
             while (now := int(m.h.ci[MCTOT])) < end:
                 m.cycle(1)
                 after = links(m)
-                if after != before or int(m.h.ci[MCTOT]) % 50 == 0:
+                if after != before or int(m.h.ci[MCTOT]) % 200 == 0:
                     sound(m)
                 before = after
         elif word not in ("PLOT", "STOP", "END"):

@@ -114,7 +114,7 @@ def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
     assert again(scene, Model(), forget) == []
 
 
-@pytest.mark.parametrize("seed", SEEDS[:1])
+@pytest.mark.parametrize("seed", SEEDS[1:2])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
     scene = play(seed, cycles=(5, 20))
 

@@ -87,7 +87,7 @@ def test_contacts_around_small_triangles_are_sound(seed: int, build: str) -> Non
     play(seed, Model(build=build), watch=sound, cycles=SHORT)
 
 
-@pytest.mark.parametrize("first", range(SCENES, SCENES + 15, 5))
+@pytest.mark.parametrize("first", range(SCENES, SCENES + 10, 5))
 def test_contacts_of_random_scenes_are_those_of_brute_force(first: int) -> None:
     for seed in range(first, first + 5):
         play(seed, watch=complete, cycles=(2, 6))

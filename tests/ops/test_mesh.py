@@ -63,7 +63,7 @@ def is_mesh_of(found: Mesh, corners: Any, paired: bool) -> None:
             assert len({*one.tolist(), *two.tolist()}) == 4
 
 
-@settings(max_examples=80)
+@settings(max_examples=50)
 @given(outlines(), st.floats(0.04, 3.0), st.booleans())
 def test_zones_fill_any_block(corners: list[tuple[float, float]], edge: float, paired: bool) -> None:
     is_mesh_of(mesh(corners, edge, paired), corners, paired)

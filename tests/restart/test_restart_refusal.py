@@ -29,7 +29,7 @@ from udec_ia.restart.seal import SIZE, seal
 
 SCHEMES = tuple(ALL_SCHEMES)
 SETTINGS = settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
 )
 ARRAYS = {name: two_blocks(name) for name in SCHEMES}
 Edit = Callable[[h5py.File], None]

@@ -6,15 +6,16 @@ forms. Its *part* is what other kernels link in: code that is neither optimised 
 *whole*, made when Python calls the kernel, takes in the parts of all kernels below it, and is optimised,
 translated and kept on disk.
 
-A part is made once for the types of its arguments, not once more for every literal it is called with. And
-what numba would look for in every function, though no kernel has it, is not looked for.
+A part is made once for the types of its arguments, not once more for every literal it is called with. What
+an operator makes of numbers is found once, and not wherever it stands. And what numba would look for in every
+function, though no kernel has it, is not looked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from numba import njit, types
 from numba.core.codegen import JITCodeLibrary
@@ -26,6 +27,8 @@ from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
+
+NUMBERS = types.Number, types.Boolean
 
 
 class _NoEnvironment:
@@ -68,6 +71,28 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
             found[library] = None
 
 
+class _Remembering:
+    """What numba knows of types, as `knows`, which keeps what was found for numbers."""
+
+    found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
+
+    def __init__(self, knows: Any) -> None:
+        self._knows = knows
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._knows, name)
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """Signature of a call; None if there is none."""
+        key = func, tuple(args)
+        signature = self.found.get(key)
+        if signature is None:
+            signature = self._knows.resolve_function_type(func, args, kws)
+            if isinstance(func, types.Function) and not kws and all(isinstance(arg, NUMBERS) for arg in args):
+                self.found[key] = signature
+        return signature
+
+
 class _KernelCompiler(Compiler):
     form: type[JITCodeLibrary]
 
@@ -75,6 +100,7 @@ class _KernelCompiler(Compiler):
         state = self.state
         state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
+        state.typingctx = _Remembering(state.typingctx)
         (pipeline,) = super().define_pipelines()
         pipeline.passes = [one for one in pipeline.passes if one[0]._name not in NOT_IN_KERNELS]
         return [pipeline]
