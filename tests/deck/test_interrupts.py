@@ -320,8 +320,10 @@ def test_ctrl_c_stops_a_run_between_two_pieces(tmp_path: Path) -> None:
     assert m.histories()[0].last_cycle == m.h.ci[MCTOT] // 10 * 10
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
-@pytest.mark.parametrize("times", [1, 30])
+@pytest.mark.parametrize(
+    ("number", "status", "times"),
+    [(signal.SIGTERM, 143, 30), (signal.SIGINT, 130, 1), (signal.SIGINT, 130, 30)],
+)
 def test_a_run_that_signals_end_is_saved_however_many_there_are(
     tmp_path: Path, number: int, status: int, times: int
 ) -> None:

@@ -27,7 +27,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.restart import save
 
 PATCHES = 60
-DAMAGED = 12  # in each word scheme
+DAMAGED = 7  # in each word scheme
 
 
 @pytest.fixture(name="state", scope="module")

@@ -10,7 +10,7 @@ from udec_ia import Model
 from udec_ia.layout import offsets as g
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-BUILDS = ["i32r64", "i32r32", "i64r64"]
+BUILDS = ["i32r64", "i32r32"]
 
 
 def commands(name: str) -> list[str]:

@@ -26,7 +26,7 @@ from udec_ia.heap.compiling import compile_seconds
 from udec_ia.kernels.geometry.contact_geometry import faces
 from udec_ia.layout.offsets import DTOL, FIXED, KYD, TDEL
 
-BATCH = 8
+BATCH = 6
 SEED = 1
 
 START = """

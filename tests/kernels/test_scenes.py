@@ -20,7 +20,7 @@ from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
-SCENES = 40
+SCENES = 30
 NARROW = 10  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
