@@ -2,9 +2,9 @@
 
     UDEC_CHECKED=1 python tests/planted.py 1
 
-for the build of the kernels is chosen when they are loaded. The first lines are the bits of the model before,
-and whether the kinds of groups that the build has noted are those that a census finds. The others say what
-became of each wrong address in each pointer, or in every so many.
+for the build of the kernels is chosen when they are loaded. The first lines are the bits of the model before
+and after some cycles, and whether the kinds of groups that the build has noted are those that a census finds.
+The others say what became of each wrong address in each pointer, or in every so many.
 """
 
 from __future__ import annotations
@@ -117,9 +117,11 @@ def main() -> None:
 
 def plant(m: Model, every: int) -> None:
     """Say what becomes of every so many wrong pointers in `m`."""
+    before = m.array.copy()
+    print(bits(m))
+    m.cycle(5)
     print(bits(m))
     print(m.check() == [] and (same_kinds(m) or not CHECKED))
-    before = m.array.copy()
     planted = [(name, word, *one) for name, target, word in pointers(m) for one in wrong(m, target)]
     for name, word, what, iad in planted[::every] if CHECKED else []:
         m.take_up(before.copy(), [])
