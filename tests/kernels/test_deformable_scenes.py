@@ -224,7 +224,7 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
 
 
 @both_ways
-@pytest.mark.parametrize("seed", [11, 24, 40])
+@pytest.mark.parametrize("seed", [11, 40])
 @pytest.mark.parametrize("build", ALL_SCHEMES)
 def test_interpreted_kernels_give_the_same_bits(build: str, seed: int) -> None:
     """The same source without the compiler."""

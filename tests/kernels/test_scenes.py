@@ -280,7 +280,7 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
     assert gap.min(axis=0).max() <= 1e-9 * np.abs(here).max()
 
 
-@pytest.mark.parametrize("seed", SEEDS[:3])
+@pytest.mark.parametrize("seed", SEEDS[:2])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
     scene = play(seed, cycles=(5, 20))
 
@@ -311,7 +311,7 @@ def test_growing_word_by_word_does_not_change_a_bit(seed: int, monkeypatch: pyte
 
 
 @both_ways
-@pytest.mark.parametrize("seed", [12, 21, 33])
+@pytest.mark.parametrize("seed", [12, 33])
 @pytest.mark.parametrize("build", ALL_SCHEMES)
 def test_interpreted_kernels_give_the_same_bits(build: str, seed: int) -> None:
     """The same source without the compiler."""
