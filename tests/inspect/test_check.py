@@ -48,6 +48,17 @@ def test_sound_maps_have_no_violations(name: str) -> None:
     assert check(MainArray(scheme(name), mtop=99)) == []
 
 
+@pytest.mark.parametrize(
+    ("name", "value"), [("JPHASE", 9), ("NSPOIL", 1461), ("MTOP", 5), ("DTOL", 0.7), ("CTOL", 0.0)]
+)
+def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float) -> None:
+    """Of the common block: what routines believe without a further test."""
+    array = two_blocks()
+    (field,) = (field for field in TABLE.common if field.name == name)
+    variable(array.h, field)[0] = value
+    assert check(array) != []
+
+
 @pytest.mark.parametrize("name", SCHEMES)
 def test_junk_is_part_of_a_sound_heap(name: str) -> None:
     array = two_blocks(name)

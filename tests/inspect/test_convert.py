@@ -24,9 +24,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme, scheme
-from udec_ia.inspect.change import convert, prove, renumber
+from udec_ia.inspect.change import convert, renumber
 from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.change.settle import settle
+from udec_ia.inspect.check import check
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
@@ -128,7 +129,7 @@ def test_the_map_is_the_same(to: str) -> None:
     assert array.h.ci[g.JUNK] != 0
     made = convert(array, scheme(to))
     assert differences(essence(array), essence(made.array)) == []
-    assert (made.broken, prove(made.array), made.array.h.ci[g.JUNK]) == ([], [], 0)
+    assert (made.broken, check(made.array), made.array.h.ci[g.JUNK]) == ([], [], 0)
     order = [np.argsort([*map(int, np.concatenate([*census(one).values()]))]) for one in (array, made.array)]
     assert np.array_equal(*order)
 
@@ -142,7 +143,7 @@ def test_an_empty_model_and_one_block() -> None:
         for to in SCHEMES:
             made = convert(m.array, to)
             assert (made.broken, made.array.scheme) == ([], to)
-            assert prove(made.array) == []
+            assert check(made.array) == []
 
 
 # ---- going on
@@ -205,9 +206,9 @@ def after_cycles_in_narrow_reals(tmp_path_factory: pytest.TempPathFactory) -> Mo
 def test_wider_reals_start_from_the_same_numbers(narrow: Model) -> None:
     """What does not follow from the corners is as it was; what does is so in the new digits."""
     exact = rewrite(narrow.array, scheme("i32r64")).array
-    assert prove(exact) != []
+    assert check(exact) != []
     made = convert(narrow.array, scheme("i32r64"))
-    assert (made.broken, prove(made.array)) == ([], [])
+    assert (made.broken, check(made.array)) == ([], [])
     assert "found anew from the corners" in made.said[1]
     one, two = essence(exact), essence(made.array)
     changed = {name.split()[0] for name in differences(one, two)}
@@ -249,7 +250,7 @@ def test_narrower_reals(to: str, tmp_path: Path) -> None:
     m.out = tmp_path
     m.cycle(100)
     made = convert(m.array, scheme(to))
-    assert (made.broken, prove(made.array)) == ([], [])
+    assert (made.broken, check(made.array)) == ([], [])
     wide = np.concatenate([m.array.h.cr, *(reals(m.array, group.name) for group in TABLE.groups)])
     with np.errstate(under="ignore"):
         back = wide.astype(np.float32).astype(np.float64)
@@ -315,7 +316,7 @@ def test_random_scenes_in_reals_of_the_other_width(play: Any, seed: int) -> None
         there.tell, there.array = m.tell, made.array
         if not scene.ended:
             there.cycle(20)
-            assert prove(there.array) == []
+            assert check(there.array) == []
 
 
 def test_between_two_passes_contacts_are_left_alone() -> None:
@@ -402,7 +403,7 @@ def test_a_fixed_array_stays_as_large_as_the_groups_allow() -> None:
     assert (len(made.h.ia), made.fixed) == (500, True)
     made = convert(m.array, scheme("i16r64")).array
     assert (len(made.h.ia), made.fixed) == (int(made.h.ci[g.MFREE]) - 1, True)
-    assert prove(made) == []
+    assert check(made) == []
 
 
 @pytest.mark.parametrize("name", ["i16r32", "i64r64"])

@@ -16,8 +16,9 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, scheme
-from udec_ia.inspect.change import patch, prove
+from udec_ia.inspect.change import patch
 from udec_ia.inspect.change.rewrite import rewrite
+from udec_ia.inspect.check import check
 from udec_ia.inspect.table import table
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, Group, read_table
@@ -166,7 +167,7 @@ def test_one_word_changes_or_none(
         with pytest.raises(UdecError, match="error 28"):
             patch(array, text)
         assert image(array) == before
-    assert prove(array) == []
+    assert check(array) == []
 
 
 # ---- a model

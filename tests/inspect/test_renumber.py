@@ -12,7 +12,8 @@ from naive.relocate import differences, essence, relocate
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti
-from udec_ia.inspect.change import prove, renumber
+from udec_ia.inspect.change import renumber
+from udec_ia.inspect.check import check
 from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import Unsound, boundary, groups, members
 from udec_ia.layout import offsets as g
@@ -37,7 +38,7 @@ def test_lists_lie_in_their_order(shuffled: Model) -> None:
     before = essence(shuffled.array)
     renumber(shuffled.array)
     assert differences(before, essence(shuffled.array)) == []
-    assert prove(shuffled.array) == []
+    assert check(shuffled.array) == []
     h, layout = shuffled.array.h, layouts(shuffled.array.scheme.ratio)
     assert h.ci[g.JUNK] == 0
     listed = ("block", "contact", "domain", "bound", "signal", "history")
@@ -97,7 +98,7 @@ def test_an_empty_model() -> None:
     m = Model()
     m.start()
     assert renumber(m.array).rows == []
-    assert (m.h.ci[g.MFREE], prove(m.array)) == (1, [])
+    assert (m.h.ci[g.MFREE], check(m.array)) == (1, [])
 
 
 def test_what_cannot_be_told_apart_stays_as_it_is(shuffled: Model) -> None:

@@ -22,7 +22,7 @@ from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
-from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.check import check_links
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.restart import info, load, save
@@ -282,5 +282,5 @@ def test_what_an_error_of_the_run_has_spoilt_says_so_when_it_is_taken_up_again(
     assert again.h.ci[g.NSPOIL] == 0
     for number, broken in ((0, 0), (max(MESSAGES), 0), (max(MESSAGES) + 1, 1), (-1, 1)):
         again.array.h.ci[g.NSPOIL] = number
-        found = [one for one in check_common(again.array) if "NSPOIL" in str(one)]
+        found = [one for one in check_links(again.array) if "NSPOIL" in str(one)]
         assert len(found) == broken

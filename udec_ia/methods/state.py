@@ -13,7 +13,6 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.inspect.check import check_shapes
-from udec_ia.inspect.check.common import check_common
 from udec_ia.layout.offsets import LREADY
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.split import Boxes
@@ -123,7 +122,7 @@ class State(Session):
 
         whole: with the first of all; else words that are lost for good are left to SAVE.
         """
-        broken = check_common(self.array) or check_shapes(self.array)
+        broken = check_shapes(self.array)
         for one in broken:
             if whole or one.misleads:
                 advice = "undo the change, or RESTART from a sound file"

@@ -19,7 +19,6 @@ from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
-from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.meaning import news
 from udec_ia.inspect.translate import TranslationError, Words, translate
 from udec_ia.inspect.walk import Unsound, groups
@@ -263,7 +262,7 @@ def _faults(array: MainArray) -> list[str]:
     Compiled routines follow these without a further test. Forces and overlaps that have run away are no
     faults here: such a state is there to be looked at.
     """
-    return [violation.message for violation in check_links(array) or check_common(array)]
+    return [violation.message for violation in check_links(array)]
 
 
 def _refuse_unsound(mark: list[str], faults: list[str]) -> None:

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check import Violation, check
-from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.check import check
 from udec_ia.inspect.look.atlas import NAMES, TABLE, UNUSED, Atlas, Span
 from udec_ia.printable import MESSAGE, printable
 
@@ -29,7 +28,7 @@ def state(array: MainArray, name: str, lines: Sequence[str], limit: int) -> dict
 
     limit: words that the page has room for.
     """
-    h, atlas, faults = array.h, Atlas(array.h), _faults(array)
+    h, atlas, faults = array.h, Atlas(array.h), check(array)
     spans = list(_shown(atlas, limit))
     shown = sum(span.last - span.first + 1 for span in spans if span.kind != UNUSED)
     first = {span.first for span in spans}
@@ -77,8 +76,3 @@ def _owner(atlas: Atlas, span: Span) -> int:
     if span.kind in NAMING or span.kind == "block" or span.kind not in atlas.groups:
         return 0
     return next(iter(atlas.owners(span)), 0)
-
-
-def _faults(array: MainArray) -> list[Violation]:
-    """What the checker has to say, each sentence once."""
-    return list(dict.fromkeys([*check(array), *check_common(array)]))

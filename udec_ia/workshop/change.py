@@ -148,7 +148,7 @@ def _write(
     broken: Sequence[Violation] = (),
 ) -> Listing:
     """TO, unless the state is not sound: then only if it is forced."""
-    from udec_ia.inspect.change.prove import in_short
+    from udec_ia.inspect.change.faults import in_short
     from udec_ia.inspect.look import Listing
     from udec_ia.restart import save_changed
 

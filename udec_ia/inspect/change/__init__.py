@@ -2,7 +2,6 @@
 
 from udec_ia.inspect.change.convert import Converted, convert
 from udec_ia.inspect.change.patch import Patched, patch
-from udec_ia.inspect.change.prove import prove
 from udec_ia.inspect.change.renumber import renumber
 
-__all__ = ["Converted", "Patched", "convert", "patch", "prove", "renumber"]
+__all__ = ["Converted", "Patched", "convert", "patch", "renumber"]

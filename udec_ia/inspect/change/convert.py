@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import Scheme
+from udec_ia.inspect.change.faults import too_coarse
 from udec_ia.inspect.change.movable import junk_words
-from udec_ia.inspect.change.prove import prove, too_coarse
 from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.change.settle import settle
-from udec_ia.inspect.check import Violation
+from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.translate.fit import Fit
 from udec_ia.layout import offsets as g
 
@@ -42,13 +42,13 @@ def convert(array: MainArray, to: Scheme) -> Converted:
     if to.real_bits == array.scheme.real_bits:
         return Converted(made.array, said, [])
     narrower = to.real_bits < array.scheme.real_bits
-    broken = prove(made.array) if narrower else []
+    broken = check(made.array) if narrower else []
     if broken or not narrower:
         change = settle(made.array)
         said.append(
             f"circles and contacts are found anew from the corners, and differ by up to {change:.2g} m"
         )
-        broken = prove(made.array)
+        broken = check(made.array)
     if narrower:
         said.insert(1, _rounding(made.fit))
         broken += too_coarse(made.array)

@@ -19,8 +19,8 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.change.prove import in_short, prove
-from udec_ia.inspect.check import Violation
+from udec_ia.inspect.change.faults import in_short
+from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Span, Word
 from udec_ia.inspect.look.names import called
 from udec_ia.layout import offsets as g
@@ -72,7 +72,7 @@ def patch(array: MainArray, *assignments: str, force: bool = False) -> Patched:
     patches = read_patches(array, assignments)
     ready, array.h.ci[g.LREADY] = int(array.h.ci[g.LREADY]), 0
     former = assign(patches)
-    broken = prove(array)
+    broken = check(array)
     if broken and not force:
         assign(former)
         array.h.ci[g.LREADY] = ready

@@ -23,6 +23,7 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check.bounds import check_bounds, check_times
 from udec_ia.inspect.check.codes import check_codes
+from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.check.complete import check_complete
 from udec_ia.inspect.check.geometry import (
     Outlines,
@@ -95,6 +96,7 @@ def _check_shapes(state: State) -> Outlines | None:
 
 
 def _check_links(state: State) -> None:
+    check_common(state)
     check_memory(state)
     check_pointers(state)
     check_codes(state)

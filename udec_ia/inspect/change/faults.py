@@ -1,4 +1,4 @@
-"""Whether a state that a tool has made can be gone on with."""
+"""What is wrong with a state that a tool has made, in short; and whether its reals are too coarse."""
 
 from __future__ import annotations
 
@@ -8,18 +8,12 @@ import numpy as np
 
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check import Violation, check
-from udec_ia.inspect.check.common import check_common
+from udec_ia.inspect.check import Violation
 from udec_ia.inspect.table import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
 
 SHOWN = 3  # violations that are named
-
-
-def prove(array: MainArray) -> list[Violation]:
-    """All that RESTART, commands and the checker find wrong; empty if the state is sound."""
-    return [*check_common(array), *check(array)]
 
 
 def in_short(broken: Sequence[Violation]) -> str:
