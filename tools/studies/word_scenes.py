@@ -108,11 +108,12 @@ def run(text: str, build: str) -> Run:
                     m.run("CYCLE 0")  # which puts a large model's groups where they will stay
                     looks.append((0, centroids(m)))
                 m.run(line)
-                if int(m.h.ci[MCTOT]) > begun:
-                    begun = int(m.h.ci[MCTOT])
-                    if len(looks[-1][1]) != len(m.table("block")):
-                        looks.clear()  # blocks were taken away: what counts is what comes of it
-                    looks.append((begun, centroids(m)))
+                cycles, places = int(m.h.ci[MCTOT]), centroids(m)
+                if looks and len(looks[-1][1]) != len(places):
+                    looks = [(cycles, places)]  # blocks were taken away: what counts is what comes of it
+                elif cycles > begun:
+                    looks.append((cycles, places))
+                begun = cycles
         except UdecError as error:
             if error.number not in (1, 2):
                 raise
