@@ -118,11 +118,11 @@ def main() -> None:
 def plant(m: Model, every: int) -> None:
     """Say what becomes of every so many wrong pointers in `m`."""
     before = m.array.copy()
+    planted = [(name, word, *one) for name, target, word in pointers(m) for one in wrong(m, target)]
     print(bits(m))
     m.cycle(5)
     print(bits(m))
     print(m.check() == [] and (same_kinds(m) or not CHECKED))
-    planted = [(name, word, *one) for name, target, word in pointers(m) for one in wrong(m, target)]
     for name, word, what, iad in planted[::every] if CHECKED else []:
         m.take_up(before.copy(), [])
         m.array.h.ia[word - 1] = iad

@@ -46,7 +46,7 @@ WORKERS = 2
 
 def main() -> int:
     """Obey the command line; returns the exit status."""
-    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # hundreds of processes would read the same sources anew
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # else each of hundreds of processes compiles it all
     command, options = (sys.argv[1:2] or [""])[0], sys.argv[2:]
     if command not in PLACES:
         print(__doc__)

@@ -49,14 +49,21 @@ def test_sound_maps_have_no_violations(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("JPHASE", 9), ("NSPOIL", 1461), ("MTOP", 5), ("DTOL", 0.7), ("CTOL", 0.0)]
+    ("name", "value", "said"),
+    [
+        ("JPHASE", 9, "JPHASE is 9, not 0 to 4"),
+        ("NSPOIL", 1461, "NSPOIL is 1461, which is no number of an error"),
+        ("MTOP", 5, "MFREE and MTOP are not of"),
+        ("DTOL", 0.7, "tolerances are not those of the rounding length, 0.7"),
+        ("CTOL", 0.0, "tolerances are not those of the rounding length"),
+    ],
 )
-def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float) -> None:
+def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float, said: str) -> None:
     """Of the common block: what routines believe without a further test."""
     array = two_blocks()
     (field,) = (field for field in TABLE.common if field.name == name)
     variable(array.h, field)[0] = value
-    assert check(array) != []
+    assert naming(check(array), said)
 
 
 @pytest.mark.parametrize("name", SCHEMES)

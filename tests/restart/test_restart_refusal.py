@@ -283,6 +283,22 @@ def test_parts_that_contradict_each_other(good: Path, case: str) -> None:
     assert what in refusal(good)
 
 
+def loop(file: h5py.File) -> None:
+    del file["recorded"]
+    file["recorded"] = file["/"]
+
+
+@pytest.mark.parametrize("change", [without("recorded"), without("recorded/1"), loop])
+def test_a_history_without_what_it_has_recorded(change: Edit, tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.history(1, "KX", at=(0.5, 0.5))
+    path = m.save(tmp_path / "a.h5")
+    load(path)
+    edit(path, change)
+    assert "/recorded/1 is not there, though there is such a history" in refusal(path)
+
+
 def test_the_other_table_names_the_version_to_use(good: Path) -> None:
     edit(good, new_table(TABLE.read_text().replace("KBRO ", ONE_MORE)))
     with pytest.raises(UdecError) as caught:

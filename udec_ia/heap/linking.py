@@ -27,7 +27,6 @@ from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
-
 NUMBERS = types.Number, types.Boolean
 
 
@@ -72,7 +71,7 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
 
 
 class _Remembering:
-    """What numba knows of types, as `knows`, which keeps what was found for numbers."""
+    """A typing context of numba's, `knows`, that keeps what it has found for numbers."""
 
     found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
 

@@ -9,14 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import Unsound, groups
-from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history import definitions
-from udec_ia.ops.commands.recordable import HISTORY, by_codes
 from udec_ia.restart.reader import Restored, opened, read_deck, read_front, read_laws, read_state
-from udec_ia.restart.recorded import recall
+from udec_ia.restart.recorded import are_told, recall
 from udec_ia.restart.refusal import RefusedError, refusing
 from udec_ia.restart.writer import save
 
@@ -29,9 +25,9 @@ def load_to_change(path: str | Path) -> Restored:
     path = Path(path)
     with refusing(path), opened(path) as file:
         seen = read_state(file, read_front(file))
-        if not _has_sound_histories(seen.array):
+        if not are_told(seen.array):
             raise RefusedError("does not say what its histories have recorded: the list of them is broken")
-        series = recall(file, seen.array)
+        series = recall(file, seen.array, bool(seen.mark))
         return Restored(seen.array, read_deck(file), read_laws(file), series, seen.said, seen.mark)
 
 
@@ -43,16 +39,7 @@ def save_changed(
     line: what the deck is to say of it, a command or a comment. unsound: what is wrong with it, with which
     the file is marked. Raises UdecError 31 as `save` does.
     """
-    if _has_sound_histories(array):
+    if are_told(array):
         for series, definition in zip(state.series, definitions(array), strict=False):
             series.follow(definition)
     return save(array, path, [*state.deck, line], state.laws, state.series, unsound)
-
-
-def _has_sound_histories(array: MainArray) -> bool:
-    """True if the list of histories comes to an end, and all of them record something."""
-    h = array.h
-    try:
-        return all((iget(h, iad, g.KHK), iget(h, iad, g.KHF)) in by_codes() for iad in groups(h, HISTORY))
-    except Unsound:
-        return False

@@ -15,22 +15,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.meaning import news
 from udec_ia.inspect.translate import TranslationError, Words, translate
-from udec_ia.inspect.walk import Unsound, groups
-from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, TableError, parse, read_table
-from udec_ia.ops.commands.recordable import HISTORY, by_codes
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.ops.run.watch import Series
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
 from udec_ia.restart.layout import MARK, MAX_FAULT, shorten, table_faults
-from udec_ia.restart.recorded import recall
+from udec_ia.restart.recorded import are_told, recall
 from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
 
@@ -85,7 +81,7 @@ def load(path: str | Path, force: bool = False) -> Restored:
     with refusing(path):
         with opened(path) as file:
             seen = read_state(file, read_front(file))
-            series = recall(file, seen.array) if _histories_known(seen.array) else []
+            series = recall(file, seen.array, bool(seen.mark)) if are_told(seen.array) else []
             deck, laws = read_deck(file), read_laws(file)
         faults = _faults(seen.array)  # takes memory, and that of the file is given back by now
         if not force:
@@ -278,12 +274,3 @@ def read_mark(file: Contents) -> list[str]:
     if not file.has_attribute("", MARK):
         return []
     return file.attribute("", MARK).decode("utf-8", "backslashreplace").splitlines()
-
-
-def _histories_known(array: MainArray) -> bool:
-    """True if the histories of an unsound heap can be read."""
-    h = array.h
-    try:
-        return all((iget(h, ih, g.KHK), iget(h, ih, g.KHF)) in by_codes() for ih in groups(h, HISTORY))
-    except Unsound:
-        return False

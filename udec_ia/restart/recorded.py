@@ -12,8 +12,12 @@ from collections.abc import Sequence
 import h5py
 import numpy as np
 
+from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray
+from udec_ia.inspect.walk import Unsound, groups
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history import Definition, definitions
+from udec_ia.ops.commands.recordable import HISTORY, by_codes
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
@@ -24,6 +28,23 @@ CHUNK = 512  # numbers that stand together in a dataset that grows
 RECORDED = "recorded"  # group of the restart file
 ADDRESS = re.compile(r"[0-9]{1,19}")
 PLACE = re.compile(r"|\([-+.0-9a-z]{1,12}, [-+.0-9a-z]{1,12}\)")
+
+
+def are_told(array: MainArray) -> bool:
+    """True if `array`, which may be unsound, says what its histories are of."""
+    h = array.h
+    try:
+        return all((iget(h, ih, g.KHK), iget(h, ih, g.KHF)) in by_codes() for ih in groups(h, HISTORY))
+    except Unsound:
+        return False
+
+
+def of_all(array: MainArray, series: Sequence[Series]) -> Sequence[Series]:
+    """`series`, and an empty one for each other history of `array`."""
+    if not are_told(array):
+        return series
+    found = {one.number: one for one in series}
+    return [found.get(n, Series(n, one)) for n, one in enumerate(definitions(array), 1)]
 
 
 def store(parent: h5py.Group, series: Sequence[Series], growing: bool = False) -> None:
@@ -48,16 +69,23 @@ def extend(parent: h5py.Group, series: Sequence[Series], before: Sequence[int]) 
             dataset[n:] = column.astype(kind)
 
 
-def recall(file: Contents, array: MainArray) -> list[Series]:
-    """What a restart file, which holds `array`, has recorded. RefusedError if it contradicts itself."""
-    return [_recall(file, number, one) for number, one in enumerate(definitions(array), 1)]
+def recall(file: Contents, array: MainArray, forced: bool) -> list[Series]:
+    """What a restart file, which holds `array`, has recorded. RefusedError if it contradicts itself.
+
+    forced: the file was saved by force, which leaves out what a broken list of histories has recorded.
+    """
+    _, minor = file.attribute_numbers("", "format_version", "<i4", (2,))
+    may_lack = forced or minor == 0  # format 1.0 had none
+    return [_recall(file, number, one, may_lack) for number, one in enumerate(definitions(array), 1)]
 
 
-def _recall(file: Contents, number: int, definition: Definition) -> Series:
+def _recall(file: Contents, number: int, definition: Definition, may_lack: bool) -> Series:
     where = f"{RECORDED}/{number}"
     series = Series(number, definition)
-    if not (file.has(RECORDED) and file.has(where)):  # of a state that was saved by force
-        return series
+    if not (file.has(RECORDED) and file.has(where)):
+        if may_lack:
+            return series
+        raise RefusedError(f"is damaged: /{where} is not there, though there is such a history")
     columns = [file.numbers(f"{where}/{name}", kind, None) for name, kind in TYPES.items()]
     cycles = columns[0]
     if len({len(one) for one in columns}) > 1 or (np.diff(cycles, prepend=-1) <= 0).any():

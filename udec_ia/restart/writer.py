@@ -25,7 +25,7 @@ from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import CHUNK
 from udec_ia.restart.layout import MARK, MARKED, common_places, field_rows, shorten, text
-from udec_ia.restart.recorded import RECORDED, store
+from udec_ia.restart.recorded import RECORDED, of_all, store
 from udec_ia.restart.refusal import RefusedError
 from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
 from udec_ia.version import __version__
@@ -87,7 +87,7 @@ def _image(
         _write_layout(file, table, array.scheme.ratio)
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
         _write_laws(file, laws)
-        if series:
+        if series := of_all(array, series):
             store(file.create_group(RECORDED), series)
         _write_provenance(file)
         _write_volatile(file)

@@ -6,7 +6,8 @@
     3. clockwise lists close, contacts in physical order; links back and reverse lists mirror them
     4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close; what
        hangs on a virtual contact lies in the domain in which it hangs; the outer domain lies around them all
-    5. blocks - contacts + domains = 2, and the counts of the common block and of zones are true
+    5. blocks - contacts + domains = 2; the counts of the common block and of zones are true, and tolerances
+       are those of the rounding length
     6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
     7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
