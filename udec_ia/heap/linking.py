@@ -7,8 +7,8 @@ forms. Its *part* is what other kernels link in: code that is neither optimised 
 translated and kept on disk.
 
 A part is made once for the types of its arguments, not once more for every literal it is called with. What
-an operator makes of numbers is found once, and not wherever it stands. And what numba would look for in every
-function, though no kernel has it, is not looked for.
+an operator or an accessor makes of its arguments is found once, and not wherever it stands. And what numba
+would look for in every function, though no kernel has it, is not looked for.
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from udec_ia.heap.kept import keep_code
 from udec_ia.signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
-NUMBERS = types.Number, types.Boolean
 
 
 class _NoEnvironment:
@@ -71,7 +70,7 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
 
 
 class _Remembering:
-    """A typing context of numba's, `knows`, that keeps what it has found for numbers."""
+    """A typing context of numba's, `knows`, that keeps what it has found of what is no kernel."""
 
     found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
 
@@ -87,7 +86,7 @@ class _Remembering:
         signature = self.found.get(key)
         if signature is None:
             signature = self._knows.resolve_function_type(func, args, kws)
-            if isinstance(func, types.Function) and not kws and all(isinstance(arg, NUMBERS) for arg in args):
+            if isinstance(func, types.Function) and not kws:
                 self.found[key] = signature
         return signature
 

@@ -8,10 +8,20 @@ nothing is done.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
+from typing import Any
 
 
 def give_back() -> None:
     """Give back to the system what nothing uses."""
+    _trim()(0)
+
+
+@cache
+def _trim() -> Callable[[int], Any]:
+    """The routine of the C library that does so."""
     with suppress(OSError, AttributeError, TypeError):
-        ctypes.CDLL(None).malloc_trim(0)
+        return ctypes.CDLL(None).malloc_trim
+    return lambda _: None

@@ -172,6 +172,8 @@ class State:
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
+        if not len(addresses):
+            return np.empty(addresses.shape, INDEX)
         place = self._places(addresses)
         there = self._kind_at.take(place) == KIND_CODE[kind]
         if not there.any():

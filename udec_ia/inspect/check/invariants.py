@@ -98,8 +98,8 @@ def _check_shapes(state: State) -> Outlines | None:
 
 def _check_links(state: State) -> None:
     check_common(state)
-    check_memory(state)
     check_pointers(state)
+    check_memory(state)
     check_codes(state)
     check_histories(state)
     check_map(state)

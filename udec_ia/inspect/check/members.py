@@ -36,7 +36,7 @@ def check_members(state: State) -> None:
 def _check_mutual(state: State) -> None:
     """Links back and forth between groups of two kinds."""
     for kind, addresses in state.address.items():
-        for name in names(kind, "backlink"):
+        for name in names(kind, "backlink") if len(addresses) else ():
             target = next(field.target for field in TABLE.group(kind).fields if field.name == name)
             assert target is not None
             (back,) = names(target, "backlink")
