@@ -20,7 +20,7 @@ from udec_ia.restart import save
 FUZZ = Path(__file__).parents[2] / "tools" / "fuzz.py"
 
 
-@pytest.mark.parametrize(("decks", "files"), [(12, 0), (0, 30)])
+@pytest.mark.parametrize(("decks", "files"), [(8, 0), (0, 20)])
 def test_fuzz(decks: int, files: int) -> None:
     """Every case ends in a result or in a numbered error."""
     arguments = ["--decks", str(decks), "--files", str(files), "--seed", "1"]

@@ -50,7 +50,7 @@ def blocks(out: Path | None = None, **named: object) -> Model:
 
 
 def test_what_ends_a_command_at_any_line_leaves_it_whole_or_undone() -> None:
-    assert interrupt_lines(60, seed=3, seconds=120) == []
+    assert interrupt_lines(40, seed=3, seconds=120) == []
 
 
 @pytest.mark.parametrize("repeated", [0.0, 1e9])

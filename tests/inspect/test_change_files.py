@@ -49,7 +49,7 @@ def block(file: Path) -> int:
 
 
 COMMANDS = {
-    "convert": (["--build", "i64r64"], f"* udec convert --build i64r64: {MOVED}"),
+    "convert": (["--build", "i16r64"], f"* udec convert --build i16r64: {MOVED}"),
     "renumber": ([], f"* udec renumber: {MOVED}"),
     "patch": (
         ["FRAC = 0.05,  block@{}.KXD=0.5", "GRAVY = -3"],
@@ -121,9 +121,9 @@ def test_the_program_that_it_prints_writes_the_same(
 
 
 def test_what_they_say(source: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["convert", str(source), "to.h5", "--build", "i16r64", "--json"]) == 0
+    assert main(["convert", str(source), "to.h5", "--build", "i64r64", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)["said"]
-    assert said == ["written: to.h5", *convert(load(source).array, scheme("i16r64")).said]
+    assert said == ["written: to.h5", *convert(load(source).array, scheme("i64r64")).said]
     assert main(["renumber", str(source), "to.h5", "--json"]) == 0
     told, listing = json.loads(capsys.readouterr().out), renumber(load(source).array)
     assert told["said"] == ["written: to.h5", *listing.said]

@@ -468,7 +468,7 @@ def write_anything(array: MainArray, data: Any) -> None:
             target[at] = value if what == "ci" else (value + 2 ** (bits - 1)) % 2**bits - 2 ** (bits - 1)
 
 
-@settings(deadline=None, max_examples=400, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=200, suppress_health_check=[HealthCheck.too_slow])
 @given(name=st.sampled_from(SCHEMES), data=st.data())
 def test_no_garbage_stops_the_checker(name: str, data: Any) -> None:
     array = small(name)

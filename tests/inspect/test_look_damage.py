@@ -163,7 +163,7 @@ def test_a_look_changes_nothing(tmp_path: Path) -> None:
 def test_commands_given_damaged_files() -> None:
     """A part of the tool's: each command ends with a result or a message, the file stays as it is."""
     some = ["info", "check", "dump", "walk", "find", "diff", "convert", "renumber", "patch"]
-    arguments = [sys.executable, str(WRECKS), "--files", "3", "--seed", "3", "--only", *some]
+    arguments = [sys.executable, str(WRECKS), "--files", "2", "--seed", "3", "--only", *some]
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "27 commands, 0 failures" in done.stdout
+    assert "18 commands, 0 failures" in done.stdout

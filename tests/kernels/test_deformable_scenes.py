@@ -20,7 +20,7 @@ from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import JUNK, MRIG, NSOFT
 from udec_ia.model import Model
 
-SCENES = 20
+SCENES = 10
 BATCH = 10
 SHORT = (2, 8)
 SEEDS = [24, 40]
@@ -116,7 +116,7 @@ def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS[1:2])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
-    scene = play(seed, cycles=(5, 20))
+    scene = play(seed, cycles=SHORT)
 
     def restored(model: Model) -> Model:
         return quiet(Model.restore(model.save(tmp_path / "scene.h5")))

@@ -114,6 +114,6 @@ def test_the_memory_does_not_touch_a_bit(how: str, build: str, runs: dict[str, A
     check_alike(runs[build], play(build, ways[how], tmp_path))
 
 
-@pytest.mark.parametrize("build", ["i16r32"])
+@pytest.mark.parametrize("build", ["i16r64"])
 def test_the_width_of_integers_does_not_touch_a_bit(build: str, runs: dict[str, Any], tmp_path: Any) -> None:
     check_alike(runs[f"i32r{build[-2:]}"], play(build, nothing, tmp_path))

@@ -20,7 +20,7 @@ from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
-SCENES = 30
+SCENES = 20
 NARROW = 10  # scenes with the narrowest words
 BATCH = 10
 SHORT = (2, 10)  # cycles of a run, where every one of them is looked at
@@ -282,7 +282,7 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS[:2])
 def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
-    scene = play(seed, cycles=(5, 20))
+    scene = play(seed, cycles=SHORT)
 
     def restored(model: Model) -> Model:
         return Model.restore(model.save(tmp_path / "scene.h5"))

@@ -147,7 +147,7 @@ def test_a_corner_slides_over_such_an_edge_without_a_break_in_force(stress: floa
     either by what they overlap, which changes u by (2 D - z)^2 / 4 D.
     """
     model, heavy = column(stress)
-    speed = 5.0
+    speed = 10.0
     putr(model.h, heavy, g.KXD, direction * speed)
     putr(model.h, heavy, g.KYD, -1e-3)
     dt = float(model.h.cr[g.TDEL])
