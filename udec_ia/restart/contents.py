@@ -49,6 +49,7 @@ class Contents:
 
     def __init__(self, file: h5py.File, size: int) -> None:
         self._root = h5g.open(file.id, b"/")
+        self._groups: dict[str, Any] = {}  # by place, those that were found sound
         self._left = size  # bytes that may yet be read
 
     def has(self, place: str) -> bool:
@@ -116,20 +117,24 @@ class Contents:
 
     def _open(self, place: str) -> Any:
         """The object at `place`, through groups that hold it themselves."""
-        node: Any = self._root
-        for name in place.split("/") if place else ():
-            if not isinstance(node, h5g.GroupID) or _filters(node) or not node.links.exists(name.encode()):
-                raise _damaged(place, "is not there")
-            if node.links.get_info(name.encode()).type != h5l.TYPE_HARD:
-                raise _damaged(place, "is a link that leads elsewhere")
-            node = h5o.open(node, name.encode())
-        return node
+        if not place:
+            return self._root
+        above, _, last = place.rpartition("/")
+        group, name = self._group(above), last.encode()
+        if not group.links.exists(name):
+            raise _damaged(place, "is not there")
+        if group.links.get_info(name).type != h5l.TYPE_HARD:
+            raise _damaged(place, "is a link that leads elsewhere")
+        return h5o.open(group, name)
 
     def _group(self, place: str) -> Any:
-        node = self._open(place)
-        if not isinstance(node, h5g.GroupID) or _filters(node):
-            raise _damaged(place, "is no group")
-        return node
+        """The group at `place`, judged when it is first asked for."""
+        if place not in self._groups:
+            node = self._open(place)
+            if not isinstance(node, h5g.GroupID) or _filters(node):
+                raise _damaged(place, "is no group")
+            self._groups[place] = node
+        return self._groups[place]
 
     def _dataset(self, place: str, shape: tuple[int, ...] | None) -> Any:
         """The dataset at `place`, if it has the shape, or one dimension if that is None."""

@@ -12,14 +12,17 @@ import io
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
 from pathlib import Path
+from typing import NamedTuple
 
 import h5py
 import numpy as np
 
 from udec_ia.files import put_in_place
 from udec_ia.heap.array import MainArray
+from udec_ia.heap.words import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.run.watch import Series
@@ -30,6 +33,8 @@ from udec_ia.restart.refusal import RefusedError
 from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
 from udec_ia.version import __version__
 
+COMMON = "common"
+LIBRARY = "v108", "v108"  # the oldest and the newest format of HDF5 that a file may have
 HOST_LENGTH = 64
 
 
@@ -74,27 +79,50 @@ def _image(
     unsound: Sequence[str],
 ) -> bytes:
     """The bytes of the whole file: no view of the buffer, which could not be closed before the view is."""
-    table = read_table()
-    buffer = io.BytesIO()
-    with h5py.File(buffer, "w", userblock_size=SIZE, libver=("v108", "v108")) as file:
-        file.attrs["format"] = text("udec_ia restart")
-        file.attrs["format_version"] = np.array(VERSION, "<i4")
-        file.attrs["byte_order"] = text("little-endian")
+    frame = _frame(array.scheme, read_table())
+    buffer = io.BytesIO(frame.image)
+    with h5py.File(buffer, "r+", libver=LIBRARY) as file:
         if unsound:
             file.attrs[MARK] = text(shorten(unsound, MARKED, "\n"))
         _write_heap(file, array)
-        _write_common(file, array, table)
-        _write_layout(file, table, array.scheme.ratio)
+        common = _common(array)
+        file[COMMON].attrs.modify("sha256", text(hashlib.sha256(b"".join(common.values())).hexdigest()))
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
         _write_laws(file, laws)
         if series := of_all(array, series):
             store(file.create_group(RECORDED), series)
-        _write_provenance(file)
         _write_volatile(file)
         file.attrs["complete"] = np.int8(1)
     with buffer.getbuffer() as image, image[SIZE:] as body:
+        for kind, start, end, at in frame.places:
+            image[at : at + end - start] = common[kind][start:end]
         image[:SIZE] = seal(body)
     return buffer.getvalue()
+
+
+class _Frame(NamedTuple):
+    """A file but for what differs from state to state: the numbers of /common are all 0.
+
+    places: for each variable of the common block, its type, where its bytes begin and end among those of its
+    type, and where they stand in the file.
+    """
+
+    image: bytes
+    places: list[tuple[str, int, int, int]]
+
+
+@cache
+def _frame(scheme: Scheme, table: Table) -> _Frame:
+    """The frame of all files with words of `scheme`. HDF5 takes its time for a hundred small things."""
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w", userblock_size=SIZE, libver=LIBRARY) as file:
+        file.attrs["format"] = text("udec_ia restart")
+        file.attrs["format_version"] = np.array(VERSION, "<i4")
+        file.attrs["byte_order"] = text("little-endian")
+        places = _write_common(file, scheme, table)
+        _write_layout(file, table, scheme.ratio)
+        _write_provenance(file)
+    return _Frame(buffer.getvalue(), places)
 
 
 def _write_heap(file: h5py.File, array: MainArray) -> None:
@@ -111,18 +139,27 @@ def _write_heap(file: h5py.File, array: MainArray) -> None:
     heap.attrs["sha256"] = text(hashlib.sha256(words).hexdigest())
 
 
-def _write_common(file: h5py.File, array: MainArray, table: Table) -> None:
-    """/common: one dataset for each variable of the common block."""
-    group = file.create_group("common")
-    parts = dict(zip(COMMON_TYPES, (array.h.ci, array.h.cr, array.h.cd), strict=True))
-    stored = {kind: part.astype(part.dtype.newbyteorder("<"), copy=False) for kind, part in parts.items()}
+def _common(array: MainArray) -> dict[str, bytes]:
+    """The common block, by type."""
+    parts = zip(COMMON_TYPES, (array.h.ci, array.h.cr, array.h.cd), strict=True)
+    return {kind: part.astype(part.dtype.newbyteorder("<"), copy=False).tobytes() for kind, part in parts}
+
+
+def _write_common(file: h5py.File, scheme: Scheme, table: Table) -> list[tuple[str, int, int, int]]:
+    """/common: a dataset of zeros for each variable of the common block. Returns the places of a _Frame."""
+    group = file.create_group(COMMON)
+    types = dict(zip(COMMON_TYPES, (np.dtype(np.int64), scheme.real_type, np.dtype(float)), strict=True))
+    places = []
     for field, place in common_places(table):
-        values = stored[field.type][place]
-        group[field.name] = values if field.count > 1 else values[0]
-        group[field.name].attrs["unit"] = text(field.unit)
-        group[field.name].attrs["text"] = text(field.text)
-    content = b"".join(part.tobytes() for part in stored.values())
-    group.attrs["sha256"] = text(hashlib.sha256(content).hexdigest())
+        kind = types[field.type].newbyteorder("<")
+        shape = (field.count,) if field.count > 1 else ()
+        dataset = group.create_dataset(field.name, data=np.zeros(shape, kind))
+        dataset.attrs["unit"] = text(field.unit)
+        dataset.attrs["text"] = text(field.text)
+        start, end = place.start * kind.itemsize, place.stop * kind.itemsize
+        places.append((field.type, start, end, dataset.id.get_offset()))
+    group.attrs["sha256"] = text(hashlib.sha256().hexdigest())
+    return places
 
 
 def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:
