@@ -12,22 +12,34 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from udec_ia.heap.checked import CHECKED
 from udec_ia.heap.interpreting import mode
 from udec_ia.heap.loading import has_numba_side, load
 from udec_ia.heap.views import Memory
 
 
-def _kinds(*given: Any) -> tuple[Any, ...]:
-    """The types of what is given, as numba names them."""
+_found: dict[Any, int] = {}  # by kernel and kinds of its arguments: numba takes its time to name their types
+
+
+def _kind(given: Any) -> Any:
+    """The same for all that numba has the same type for."""
+    if isinstance(given, tuple):
+        return tuple(_kind(one) for one in given)
+    if isinstance(given, np.ndarray):
+        return given.dtype, given.ndim, given.flags.c_contiguous, given.flags.writeable
+    return type(given)
+
+
+def _address(kernel: Any, *given: Any) -> int:
+    """Where the machine code of `kernel` is for arguments of the types of `given`."""
     load()
     from numba import typeof
 
-    return tuple(typeof(one) for one in given)
-
-
-def _address(made: Any) -> int:
-    """Where the machine code of a compiled kernel is."""
+    kinds = tuple(typeof(one) for one in given)
+    kernel.whole.compile(kinds)
+    made = kernel.whole.overloads[kinds]
     name = made.fndesc.llvm_func_name if CHECKED else made.fndesc.llvm_cfunc_wrapper_name
     return int(made.library.get_pointer_to_function(name))
 
@@ -36,19 +48,15 @@ def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """Where `kernel`, made by jit.apart, is for arguments of these types, compiled if it has not been."""
     if mode.python:
         return kernel
-    kinds = _kinds(h, *others)
-    whole: Any = kernel.whole  # type: ignore[attr-defined]
-    whole.compile(kinds)
-    return _address(whole.overloads[kinds])
+    key = kernel, _kind((h, *others))
+    if key not in _found:
+        _found[key] = _address(kernel, h, *others)
+    return _found[key]
 
 
-def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
-    """The same if it is `wanted`, or compiled in this process; else 0."""
-    if mode.python or wanted:
-        return entry(kernel, h, *others)
-    whole: Any = kernel.whole  # type: ignore[attr-defined]
-    made = whole.overloads.get(_kinds(h, *others))
-    return _address(made) if made else 0
+def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory) -> Any:
+    """The same if it is `wanted`, or has been; else 0."""
+    return entry(kernel, h) if mode.python or wanted or (kernel, _kind((h,))) in _found else 0
 
 
 def call_entry(where: Any, *args: Any) -> bool:

@@ -66,7 +66,9 @@ def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
     own_laws: constitutive numbers that stand for block laws of the user's, which may want other properties.
     """
     h = array.h
-    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB) if h.ci[g.NSOFT] else np.zeros(0, np.int64)
+    if not h.ci[g.NSOFT]:
+        return
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
     soft = (integers(h, blocks, HEAD) != g.MRIG) & ~np.isin(integers(h, blocks, g.KCONS), [*own_laws])
     for m in np.unique(integers(h, blocks[soft], g.KMAT)):
         bulk, shear = h.cr[g.BULK + m - 1], h.cr[g.SHEAR + m - 1]
@@ -111,7 +113,7 @@ def on_joints(array: MainArray) -> Iterator[str]:
     """CYCLE: contacts between materials with other joint properties, where the map decides which hold."""
     h = array.h
     used = np.unique(integers(h, listed(array, "block"), g.KMAT))
-    if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values()):
+    if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values() if len(used) > 1):
         return
     contacts = listed(array, "contact")
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
@@ -130,6 +132,8 @@ def on_loads(array: MainArray, groups: Groups = listed) -> Iterator[str]:
     """CYCLE: loads, all of which act on blocks that are fixed."""
     h = array.h
     bounds = groups(array, "bound")
+    if not len(bounds):
+        return
     loaded = np.any([getr(h, bounds, k) for k in (g.KUFX, g.KUFY)], axis=0)
     blocks = np.unique(integers(h, bounds[loaded], g.KUB))
     if len(blocks) and (integers(h, blocks, g.KBFIX) == g.FIXED).all():
