@@ -19,7 +19,6 @@ from udec_ia.heap.interpreting import mode
 from udec_ia.heap.loading import has_numba_side, load
 from udec_ia.heap.views import Memory
 
-
 _found: dict[Any, int] = {}  # by kernel and kinds of its arguments: numba takes its time to name their types
 
 
