@@ -239,8 +239,9 @@ def outlines(state: State) -> Outlines | None:
 def check_numbers(state: State) -> None:
     """Invariants 7 and 9: reals are finite, and masses and areas not negative."""
     for kind, addresses in state.address.items():
+        finite = _all_finite(state, kind)
         for field in TABLE.group(kind).fields:
-            if not field.real or not len(addresses):
+            if not field.real or (finite and not field.allowed) or not len(addresses):
                 continue
             values = state.read(addresses, field.name)
             bad = ~np.isfinite(values)
@@ -255,6 +256,19 @@ def check_numbers(state: State) -> None:
         for i in np.flatnonzero(~np.isfinite(values)):
             element = f"({i + 1})" if field.count > 1 else ""
             state.report(7, f"{field.name}{element} is {values[i]}")
+
+
+def _all_finite(state: State, kind: str) -> bool:
+    """Whether all reals of the groups of `kind` are: looked at together, as they nearly always are."""
+    reals = [state.offset[field.name] for field in TABLE.group(kind).fields if field.real]
+    addresses = state.address[kind]
+    if not reals:
+        return True
+    within = np.arange(min(reals) - 1, max(reals))
+    parts = (addresses[first : first + TOGETHER] for first in range(0, len(addresses), TOGETHER))
+    return all(
+        np.isfinite(state.h.ra.take(((part - 1) // state.ratio)[:, None] + within)).all() for part in parts
+    )
 
 
 def check_outlines(state: State, o: Outlines) -> None:
