@@ -97,7 +97,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
     assert main([*SWEEP[:-1], "0"]) == 0  # goes on in this process
     printed = capsys.readouterr().out
     assert printed.count("(kept)") == done
-    assert f"{counted(done, 'run')} kept: made of the same" in printed
+    assert f"{counted(done, 'run')} kept, as the input is the same" in printed
     assert whole(runs) == len(os.listdir(runs)) == 6
     reference = run_all(piles(*(0.1, 0.6), cycles=8000), tmp_path / "reference", jobs=0)
     rows = (tmp_path / "pile-sweep" / "pile.csv").read_text().splitlines()

@@ -61,7 +61,7 @@ class Told:
         counts = (f"{sum(one.status == state for one in self.results)} {state}" for state in states)
         found = [f"{len(self.results)} of {self.total} runs: {', '.join(counts)}"]
         if self.kept:
-            found.append(f"{counted(self.kept, 'run')} kept: made of the same")
+            found.append(f"{counted(self.kept, 'run')} kept, as the input is the same")
         return found + [f"{counted(n, 'run')} done again: {why}" for why, n in self.changed.items()]
 
 

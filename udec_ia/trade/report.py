@@ -149,6 +149,6 @@ def half_step(price: Price) -> list[str]:
         differs = off > price.tolerance
         found.append(
             f"{name}: {a:.7g}, with half the step {b:.7g}, off by {off:.1e}"
-            f"{' of it: THE TIME-STEP IS TOO LARGE' if differs else ''}"
+            f"{' of it: THE TIME-STEP IS TOO LARGE, take a smaller FRACTION' if differs else ''}"
         )
     return found

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
 VERBS = ("sweep",)
-TEXT = "run a deck for all combinations of values of its variables; each run has a folder and a table row"
+TEXT = "run a deck for all combinations of values of its variables: a table with a row for each run"
 REPEATED = (
     (
         "--set",

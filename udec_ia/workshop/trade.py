@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from udec_ia.trade.trade import Price
 
 VERBS = ("trade",)
-TEXT = "find the cheapest time-step and word scheme with which the results of a deck keep to a tolerance"
+TEXT = "find the cheapest time-step and word scheme that keep the results of a deck to a tolerance"
 REPEATED = (
     ("--quantity", "QUANTITY", 'quantity that must be right, as in "max contact.KCFN"'),
     ("--constitutive", "LAW", "as for udec run"),

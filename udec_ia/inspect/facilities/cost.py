@@ -69,7 +69,7 @@ def costs(array: MainArray, laws: LawBook | None = None, seconds: float = SECOND
     rows = [_row(one, here, share, each, size) for (one, here), share in zip(used, shares, strict=True)]
     said = [
         f"a cycle takes {each * 1e9:,.0f} ns of processor time: median of {len(times)} runs of {n} cycles",
-        f"to prepare itself and to judge the time-step takes CYCLE {_preparing(whole.array) * 1e3:.3g} ms, "
+        f"CYCLE takes {_preparing(whole.array) * 1e3:.3g} ms to prepare itself and to judge the time-step, "
         "once after each change of the model",
     ]
     return Listing(said, COLUMNS, rows)

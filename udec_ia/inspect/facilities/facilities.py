@@ -134,7 +134,7 @@ def _shared(s: Scene) -> str:
 
 
 def _watched(s: Scene) -> str:
-    return "and of the time-step: a run that gains energy ends" if s.moves else ""
+    return "also of the time-step; a run that gains energy ends" if s.moves else ""
 
 
 MAP = ("block", "corner", "contact", "domain", "jointext")
