@@ -27,6 +27,7 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
@@ -310,7 +311,9 @@ class Undo:
         before.put_back(model)
         if changed and not self._repeat(model, before):
             self._put_words(before.h)
-            model.tell(f"the last {len(self.since)} commands are lost: they could not be obeyed once more")
+            model.tell(
+                f"lost: the last {counted(len(self.since), 'command')}, which could not be obeyed once more"
+            )
             self.array = None
 
     def _repeat(self, model: Undoable, before: Before) -> bool:

@@ -140,7 +140,7 @@ def test_how_groups_came_to_be(debugger: Debugger) -> None:
             event = max(k for k in range(1, len(there)) if there[k] and not there[k - 1])
             lines = list(born(timeline, timeline.now, iad))
             stretch, cycle = timeline.place(event)
-            assert lines[0].startswith(f"{kind}@{iad} comes to be after")
+            assert lines[0].startswith(f"{kind}@{iad} is made after")
             assert (f"cycle {cycle} of" in lines[0]) == stretch.runs
             assert stretch.text in lines[0]
             if stretch.runs:
@@ -176,7 +176,7 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
         ("block@1", "give KIND@ADDRESS.FIELD"),
         ("0", "addresses 1 to"),
         ("99999999", "addresses 1 to"),
-        ("FRAC(2)", "1 elements"),
+        ("FRAC(2)", "1 element"),
         ("", "give KIND"),
     ],
 )

@@ -55,7 +55,7 @@ def test_stops_at_what_was_asked_for(tmp_path: Path) -> None:
     back = talk(tmp_path, "goto 61", "goto line 17", "break broken", *["rc"] * (len(forward) + 2))
     assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", back) == forward[::-1]
     assert re.search(r"broken: contact@.*\nafter line 13: DELETE", back)
-    assert "this has not happened before" in back
+    assert "no break or watch was hit before" in back
 
 
 def test_watching_a_word(tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ def test_a_run_that_can_write_no_file_ends_with_its_summary(tmp_path: Path) -> N
     assert str(folder) in caught.value.message
     assert out.getvalue().count("could not be saved") == 1
     assert "not all pictures were written" not in out.getvalue()
-    assert out.getvalue().count("1 blocks, 0 contacts, largest normal force 0 N/m; no file written") == 1
+    assert out.getvalue().count("1 block, 0 contacts, largest normal force 0 N/m; no file written") == 1
 
 
 def test_a_damaged_main_array_is_saved_by_force() -> None:

@@ -22,7 +22,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.restart import load, load_to_change, look_into, save
 
 LAWS = ["mohr-coulomb", "joint-dilation"]
-MOVED = "addresses are others from here on"
+MOVED = "addresses differ from here on"
 
 
 @pytest.fixture(scope="module", name="source")

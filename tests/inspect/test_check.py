@@ -52,10 +52,10 @@ def test_sound_maps_have_no_violations(name: str) -> None:
     ("name", "value", "said"),
     [
         ("JPHASE", 9, "JPHASE is 9, not 0 to 4"),
-        ("NSPOIL", 1461, "NSPOIL is 1461, which is no number of an error"),
-        ("MTOP", 5, "MFREE and MTOP are not of"),
-        ("DTOL", 0.7, "tolerances are not those of the rounding length, 0.7"),
-        ("CTOL", 0.0, "tolerances are not those of the rounding length"),
+        ("NSPOIL", 1461, "NSPOIL is 1461, which is not the number of an error"),
+        ("MTOP", 5, "MFREE and MTOP do not fit an array of"),
+        ("DTOL", 0.7, "tolerances do not follow from the rounding length, 0.7"),
+        ("CTOL", 0.0, "tolerances do not follow from the rounding length"),
     ],
 )
 def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float, said: str) -> None:
@@ -80,7 +80,7 @@ def test_a_violation_reads_as_a_sentence() -> None:
     array = two_blocks()
     array.h.ci[g.NBLK] = 3
     (violation,) = check(array)
-    assert violation == Violation(5, "NBLK, the number of blocks, is 3, but there are 2")
+    assert violation == Violation(5, "NBLK, the number of blocks, is 3, but counting gives 2")
     assert str(violation) == f"invariant 5: {violation.message}"
 
 

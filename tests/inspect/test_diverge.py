@@ -103,7 +103,7 @@ def test_decks_that_cannot_be_in_step(tmp_path: Path) -> None:
         diverge(one, two, Judge())
     texts = PLAIN, PLAIN.replace("CYCLE 200", "SOLVE 0 LIMIT 131")
     one, two = (of_deck(Model(out=tmp_path), text) for text in texts)
-    with pytest.raises(UdecError, match=r"SOLVEs that end alike"):
+    with pytest.raises(UdecError, match=r"SOLVEs that end after as many cycles"):
         diverge(one, two, Judge())
 
 

@@ -195,7 +195,7 @@ def test_fragmentation() -> None:
     for k in (0, 1, 3):
         lose(h, one + k * size, g.NVCR)
     said = junk(Atlas(h)).said
-    assert said[2] == f"junk: {3 * size} words, 50.0% of those, in 1 sizes"
+    assert said[2] == f"junk: {3 * size} words, 50.0% of those, in 1 size"
     assert said[3] == f"fragmentation: 2 runs, 33.3% of the junk outside the largest, of {2 * size} words"
     assert said[4].startswith(f"not linked: {3 * size} words, 50.0% of those")
     assert junk(Atlas(Model().array.h)).said[-1] == "junk: none"

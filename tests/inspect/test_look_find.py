@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from kinds import GROUPS, every_kind
 
 from udec_ia import Model
+from udec_ia.counting import counted
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.look import Atlas, find, find_pointers, find_value
 from udec_ia.inspect.look.atlas import JUNK, NOTHING, TABLE
@@ -110,7 +111,7 @@ def test_what_is_shown_of_what_is_found() -> None:
     [
         ("blok where KX > 1", "did you mean block?", "blok"),
         ("KXD > 1", "say block where KXD ...", "KXD"),
-        ("block wher KX > 1", "after the kind of group comes: where", "wher"),
+        ("block wher KX > 1", "after the kind of group write: where", "wher"),
         ("block where KXDD > 1", "did you mean KXD?", "KXDD"),
         ("block where kxd > 1", "did you mean KXD?", "kxd"),
         ("block where KXP > 1", "a block has no field KXP", "KXP"),
@@ -198,7 +199,7 @@ def test_numbers_by_value(build: str, value: float, tolerance: float) -> None:
     found = find_value(Atlas(m.array.h), value, tolerance, limit=100000)
     in_groups = {(row[0], row[2]) for row in found.rows if not row[1].startswith((JUNK, "common"))}
     assert in_groups == brute(m, value, tolerance)
-    assert found.said[0].startswith(f"{len(found.rows)} numbers are")
+    assert found.said[0].startswith(f"{counted(len(found.rows), 'number')} with the value ")
     in_common = {row[2] for row in found.rows if row[1] == "common block"}
     assert ("NBLK" in in_common) == (value == 7)
     assert ("DTOL" in in_common) == (value == 0.05)
@@ -250,5 +251,5 @@ def test_pointers_by_where_they_lead() -> None:
                         wanted.add((word.first, word.name))
         listing = find_pointers(atlas, address, limit=10**6)
         assert {(row[0], row[2]) for row in listing.rows if row[1] != "common block"} == wanted
-        assert listing.said[0].startswith(f"{len(listing.rows)} pointers lead to {address}, ")
+        assert listing.said[0].startswith(f"{counted(len(listing.rows), 'pointer')} to {address}, ")
     assert NOTHING not in find_pointers(atlas, block).said[0]

@@ -176,7 +176,9 @@ def test_a_graph_is_bounded_and_says_so(scene: Model) -> None:
     all_as_near = near_by_hand(edges, block, furthest)
     assert found.left_out == len(all_as_near) - NODES
     listing = graph(atlas, block, 9)
-    assert listing.said[1].startswith(f"left out: {found.left_out} more groups {furthest} pointers away")
+    assert listing.said[1].startswith(
+        f"left out: {found.left_out} more groups at a distance of {furthest} pointers, "
+    )
     assert listing.said[1] in dot(found)
     assert len(listing.rows) == len(found.edges)
 

@@ -114,7 +114,7 @@ def faults(array: MainArray) -> dict[str, tuple[int, str]]:
         f"MTOP = {len(array.h.ia) - 4}": (28, "MTOP is"),
         f"MFREE = {len(array.h.ia) + 2}": (28, "MFREE is"),
         "MFREE = 0": (28, "MFREE is 0"),
-        "DTOL = 0.049": (28, "tolerances are not those of the rounding length, 0.049"),
+        "DTOL = 0.049": (28, "tolerances do not follow from the rounding length, 0.049"),
         "IBPNT = 0": (28, "and "),
         f"FRAC = 0.1, block@{block}.KXD = 1, FRAC = 0.2": (10, "FRAC is given two values"),
     }

@@ -133,7 +133,7 @@ def test_help_and_end_are_those_of_a_deck(tmp_path: Path) -> None:
     assert shown == f"> HELP\n{m.help()}\n> HELP prop\n{m.help('prop')}\n> START\n"
     m.block(*SQUARE)
     m.plot()
-    assert "1 blocks" in m.end()
+    assert "1 block," in m.end()
     assert (tmp_path / "udec-plot-1.png").exists()
 
 
@@ -226,7 +226,7 @@ def test_an_interpreted_run_does_not_say_that_it_compiles(tmp_path: Path) -> Non
     env = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT), "UDEC_CACHE": str(tmp_path)}
     command, both = [sys.executable, "-u", "-c", code], subprocess.STDOUT
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=both, text=True, env=env, check=True)
-    assert re.fullmatch(r"1 1 cycles .*; no file written; \d+\.\d s\n", done.stdout)
+    assert re.fullmatch(r"1 1 cycle .*; no file written; \d+\.\d s\n", done.stdout)
 
 
 def test_every_scheme_is_a_build() -> None:

@@ -68,7 +68,7 @@ def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
     assert said == []
     m.property(1, density=4000)
     (text,) = said
-    assert text.startswith("masses were made before the first cycle: the 2 blocks of material 1 keep theirs")
+    assert text.startswith("masses were made before the first cycle: 2 blocks of material 1 will keep")
     m.cycle(1)
     assert m.table("block")["KBM"].tolist() == masses
 

@@ -89,7 +89,7 @@ def test_summary_is_one_line() -> None:
     files = [Path("/some/where") / name for name in ("a.h5", "a-plot-1.png", "a-plot-1.svg")]
     line = summary(1300, 2.6, 2, 1, 89443.2, files, 1.23)
     assert line == (
-        "1300 cycles (t = 2.6 s), 2 blocks, 1 contacts, largest normal force 8.944e+04 N/m; "
+        "1300 cycles (t = 2.6 s), 2 blocks, 1 contact, largest normal force 8.944e+04 N/m; "
         "wrote a.h5, a-plot-1.png, a-plot-1.svg; 1.2 s"
     )
     assert "no file written" in summary(0, 0.0, 0, 0, 0.0, [], 0.1)

@@ -104,7 +104,7 @@ def test_a_damaged_state_is_saved_looked_at_mended_and_goes_on(
     said = capsys.readouterr().out.splitlines()
     assert said[0] == f"{path}: {len(found)} violations"
     assert said[1].startswith("saved by force, being unsound: invariant")
-    assert "not judged: what hangs on broken links" in said
+    assert "not judged: what depends on broken links" in said
     assert len(said) == len(found) + 4
     forced = Model.restore(path, force=True, out=out / "forced")
     assert [str(one) for one in forced.check()] == found
@@ -232,7 +232,7 @@ def test_what_is_not_judged_is_said(model: Model, tmp_path: Path, capsys: pytest
     model.array.h.ci[g.NSPOIL], model.array.h.ci[g.MCSPOI] = 15, 12
     path = model.save(tmp_path / "half.h5")
     expected = [
-        "not judged: contacts against outlines, as the state stopped in the midst of a cycle, "
+        "not judged: contacts against outlines, as the state stopped in the middle of a cycle, "
         "before the contact pass (JPHASE 2)",
         "not judged: which domain is the outer one, as error 15 in cycle 12, contact overlap too great, has "
         "ended a run of this state",

@@ -211,7 +211,7 @@ def test_words_by_another_table_are_those_that_a_program_with_it_writes(name: st
     """The other way round: what this program has written, read by the other table."""
     case = CASES[name]
     if name == "reals of a kind":
-        with pytest.raises(TranslationError, match=r"ESTOR is .*, and is real here"):
+        with pytest.raises(TranslationError, match=r"ESTOR is .*, but it is real here"):
             translate(words_of(model.array), parse(case.text), model.array.scheme)
         return
     theirs, state = parse(case.text), words_of(model.array)
@@ -287,7 +287,7 @@ REFUSED: dict[str, tuple[str, dict[str, float], Mapping[str, Mapping[int, int]],
     ),
     "another type": (
         TEXT.replace(line("KX"), line("KX").replace("real", "int ")), {}, {},
-        "KX of block@1 is 3, and is real here",
+        "KX of block@1 is 3, but it is real here",
     ),
 }  # fmt: skip
 
@@ -321,7 +321,8 @@ def test_a_new_field_that_may_not_be_0_is_refused(model: Model) -> None:
     for new, many in (("1..9", 6), ("domain!", 6)):
         theirs = parse(before("KX", f"KNEW int {new} data - ours/2 | new"))
         with pytest.raises(
-            TranslationError, match=f"KNEW of block@1 is 0, being new, but must not be 0, and {many - 1} more"
+            TranslationError,
+            match=f"KNEW of block@1 is 0, as it is new, but must not be 0, and {many - 1} more",
         ):
             translate(words_of(model.array), theirs, model.array.scheme)
     headed = line("KTPN"), "HEAD int - head - ours/2 | MTAB\n" + line("KTPN")
@@ -350,7 +351,7 @@ def test_groups_that_cannot_be_moved_are_refused(where: str, model: Model) -> No
     corner = int(state.common["IBPNT"][0]) + g.KP[ratio] - 1
     what = {
         "group": "word [0-9]+ is in two groups",
-        "pointer": "KP of block@[0-9]+ is 3, and there is no corner",
+        "pointer": "KP of block@[0-9]+ is 3, but there is no corner",
         "lost": "words [0-9]+ to [0-9]+ are in no group",
         "junk": "words [0-9]+ to [0-9]+ are in no group",
     }[where]

@@ -11,6 +11,7 @@ import pytest
 from studies import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
 
 from udec_ia.cli import main
+from udec_ia.counting import counted
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.runs import RESULT, Result
 
@@ -54,7 +55,7 @@ def test_a_run_that_kills_its_process_is_a_result(tmp_path: Path) -> None:
     runs[2] = replace(runs[2], constitutive=(str(tmp_path / "once.py"),))
     results = run_all(runs, tmp_path, jobs=2)
     assert [one.status for one in results] == ["ended", "died", "ended"]
-    assert "for want of memory" in results[1].message
+    assert "memory ran out" in results[1].message
     assert sorted(os.listdir(tmp_path / RUNS)) == [run.name for run in runs]
     assert outcomes(run_all(runs[1:2], tmp_path, jobs=1)) == outcomes(results[1:2])  # kept, as all are
 
@@ -96,7 +97,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
     assert main([*SWEEP[:-1], "0"]) == 0  # goes on in this process
     printed = capsys.readouterr().out
     assert printed.count("(kept)") == done
-    assert f"{done} were there already, made of the same" in printed
+    assert f"{counted(done, 'run')} kept, as the input is the same" in printed
     assert whole(runs) == len(os.listdir(runs)) == 6
     reference = run_all(piles(*(0.1, 0.6), cycles=8000), tmp_path / "reference", jobs=0)
     rows = (tmp_path / "pile-sweep" / "pile.csv").read_text().splitlines()

@@ -146,10 +146,10 @@ def test_the_log_of_the_program_is_that_of_the_run(tmp_path: Path, caplog: pytes
     ("others", "why"),
     [
         ({}, ""),
-        ({"deck": SLIDE + "*\n"}, "another deck"),
-        ({"values": {"F": 0.2}}, "another values"),
-        ({"build": "i32r32", "quantities": ("time",)}, "another build and quantities"),
-        ({"stop": ("time > 1",)}, "another rule to stop"),
+        ({"deck": SLIDE + "*\n"}, "deck changed"),
+        ({"values": {"F": 0.2}}, "values changed"),
+        ({"build": "i32r32", "quantities": ("time",)}, "build and quantities changed"),
+        ({"stop": ("time > 1",)}, "rule to stop changed"),
         ({"limit": 9.0}, ""),
         ({"file": "other.dat"}, ""),
     ],
@@ -175,11 +175,11 @@ def test_laws_restart_files_and_limits_count_too(tmp_path: Path) -> None:
     write(late, tmp_path / "run")
     assert kept(run, tmp_path) == (late, "")
     assert kept(replace(run, limit=4.0), tmp_path) == (late, "")
-    assert kept(replace(run, limit=6.0), tmp_path) == (None, "another limit")
-    assert kept(replace(run, limit=None), tmp_path) == (None, "another limit")
+    assert kept(replace(run, limit=6.0), tmp_path) == (None, "limit changed")
+    assert kept(replace(run, limit=None), tmp_path) == (None, "limit changed")
     law.write_text(LAW + "\n")
     state.write_text("two")
-    assert kept(run, tmp_path) == (None, "another restart files and laws")
+    assert kept(run, tmp_path) == (None, "restart files and laws changed")
     (tmp_path / "run" / "result.json").write_text("{")
     assert kept(run, tmp_path) == (None, "the result cannot be read")
 

@@ -61,13 +61,13 @@ def test_a_second_sweep_takes_what_is_there(pile: Path, capsys: pytest.CaptureFi
     assert main([*command, "F=0.1,0.2"]) == 0
     assert main([*command, "F=0.1,0.2,0.3"]) == 0
     printed = capsys.readouterr().out
-    assert "3 of 3 runs: 3 ended\n2 were there already, made of the same\n" in printed
+    assert "3 of 3 runs: 3 ended\n2 runs kept, as the input is the same\n" in printed
     assert "2 of 3: N=10,F=0.2 ended, 10 cycles" in printed
     Path("pile.dat").write_text(PILE + "*\n")
     assert main([*command, "F=0.1,0.2", "--quantity", "time"]) == 0
     printed = capsys.readouterr().out
-    assert "2 that were there are made anew: another deck and quantities\n" in printed
-    assert "(anew: another deck and quantities)" in printed
+    assert "2 runs done again: deck and quantities changed\n" in printed
+    assert "(done again: deck and quantities changed)" in printed
     assert "kept" not in printed
 
 

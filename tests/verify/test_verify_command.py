@@ -132,6 +132,6 @@ def test_short_reals_are_not_tried_on_what_they_lose(
     path.write_text(path.read_text() + "\n\nREALS = 64\n")
     assert main(["verify", str(path), "--build", "i32r32,i32r64", "--blocks", "rigid"]) == 0
     out, err = capsys.readouterr()
-    assert "not run with 32-bit reals, in which what they measure is lost: fine\n" in out
+    assert "not run with 32-bit reals, which are too coarse for what they measure: fine\n" in out
     assert "i32r32" not in err
     assert main(["verify", str(path), "--build", "i32r32"]) == 2

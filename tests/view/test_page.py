@@ -326,7 +326,7 @@ def test_a_damaged_state(browser: Browser, told: Told) -> None:
     browser.wait("document.querySelector('#chosen .fault')")
     faults = browser.js("[...document.querySelectorAll('#chosen .fault')].map((one) => one.textContent)")
     assert any("is no corner" in fault or "KP of block" in fault for fault in faults)
-    assert browser.js("document.querySelector('#about summary').textContent").startswith("The checker says ")
+    assert browser.js("document.querySelector('#about summary').textContent").startswith("The checker finds ")
     assert browser.js("app.map.faults.size") > 1
     assert browser.js("app.picture.faults.length") > 1
     browser.click_on("#about summary")

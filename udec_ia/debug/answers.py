@@ -45,7 +45,7 @@ def where(timeline: Timeline, event: int) -> str:
     if not stretch.runs:
         return f"after {place}"
     if event == stretch.first + 1:
-        return f"before cycle {cycle + 1}, prepared, of {place}"
+        return f"prepared, before cycle {cycle + 1} of {place}"
     return f"after cycle {cycle} of {place}"
 
 
@@ -83,9 +83,9 @@ def born(timeline: Timeline, event: int, address: int) -> Iterator[str]:
     yield f"{what} {where(timeline, now)}"
     before = Atlas(timeline.at(now - 1).h)
     if span.first < before.free:
-        yield f"before, {span.first} was in {called(before, before.span(span.first))}"
+        yield f"before that, word {span.first} was in {called(before, before.span(span.first))}"
     else:
-        yield f"before, {span.first} had not been used"
+        yield f"before that, word {span.first} had not been used"
     if in_cycle(timeline, now):
         trace = Trace(timeline.at(now - 1), timeline.laws)
         for k in trace.writes_to(trace.state.h, "ia", span.first - 1)[-1:]:

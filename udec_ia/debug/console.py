@@ -137,7 +137,7 @@ class Console(Looks):
         """A command that is not known."""
         if line == "EOF":
             raise Leave
-        self.say(f"no command {line.split()[0]}: try help")
+        self.say(f"no command {line.split()[0]}: help lists them")
 
     # ---- running
 
@@ -146,20 +146,22 @@ class Console(Looks):
         return self._forward(None)
 
     def do_step(self, text: str) -> bool:
-        """step [N]: N events on: cycles, or commands of the deck.
+        """step [N]: go on by N events: cycles, or commands of the deck.
 
-        step pass | group | write: on within the next cycle, which has been run before.
+        step pass | group | write: go on within the next cycle, which must have been run before.
         """
         if text in INSIDE:
             if self.debugger.event == self.debugger.timeline.now and self.debugger.trace is None:
-                raise ValueError("the next cycle has not been run: step, and reverse-step into it")
+                raise ValueError(
+                    "the next cycle has not been run yet: step over it, then reverse-step into it"
+                )
             self.debugger.within(text, 1)
             self._here()
             return False
         return self._forward(_count(text))
 
     def do_goto(self, text: str) -> bool:
-        """goto CYCLE | goto line N | goto now: after so many cycles, before a line, or where the run is."""
+        """goto CYCLE | goto line N | goto now: go to after a cycle, before a line, or to where the run is."""
         debugger, timeline = self.debugger, self.debugger.timeline
         if text == "now":
             debugger.show(timeline.now)
@@ -185,7 +187,7 @@ class Console(Looks):
         return False
 
     def do_reverse_step(self, text: str) -> None:
-        """reverse-step [N]: N events back. reverse-step pass | group | write: back within a cycle."""
+        """reverse-step [N]: go back N events. reverse-step pass | group | write: back within a cycle."""
         if text in INSIDE:
             self.debugger.within(text, -1)
         elif self.debugger.trace is not None:
@@ -199,11 +201,11 @@ class Console(Looks):
         debugger = self.debugger
         probes: list[Probe] = [Changed(place(debugger.atlas, text))] if text else [*debugger.probes.values()]
         told = debugger.back_to(probes)
-        self.say(told or "this has not happened before")
+        self.say(told or (f"{text} has not changed before" if text else "no break or watch was hit before"))
         self._here()
 
     def do_resume(self, _: str) -> bool:
-        """resume: let the run go on from here; what came later is forgotten."""
+        """resume: let the run go on from here; everything later is forgotten."""
         if self.debugger.trace is not None:
             raise ValueError("a run can only continue between two cycles: step or reverse-step first")
         raise Resume(self.debugger.event)
@@ -212,7 +214,7 @@ class Console(Looks):
         """patch NAME = VALUE, ...: give words other values, as PATCH does in a deck."""
         debugger = self.debugger
         if debugger.in_past:
-            raise ValueError("the past cannot be changed: goto now first, or resume from here")
+            raise ValueError("the past cannot be changed: goto now, or resume from here")
         if not debugger.timeline.stretches:
             raise ValueError("the deck has not begun: step first")
         try:
@@ -253,38 +255,40 @@ class Console(Looks):
     # ---- stopping
 
     def do_break(self, text: str) -> None:
-        """break made | broken | recoded: stop at that. break KIND where CONDITION: when that is true."""
+        """break made | broken | recoded: stop at such contacts. break KIND where CONDITION: if it holds."""
         if text in ("made", "broken", "recoded"):
             self._add(Contacts(text))
         elif " where " in text:
             self._add(Where(text))
         else:
-            raise ValueError("break what? made, broken, recoded, or as in: contact where KCN > 0.1")
+            raise ValueError(
+                "break made, broken or recoded, or a condition, as in: break contact where KCN > 0.1"
+            )
 
     def do_watch(self, text: str) -> None:
-        """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or when that comes true."""
+        """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or a comparison holds."""
         words = text.removesuffix("if changed").replace(" if ", " ").split()
         if len(words) not in (1, 3) or (len(words) == 3 and words[1] not in COMPARED):
-            raise ValueError("as in: watch block@88.KXD, or: watch block@88.KXD > 0.1")
+            raise ValueError("give a word, or a comparison: watch block@88.KXD, or watch block@88.KXD > 0.1")
         word = place(self.debugger.atlas, words[0])
         self._add(Changed(word, words[1], float(words[2])) if words[1:] else Changed(word))
 
     def do_delete(self, text: str) -> None:
-        """delete [N]: no longer stop for break or watch N, or for any."""
+        """delete [N]: remove break or watch N, or all of them."""
         if text and _count(text) not in self.debugger.probes:
-            raise ValueError(f"there is no {text}")
+            raise ValueError(f"there is no break or watch {text}: info lists them")
         for n in [_count(text)] if text else [*self.debugger.probes]:
             del self.debugger.probes[n]
 
     def do_info(self, _: str) -> None:
-        """info: breaks and watches, and how far one can go back."""
+        """info: breaks and watches, and how far you can go back."""
         for n, probe in self.debugger.probes.items():
             self.say(f"{n}: {probe.text}")
         timeline = self.debugger.timeline
         size = sum(one.size for one in timeline.copies.values())
         self.say(
-            f"{timeline.now} events from {timeline.earliest} on, {len(timeline.copies)} copies of "
-            f"{size / 2**20:.1f} MB"
+            f"the run has come to event {timeline.now}; you can go back to event {timeline.earliest} "
+            f"(copies: {len(timeline.copies)}, {size / 2**20:.1f} MB)"
         )
 
     def _add(self, probe: Probe) -> None:
@@ -293,7 +297,7 @@ class Console(Looks):
     # ---- looking
 
     def do_where(self, _: str) -> None:
-        """where: the place that one looks at."""
+        """where: the place that is shown."""
         self._here()
 
     def do_list(self, _: str) -> None:
@@ -310,11 +314,11 @@ class Console(Looks):
             self.say(f"{word.name} = {shown(word.value(self.debugger.array.h))} {word.unit}".rstrip())
 
     def do_wrote(self, text: str) -> None:
-        """wrote NAME: who has given a word the value that it has: cycle, pass, routine, line."""
+        """wrote NAME: what has given a word its value: cycle, pass, routine, line."""
         self._of_the_past(answers.wrote, text)
 
     def do_why(self, text: str) -> None:
-        """why NAME: what the value of a word was made from."""
+        """why NAME: what the value of a word was computed from."""
         self._of_the_past(answers.why, text)
 
     def do_born(self, text: str) -> None:
@@ -354,7 +358,7 @@ def _count(text: str) -> int:
     if not text.strip():
         return 1
     if not text.strip().isdigit():
-        raise ValueError(f"{text.strip()} is no number")
+        raise ValueError(f"{text.strip()} is not a number: give an integer, 0 or more")
     return int(text)
 
 

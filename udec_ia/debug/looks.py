@@ -60,5 +60,5 @@ class Looks(cmd.Cmd):
         try:
             listing = getattr(look, name)(self.debugger.atlas, *given)
         except TypeError:
-            raise ValueError(f"see help {name}") from None
+            raise ValueError(f"{name} takes other arguments: see help {name}") from None
         self.stdout.write(listing.as_text())

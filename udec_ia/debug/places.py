@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
+from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.layout import offsets as g
@@ -56,7 +57,7 @@ def place(atlas: Atlas, name: str) -> Place:
     if field.upper() not in known:
         raise ValueError(f"{field} is not a field of a {kind}: there are {', '.join(known)}")
     if k >= known[field.upper()].count:
-        raise ValueError(f"{field.upper()} has {known[field.upper()].count} elements")
+        raise ValueError(f"{field.upper()} has {counted(known[field.upper()].count, 'element')}")
     return of_word(atlas, f"{kind}@{address}", atlas.word(atlas.span(int(address)), known[field.upper()], k))
 
 
@@ -97,6 +98,6 @@ def _common(name: str, k: int) -> Place:
             f"{name} is not a variable of the common block; a field needs its group, as in block@88.KXD"
         )
     if k >= field.count:
-        raise ValueError(f"{name} has {field.count} elements")
+        raise ValueError(f"{name} has {counted(field.count, 'element')}")
     text = f"{name}({k + 1})" if field.count > 1 else name
     return Place(text, PARTS[field.type], getattr(g, name) + k, field.unit.strip("-"), field.target)

@@ -165,7 +165,7 @@ class Born:
         before, self._there, self._counts = self._there, self._is_there(array), counts
         if before == self._there:
             return ""
-        return f"{self.kind}@{self.address} {'comes to be' if self._there else 'goes'}"
+        return f"{self.kind}@{self.address} {'is made' if self._there else 'is given back'}"
 
     def _is_there(self, array: MainArray) -> bool:
         try:

@@ -191,7 +191,10 @@ class Timeline:
             return self.copies[event].array()
         if base < 0 or not self._within_run(base, event):
             after = min(one for one in self.copies if one > event)
-            raise Gone(f"event {event} cannot be reached for want of memory; the next that can be is {after}")
+            raise Gone(
+                f"event {event} cannot be reached: its copy was given up to save memory; "
+                f"the next one that can be is {after}"
+            )
         *_, (_, array) = self.through(base, event)
         return array
 
@@ -227,4 +230,4 @@ class Timeline:
         for stretch in self.stretches:
             if stretch.runs and stretch.cycle <= cycle <= stretch.cycle + stretch.done:
                 return stretch.first + 1 + cycle - stretch.cycle
-        raise Gone(f"cycle {cycle} has not been run")
+        raise Gone(f"cycle {cycle} has not been run yet")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import NamedTuple
 
+from udec_ia.counting import counted
 from udec_ia.debug.timeline import Copy, copied
 from udec_ia.diverge.judge import Judge, Off
 from udec_ia.diverge.passes import Passes
@@ -44,8 +45,9 @@ def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
         if now[0].cycle != now[1].cycle:
             raise UdecError(
                 26,
-                f"after {now[0].line} there were {now[0].cycle} cycles, after {now[1].line} {now[1].cycle}",
-                "runs can be compared that have their CYCLEs in common, and SOLVEs that end alike",
+                f"after {now[0].line} the first run has {counted(now[0].cycle, 'cycle')}, "
+                f"after {now[1].line} the second has {now[1].cycle}",
+                "only runs with the same CYCLEs, and SOLVEs that end after as many cycles, can be compared",
             )
         cycle = now[0].cycle
         off = judge.off(now[0].copy.array(), now[1].copy.array())
@@ -75,7 +77,9 @@ def _within(
     off = off or judge.off(states[0].array(), states[1].array())
     if off is None:
         raise UdecError(
-            26, f"the cycles {low + 1} to {now[0].cycle} differ in the run, and not when they are repeated"
+            26,
+            f"the runs differ in the cycles {low + 1} to {now[0].cycle}, but not when these are repeated",
+            "a law of yours may depend on more than what it is given",
         )
     return Divergence(high, in_pass, off, now[0].line, states)
 

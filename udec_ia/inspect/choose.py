@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
@@ -58,7 +59,9 @@ def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any
 def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     values = np.asarray(at, float).ravel().tolist()
     if len(values) % 2:
-        raise UdecError(8, f"{len(values)} coordinates given", "a point is x and y", parameter="at")
+        raise UdecError(
+            8, f"{counted(len(values), 'coordinate')} given", "a point is x and y", parameter="at"
+        )
     for value in values:
         finite(array, at=value)
     return list(zip(values[::2], values[1::2], strict=True))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import update_wrapper
 from typing import Concatenate, ParamSpec, TypeVar
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.change import patch
@@ -50,7 +51,7 @@ class Blocks(State):
     def block(self, *xy: float, material: int = 1, constitutive: int = 1) -> int:
         """BLOCK: create the block with the corners x1, y1, x2, y2, ..., clockwise. Returns its address."""
         if len(xy) % 2:
-            raise UdecError(8, f"{len(xy)} coordinates given", "give x1, y1, x2, y2, ...")
+            raise UdecError(8, f"{counted(len(xy), 'coordinate')} given", "give x1, y1, x2, y2, ...")
         self._ready()
         return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
 
@@ -113,7 +114,7 @@ class Blocks(State):
         lost = conditions - number_of_conditions(self.array.h)
         if lost > 0:
             self.tell(
-                f"{lost} boundary condition{'s' if lost > 1 else ''} went with what "
+                f"{counted(lost, 'boundary condition')} went with what "
                 f"{'they' if lost > 1 else 'it'} acted on: give them again with BOUNDARY"
             )
 
@@ -171,7 +172,7 @@ class Blocks(State):
     def function(self, n: int, *tf: float) -> None:
         """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
         if len(tf) % 2:
-            raise UdecError(8, f"{len(tf)} numbers given", "give t1, f1, t2, f2, ...")
+            raise UdecError(8, f"{counted(len(tf), 'number')} given", "give t1, f1, t2, f2, ...")
         self._ready()
         set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Self
 
+from udec_ia.counting import counted
 from udec_ia.deck.monitor import RESTART_FILE
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.array import MainArray
@@ -80,7 +81,8 @@ class Files(State):
         self.started = True
         ci, name = array.h.ci, array.scheme.name
         self.inform(
-            f"{printable(str(source))}: {ci[NBLK]} blocks, {ci[NCON]} contacts, {ci[MCTOT]} cycles, "
+            f"{printable(str(source))}: {counted(ci[NBLK], 'block')}, {counted(ci[NCON], 'contact')}, "
+            f"{counted(ci[MCTOT], 'cycle')}, "
             f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
         )
         if ci[NSPOIL] in MESSAGES:

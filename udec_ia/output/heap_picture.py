@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.look.atlas import KINDS, NAMES, Atlas
@@ -65,7 +66,7 @@ def figure(array: MainArray, name: str) -> Figure:
     _heap(page, atlas)
     _key(picture, axes, atlas)
     if left_out or not sound:
-        said = f"{left_out} blocks left out" if left_out else "no domains are drawn"
+        said = f"{counted(left_out, 'block')} left out" if left_out else "no domains are drawn"
         axes.set_title(f"damaged: {said}", loc="right", fontsize=8, color=COLOURS["not linked"])
     return picture
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
@@ -137,9 +138,8 @@ class Plots:
         """What is to be said of the last PLOT, which asked for `what`: why something is not to be seen."""
         said = []
         if self.frame is not None and self.frame.written < len(self.frame.states):
-            said.append(
-                f"{len(self.frame.states)} states, which are drawn with later ones or when the frame ends"
-            )
+            many = counted(len(self.frame.states), "state")
+            said.append(f"{many} to be drawn with later ones or when the frame ends")
         if what.displacements and self.frame is not None and len(self.frame.states) == 1:
             said.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
         if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:

@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.inspect.walk import (
@@ -112,8 +113,8 @@ def _state(h: Memory) -> str:
     """One line: where the run stands and how large the map is."""
     virtual = f" ({h.ci[g.NVIRT]} virtual)" if h.ci[g.NVIRT] else ""
     return (
-        f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {h.ci[g.NBLK]} blocks, "
-        f"{h.ci[g.NCON]} contacts{virtual}, {h.ci[g.NDOM]} domains"
+        f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {counted(h.ci[g.NBLK], 'block')}, "
+        f"{counted(h.ci[g.NCON], 'contact')}{virtual}, {counted(h.ci[g.NDOM], 'domain')}"
     )
 
 

@@ -12,6 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from udec_ia.counting import counted
 from udec_ia.heap.compiling import working_time
 from udec_ia.ops.run.solution import Solution
 from udec_ia.printable import printable
@@ -109,6 +110,7 @@ def summary(
     compiled = f", {compiling:.1f} s of it compiling" if compiling >= SHOWN else ""
     solve = "".join(f"; {one.short}" for one in solutions)
     return (
-        f"{cycles} cycles (t = {time:.4g} s), {blocks} blocks, {contacts} contacts, "
-        f"largest normal force {force:.4g} N/m{solve}; {written}; {wall:.1f} s{compiled}"
+        f"{counted(cycles, 'cycle')} (t = {time:.4g} s), {counted(blocks, 'block')}, "
+        f"{counted(contacts, 'contact')}, largest normal force {force:.4g} N/m{solve}; {written}; "
+        f"{wall:.1f} s{compiled}"
     )

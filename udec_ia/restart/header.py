@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from udec_ia.counting import counted
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.array import variable
 from udec_ia.inspect.check.unjudged import unfinished
@@ -42,7 +43,7 @@ def info(path: str | Path) -> str:
         lines += [("words", f"{scheme.name}: {scheme.int_bits}-bit integers, {scheme.real_bits}-bit reals")]
         lines += [("layout", layout), *(_state(file, values) if values else [])]
         lines += [("unsound", f"saved by force: {shorten(mark)}")] if (mark := read_mark(file)) else []
-        lines += [("deck", f"{len(read_deck(file))} command lines")]
+        lines += [("deck", counted(len(read_deck(file)), "command line"))]
         lines += [("law", f"{name} of {origin}, sha256 {d}") for name, (origin, d) in read_laws(file).items()]
         lines += [("heap", f"sha256 {_shown(file.attribute('heap/IA', 'sha256'))}")]
     return "\n".join(f"{name:10}{printable(value, LINE)}" for name, value in lines)
@@ -78,11 +79,15 @@ def _state(file: Contents, values: Mapping[str, Any]) -> list[tuple[str, str]]:
     fixed = file.attribute_numbers("heap/IA", "mtop_fixed", "i1")
     top = f"fixed at {values['MTOP']}" if fixed else "grows as needed"
     error = int(values.get("NSPOIL", 0))
-    blocks = "{NBLK} blocks, {NCON} contacts ({NVIRT} virtual), {NDOM} domains"
+    blocks, contacts, domains = (
+        counted(int(values[name]), what)
+        for name, what in (("NBLK", "block"), ("NCON", "contact"), ("NDOM", "domain"))
+    )
+    cycles = counted(int(values["MCTOT"]), "cycle")
     return [
         ("IA()", f"{values['MFREE'] - 1} words in use; its size {top}"),
-        ("model", blocks.format(**values)),
-        ("run", "{MCTOT} cycles, time {TIME:.6g} s, time-step {TDEL:.6g} s".format(**values)),
+        ("model", f"{blocks}, {contacts} ({values['NVIRT']} virtual), {domains}"),
+        ("run", f"{cycles}, time {values['TIME']:.6g} s, time-step {values['TDEL']:.6g} s"),
         *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
         *(("check", said) for said in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
     ]

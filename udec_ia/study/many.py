@@ -49,7 +49,8 @@ def run_all(
     """
     names = [run.name for run in runs]
     if len({*names}) < len(names):
-        raise ValueError(f"two runs are called {next(name for name in names if names.count(name) > 1)}")
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"two runs are called {twice}: give each a name of its own")
     if jobs is not None and jobs < 0:
         raise ValueError(f"{jobs} jobs: give 1 or more, or 0 for this process")
     here = Path(folder).absolute() / RUNS

@@ -78,7 +78,7 @@ def rehearse(run: Run) -> None:
 
 def bury(run: Run, folder: Path) -> Result:
     """Leave the result of a run in `folder` whose process has died."""
-    message = "the process that ran it has died, perhaps for want of memory"
+    message = "its process died, perhaps because memory ran out"
     names = [one.name for one in read(run.quantities)]
     result = Result(
         run.name,

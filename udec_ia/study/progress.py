@@ -7,6 +7,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from udec_ia.counting import counted
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.study.runs import DIED, ENDED, ERROR, Result
 
@@ -40,7 +41,7 @@ class Told:
         self.kept += why == KEPT
         if why not in ("", KEPT):
             self.changed[why] = self.changed.get(why, 0) + 1
-        line = told(result) + {"": "", KEPT: " (kept)"}.get(why, f" (anew: {why})")
+        line = told(result) + {"": "", KEPT: " (kept)"}.get(why, f" (done again: {why})")
         if self._bar is not None:
             self._bar.update(self._task, advance=1, description=printable(line))
             if result.status in (ERROR, DIED):
@@ -60,8 +61,8 @@ class Told:
         counts = (f"{sum(one.status == state for one in self.results)} {state}" for state in states)
         found = [f"{len(self.results)} of {self.total} runs: {', '.join(counts)}"]
         if self.kept:
-            found.append(f"{self.kept} were there already, made of the same")
-        return found + [f"{n} that were there are made anew: {why}" for why, n in self.changed.items()]
+            found.append(f"{counted(self.kept, 'run')} kept, as the input is the same")
+        return found + [f"{counted(n, 'run')} done again: {why}" for why, n in self.changed.items()]
 
 
 def told(result: Result) -> str:
@@ -69,4 +70,4 @@ def told(result: Result) -> str:
     text = f"{result.name} {result.status}"
     if result.status != ENDED:
         text += f", {result.message}"
-    return printable(f"{text}, {result.cycles} cycles, {result.seconds:.1f} s", MESSAGE)
+    return printable(f"{text}, {counted(result.cycles, 'cycle')}, {result.seconds:.1f} s", MESSAGE)

@@ -140,7 +140,7 @@ def kept(run: Run, folder: Path) -> tuple[Result | None, str]:
     if result.status == LATE and (run.limit is None or run.limit > (result.limit or 0)):
         changed.append("limit")
     if changed:
-        return None, f"another {' and '.join(changed)}"
+        return None, f"{' and '.join(changed)} changed"
     return replace(result, remarks=tuple(result.remarks)), ""
 
 

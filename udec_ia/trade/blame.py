@@ -67,17 +67,19 @@ class Blame:
     def search(self) -> tuple[list[str], list[tuple[object, ...]]]:
         """What is to be said, and a line for each field that is to blame."""
         if not self.quantity or self.whole == 0:
-            return ["no digit is lost: there is nobody to blame"], []
+            return ["no digit is lost, so no field is to blame"], []
         passes = minimal([*PASSES], lambda names: self.explains(_fields(names)))
         others = [name for name in PASSES if name not in passes]
         if self.explains(_fields(others)):
             said = (
                 f"{self.quantity}: noise in {' and '.join(passes)} explains the loss, and so does noise in "
-                "all others: whatever is perturbed, the motion itself takes the digits"
+                "all other passes: the digits are lost in the motion itself, whatever is perturbed"
             )
             return [said], self._rows(passes, _fields(passes))
         fields = minimal([*_fields(passes)], self.explains)
-        said = f"{self.quantity}: noise in these fields alone explains the loss; in other passes it does not"
+        said = (
+            f"{self.quantity}: noise in these fields alone explains the loss; noise in other passes does not"
+        )
         return [said], self._rows(passes, fields)
 
     def _rows(self, passes: Sequence[str], fields: Sequence[str]) -> list[tuple[object, ...]]:

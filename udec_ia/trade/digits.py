@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.deck.variables import Values
 from udec_ia.heap.words import scheme
 from udec_ia.study.many import run_all
@@ -29,7 +30,16 @@ from udec_ia.trade.significant import FEWEST, Digits, digits
 ENSEMBLE = 16
 KICK = 4e-4  # seconds, about
 SHARE = 0.5  # of the digits that longer words have more, which rounding leaves and chaos does not
-COLUMNS = ("quantity", "value", "digits", "at least", "32-bit", "at least 32", "step", "what limits it")
+COLUMNS = (
+    "quantity",
+    "value",
+    "digits",
+    "at least",
+    "32-bit digits",
+    "32-bit at least",
+    "step",
+    "what limits it",
+)
 
 
 @dataclass
@@ -73,7 +83,7 @@ class Ensemble:
 def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
     """What limits a quantity."""
     if wide is None or narrow is None:
-        return "too few runs came to their end"
+        return "too few runs have ended: see log.txt in their folders"
     if wide.digits - narrow.digits < SHARE * (wide.full - narrow.full):
         return "chaos: longer words give no more digits"
     lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
@@ -110,9 +120,11 @@ def measure(
     options.tell(f"{runs} runs of {seconds:.3g} s in each of {' and '.join(shop.builds[:2])}")
     for build in shop.builds[:2]:
         found.results[build] = perturbed(shop, build, cycles, range(1, runs + 1))
-    kicks = f"a kick for {max(1, cycles // KICKS)} cycles"
+    every = max(1, cycles // KICKS)
+    kicks = "noise every " + ("cycle" if every == 1 else f"{every} cycles")
     found.said.append(
-        f"{runs} runs in each word scheme, {cycles} cycles, {kicks}; confidence and probability 95 %"
+        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, {kicks}; "
+        "confidence and probability 95 %"
     )
     return found
 

@@ -47,7 +47,17 @@ def settings(lever: str, own: Setting) -> list[Setting]:
 def refine(shop: Shop, lever: str) -> list[tuple[object, ...]]:
     """A line for each value and quantity. Shop: with its survey."""
     if not applies(shop.deck, lever):
-        return [(lever, math.nan, "", math.nan, math.nan, math.nan, "the deck has no line for it")]
+        return [
+            (
+                lever,
+                math.nan,
+                "",
+                math.nan,
+                math.nan,
+                math.nan,
+                "the deck has no line that this lever changes",
+            )
+        ]
     own = settings(lever, Setting(shop.wide))
     steps = [shop.rehearsal(one, A_FEW) for one in own]
     numbers = [_numbers(shop.survey, found) for found in steps]
@@ -76,6 +86,6 @@ def _rows(
         what = result.message or (setting.types or "as it is" if lever == "types" else "")
         if found and not what:
             order = f"order {found.order:.2f}" if math.isfinite(found.order) else "no order"
-            what = f"limit known to {found.share:.1e}, {order}"
+            what = f"limit known to within {found.share:.1e}, {order}"
         rows.append((lever, factor, name, value, off, result.seconds, what))
     return rows

@@ -21,12 +21,12 @@ def table(price: Price) -> list[tuple[object, ...]]:
 
     def what(row: Row) -> str:
         if row.result is None:
-            return "dropped for the budget"
+            return "not run: beyond the budget"
         if not row.ran:
             return f"{row.result.status}: {row.result.message}"
         found = ["recommended"] if row is price.best else []
         found += ["Pareto set"] if id(row) in front else []
-        found += ["within"] if within(row, price.margins, price.tolerance) else []
+        found += ["within tolerance"] if within(row, price.margins, price.tolerance) else []
         return ", ".join(found)
 
     rows = sorted(price.rows, key=lambda row: (row.cost, row.predicted))
@@ -58,18 +58,18 @@ def _of_limits(price: Price) -> Iterator[str]:
         if one is None:
             yield f"{name}: no value, see log.txt in {price.path(price.levels[-1])}"
         elif name in price.known:
-            yield f"{name}: {one.value:.7g}, known to {one.share:.1e} of it{_order(one)}"
+            yield f"{name}: {one.value:.7g}, known to within {one.share:.1e} of it{_order(one)}"
         else:
             known = [row.result.quantities[name] for row in price.rows if row.result and row.ran]
             yield (
-                f"{name}: no limit at these steps, {one.value:.5g} known to {one.share:.1e} of it only; not "
-                f"compared; {len(known)} runs have {min(known):.5g} to {max(known):.5g}, "
-                f"in the mean {sum(known) / len(known):.5g}"
+                f"{name}: does not converge at these steps, {one.value:.5g} is known to within "
+                f"{one.share:.1e} of it only; not compared; {len(known)} runs give {min(known):.5g} to "
+                f"{max(known):.5g}, the mean is {sum(known) / len(known):.5g}"
             )
 
 
 def _order(one: Limit) -> str:
-    return "" if math.isnan(one.order) else f", and its error goes with the power {one.order:.2f} of the step"
+    return "" if math.isnan(one.order) else f"; its error grows with the power {one.order:.2f} of the step"
 
 
 def _of_times(price: Price) -> Iterator[str]:
@@ -83,7 +83,7 @@ def _of_times(price: Price) -> Iterator[str]:
         if row.result and row.ran and abs(row.result.time - ends[0]) > NEAR * price.tolerance * abs(ends[0])
     ]
     if off:
-        yield f"do not end when the deck does: {', '.join(off)}"
+        yield f"end earlier or later than the deck: {', '.join(off)}"
 
 
 def _of_partings(price: Price) -> Iterator[str]:
@@ -93,27 +93,30 @@ def _of_partings(price: Price) -> Iterator[str]:
         one, two = (row.setting.name for row in price.levels[-2:])
         yield (
             f"{one} and {two} part at {found.time:.4g} s: "
-            f"the block that was at ({found.x:.4g}, {found.y:.4g}) is elsewhere from then on, "
-            f"by {found.apart:.3g} m at the end; the greatest way is {found.moved:.3g} m"
+            f"from then on the block that was at ({found.x:.4g}, {found.y:.4g}) goes another way; "
+            f"at the end the two are {found.apart:.3g} m apart, the greatest way is {found.moved:.3g} m"
         )
 
 
 def _of_best(price: Price) -> list[str]:
     if not price.known:
-        return ["no recommendation: no quantity has a limit that settings could be measured against"]
+        return [
+            "no recommendation: no quantity converges, so there is nothing to measure settings against; "
+            "ask for another --quantity, or see what --digits says"
+        ]
     row = price.best
     if row is None:
         nearest = min(price.rows, key=lambda row: row.error)
         return [
-            f"no setting that was run is within {price.tolerance:g}: the least error is {nearest.error:.2e}, "
-            f"of {nearest.setting.name}; a greater --budget or --tolerance may help"
+            f"no setting that was run keeps to {price.tolerance:g}: the least error is {nearest.error:.2e}, "
+            f"of {nearest.setting.name}; give a greater --budget or --tolerance"
         ]
     own = next(one for one in price.levels if one.setting.step == 1)
     gain = own.cost / row.cost if row.cost else 1.0
     known = max(price.margins[name] for name in row.errors)
     said = [
         f"recommended for {price.tolerance:g}: {row.setting.name}, error {row.error:.2e} "
-        f"(known to {known:.1e}), {row.cost:.3g} s: {gain:.2f} times as fast as the deck as it is"
+        f"(known to within {known:.1e}), {row.cost:.3g} s: {gain:.2f} times as fast as the deck as it is"
     ]
     return said + [f"  {line}" for line in changes(price, row)]
 
@@ -146,6 +149,6 @@ def half_step(price: Price) -> list[str]:
         differs = off > price.tolerance
         found.append(
             f"{name}: {a:.7g}, with half the step {b:.7g}, off by {off:.1e}"
-            f"{' of it: THE TIME-STEP IS TOO LARGE' if differs else ''}"
+            f"{' of it: THE TIME-STEP IS TOO LARGE, take a smaller FRACTION' if differs else ''}"
         )
     return found

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from udec_ia.counting import counted
 from udec_ia.deck.variables import Values
 from udec_ia.study.many import RUNS
 from udec_ia.study.runs import ENDED
@@ -66,10 +67,11 @@ def trade(
     shop = Shop(deck, options, folder)
     shop.rehearse()
     ahead = shop.rehearsed()
-    options.tell(f"the deck as it is will take {ahead:.3g} s by the rehearsal")
+    options.tell(f"the deck as it is will take about {ahead:.3g} s, by a rehearsal of it")
     if ahead > options.budget:
         price.said.append(
-            f"the deck as it is takes {ahead:.3g} s, more than the budget of {options.budget:g} s"
+            f"the deck as it is takes {ahead:.3g} s, more than the budget of {options.budget:g} s: "
+            "give a greater --budget"
         )
         return price
     result = shop.look()
@@ -79,7 +81,8 @@ def trade(
         return price
     shop.left -= result.seconds
     price.fraction = shop.fraction
-    options.tell(f"it has taken {result.seconds:.3g} s, {sum(one.done for one in shop.survey)} cycles")
+    cycles = counted(sum(one.done for one in shop.survey), "cycle")
+    options.tell(f"it has taken {result.seconds:.3g} s for {cycles}")
     if options.half_step:
         price.rows += (rows := [shop.row(Setting(shop.wide, step)) for step in (1.0, 0.5)])
         shop.do(rows)
@@ -152,7 +155,8 @@ def _settings(price: Price, shop: Shop) -> None:
 def _try(price: Price, shop: Shop, settings: Iterable[Setting]) -> None:
     rows = [shop.row(one) for one in settings]
     seconds = shop.price(rows)
-    shop.options.tell(f"{len(rows)} settings, which will take {seconds:.3g} s; {shop.left:.3g} s are left")
+    many = counted(len(rows), "setting")
+    shop.options.tell(f"{many} to run, about {seconds:.3g} s; {shop.left:.3g} s of the budget are left")
     price.rows += rows
     shop.do(rows)
     price.known = judge(price.rows, price.limits, price.tolerance, price.parted is not None)
@@ -161,4 +165,4 @@ def _try(price: Price, shop: Shop, settings: Iterable[Setting]) -> None:
 
 def _dropped(price: Price) -> list[str]:
     names = [row.setting.name for row in price.rows if row.result is None]
-    return [f"dropped for the budget: {', '.join(names)}"] if names else []
+    return [f"not run, as they go beyond the budget: {', '.join(names)}"] if names else []

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from udec_ia.restart.reader import Restored
 
 VERBS = ("convert", "renumber", "patch")
-MOVED = "addresses are others from here on"  # what the deck says of them
+MOVED = "addresses differ from here on"  # what the deck says of them
 SCRIPT = """\
 {imports}
 from udec_ia.restart import load_to_change, save_changed
@@ -62,7 +63,7 @@ def _change(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
     """A command that reads FILE and writes TO."""
     parser = command(commands, verb, text, look, script)
     file(parser)
-    file(parser, "to")
+    parser.add_argument("to", type=Path, metavar="TO", help="the restart file to be written")
     return parser
 
 

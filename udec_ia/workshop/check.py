@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from udec_ia.counting import counted
 from udec_ia.workshop.common import command, file
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def _look(args: argparse.Namespace) -> Listing:
 
     seen = see(args.file)
     found = check(seen.array)
-    many = "1 violation" if len(found) == 1 else f"{len(found)} violations"
+    many = counted(len(found), "violation")
     said = [f"{printable(str(args.file))}: {many if found else 'sound'}"]
     rows: list[tuple[Any, ...]] = [(one.invariant, one.message) for one in found]
     return Listing(said + seen.said + unjudged(seen.array, found), COLUMNS, rows, int(bool(found)))

@@ -29,7 +29,9 @@ def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
     """
     parser: argparse.ArgumentParser = commands.add_parser(verb, help=text, description=text)
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--python", action="store_true", help="print the Python for it, and do nothing else")
+    parser.add_argument(
+        "--python", action="store_true", help="print how to do the same in Python, and do nothing else"
+    )
     parser.set_defaults(action=partial(_obey, verb, look, script))
     return parser
 

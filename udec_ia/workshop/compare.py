@@ -25,7 +25,10 @@ def add_commands(commands: Any) -> None:
     file(parser, "other")
     parser.add_argument("--raw", action="store_true", help="compare words by address")
     parser.add_argument(
-        "--only", nargs="+", metavar="KIND.FIELD", help="compare these: contact, contact.KCFN, common.FRAC"
+        "--only",
+        nargs="+",
+        metavar="KIND.FIELD",
+        help="compare only these: contact, contact.KCFN, common.FRAC",
     )
     parser.add_argument(
         "--tolerance",
@@ -46,7 +49,7 @@ def add_commands(commands: Any) -> None:
 def _given(args: argparse.Namespace) -> dict[str, Any]:
     """What the function of the library is given beside the states."""
     if args.raw and (args.only or args.tolerance):
-        raise ValueError("--raw compares all words, bit by bit: it goes without --only and --tolerance")
+        raise ValueError("--raw compares all words, bit by bit: give it without --only and --tolerance")
     named = {
         name: vars(args)[name] for name in ("only", "tolerance", "limit") if vars(args)[name] is not None
     }

@@ -11,6 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.printable import printable
 from udec_ia.workshop.common import command, given, variables
@@ -37,11 +38,14 @@ def add_commands(commands: Any) -> None:
         "--other-constitutive",
         action="append",
         metavar="LAW",
-        help="of the other run, if they differ",
+        help="laws of the second run, if they are others",
     )
     variables(parser)
     parser.add_argument(
-        "--other-set", action="append", metavar="NAME=VALUE", help="of the other run, if they differ"
+        "--other-set",
+        action="append",
+        metavar="NAME=VALUE",
+        help="value for the second run, if it is another",
     )
     parser.add_argument(
         "--cycles", type=int, metavar="N", help="continue from two restart files for this many cycles"
@@ -50,10 +54,14 @@ def add_commands(commands: Any) -> None:
         "--tolerance",
         type=float,
         metavar="SHARE",
-        help="share of the greatest number of a unit that does not count",
+        help="ignore differences up to this share of the greatest number of the same unit",
     )
     parser.add_argument(
-        "--keep", nargs=2, type=Path, metavar=("A.h5", "B.h5"), help="files for both states after that cycle"
+        "--keep",
+        nargs=2,
+        type=Path,
+        metavar=("A.h5", "B.h5"),
+        help="files for the two states after that cycle",
     )
 
 
@@ -64,7 +72,9 @@ def _builds(args: argparse.Namespace) -> list[str]:
     if args.cycles is not None and (
         args.builds or args.other is None or args.cycles < 0 or args.set or args.other_set
     ):
-        raise ValueError("--cycles N goes with two restart files, each of which has its word scheme")
+        raise ValueError(
+            "--cycles N, of 0 or more, takes two restart files and no --builds or --set: the files have these"
+        )
     others = args.builds or args.other_constitutive or args.other_set
     if args.cycles is None and args.other is None and not others:
         raise ValueError(
@@ -72,7 +82,7 @@ def _builds(args: argparse.Namespace) -> list[str]:
         )
     builds = args.builds.split(",") if args.builds else [DEFAULT_SCHEME] * 2
     if len(builds) != 2 or not {*builds} <= {*ALL_SCHEMES}:
-        raise ValueError(f"--builds {args.builds}: give two of {', '.join(ALL_SCHEMES)}, as i32r64,i32r32")
+        raise ValueError(f"--builds {args.builds}: give two of {', '.join(ALL_SCHEMES)}, as in i32r64,i32r32")
     if args.tolerance is not None and not args.tolerance >= 0:
         raise ValueError(f"--tolerance {args.tolerance}: give a share, 0 or more")
     return builds
@@ -126,14 +136,16 @@ def _diverge(args: argparse.Namespace) -> Listing:
         except UdecError as error:
             raise ValueError(str(error)) from error
         if isinstance(found, int):
-            return Listing([f"no difference in {found} cycles"])
+            return Listing([f"no difference in {counted(found, 'cycle')}"])
         return Listing(_said(found, _keep(args, runs, found)), COLUMNS, [tuple(found.off)], 1)
 
 
 def _said(found: Divergence, kept: list[Path]) -> list[str]:
     from udec_ia.printable import printable
 
-    when = f"in cycle {found.cycle}" if found.in_pass else f"after {found.cycle} cycles, by commands"
+    when = (
+        f"in cycle {found.cycle}" if found.in_pass else f"after {counted(found.cycle, 'cycle')}, by commands"
+    )
     where = f", after the pass {found.in_pass}" if found.in_pass else ""
     line = f" of {printable(found.line)}" if found.line else ""
     names = " and ".join(printable(str(path)) for path in kept)

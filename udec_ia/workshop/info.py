@@ -35,7 +35,7 @@ def add_commands(commands: Any) -> None:
     parser = command(commands, "info", text, _look, _script)
     file(parser)
     parser.add_argument("--cost", action="store_true", help="measure what each facility costs, on a copy")
-    parser.add_argument("--budget", metavar="TIME", help="time for measuring, as in 60s or 5m (20s)")
+    parser.add_argument("--budget", metavar="TIME", help="time for measuring, as in 60s or 5m (default: 20s)")
     parser.add_argument(
         "--constitutive", action="append", metavar="LAW", help="laws that the state was calculated with"
     )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
 OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
-LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "rows to show"}
+LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows at most"}
 
 
 class Call(NamedTuple):
@@ -94,12 +94,16 @@ def _add_dump(commands: Any) -> None:
         "words",
         nargs="?",
         metavar="WORDS",
-        help="412, 412-500 (to 500), 412/20 (20 words) or common; all if left off",
+        help="412, 412-500 (to 500), 412/20 (20 words) or common (default: all)",
     )
     form = dump.add_mutually_exclusive_group()
     form.add_argument("--raw", action="store_true", help="as DUMP of 1980 does: several words to a line")
     form.add_argument(
-        "--radix", type=int, choices=(8, 10, 16), default=10, help="of the words as they are (default: 10)"
+        "--radix",
+        type=int,
+        choices=(8, 10, 16),
+        default=10,
+        help="base in which words are shown (default: 10)",
     )
 
 
@@ -110,9 +114,12 @@ def _add_find(commands: Any) -> None:
     wanted = find.add_mutually_exclusive_group(required=True)
     wanted.add_argument("condition", nargs="?", help="such as 'block where KXD > 0.1 and KMAT == 2'")
     wanted.add_argument("--value", type=float, metavar="X", help="find all numbers that are X")
-    wanted.add_argument("--points-to", type=int, metavar="ADDRESS", help="find all pointers that lead there")
+    wanted.add_argument("--points-to", type=int, metavar="ADDRESS", help="find all pointers to this address")
     find.add_argument(
-        "--tolerance", type=float, metavar="SHARE", help="of X, that numbers may differ by (1e-6)"
+        "--tolerance",
+        type=float,
+        metavar="SHARE",
+        help="share of X by which numbers may differ (default: 1e-6)",
     )
     find.add_argument("--limit", **LIMIT)
 

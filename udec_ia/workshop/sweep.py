@@ -7,13 +7,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from udec_ia.counting import counted
 from udec_ia.workshop.common import command, given, seconds, word_scheme
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
 VERBS = ("sweep",)
-TEXT = "run a deck for all combinations of values of its variables: a folder and a line of a table each"
+TEXT = "run a deck for all combinations of values of its variables: a table with a row for each run"
 REPEATED = (
     (
         "--set",
@@ -33,12 +34,14 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands with variables ($F)")
     for option, metavar, text in REPEATED:
         parser.add_argument(option, action="append", default=[], metavar=metavar, help=f"{text}; repeatable")
-    parser.add_argument("--every", type=int, metavar="N", help="cycles between two looks at the rules (100)")
+    parser.add_argument(
+        "--every", type=int, metavar="N", help="cycles from one check of the rules to the next (default: 100)"
+    )
     parser.add_argument(
         "--limit", metavar="TIME", help="processor time after which a run is ended: 60s, 5m, 1h"
     )
     word_scheme(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-sweep)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for all files (default: NAME-sweep)")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
     parser.add_argument("--dask", default="", metavar="ADDRESS", help="run on the workers of this scheduler")
 
@@ -53,7 +56,7 @@ def _sweep(args: argparse.Namespace) -> Listing:
         raise ValueError("give at least one variable its values: --set F=0.3:0.9:7")
     stream = sys.stderr if args.json else sys.stdout
     counts = [f"{len(grid({name: text}))} of {name}" for name, text in values.items()]
-    print(f"{len(grid(values))} runs: {', '.join(counts)}", file=stream, flush=True)
+    print(f"{counted(len(grid(values)), 'run')}: {', '.join(counts)}", file=stream, flush=True)
     found = sweep(args.deck, values, stream=stream, **options)
     columns = [
         name for name in found.table.columns if name in values or name in SHOWN or name in _asked(found)

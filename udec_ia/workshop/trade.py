@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from udec_ia.trade.trade import Price
 
 VERBS = ("trade",)
-TEXT = "find the cheapest time-step and word scheme for a deck that keep to a tolerance"
+TEXT = "find the cheapest time-step and word scheme that keep the results of a deck to a tolerance"
 REPEATED = (
-    ("--quantity", "QUANTITY", 'what must be right, as in "max contact.KCFN"'),
+    ("--quantity", "QUANTITY", 'quantity that must be right, as in "max contact.KCFN"'),
     ("--constitutive", "LAW", "as for udec run"),
 )
 
@@ -29,26 +29,36 @@ def add_commands(commands: Any) -> None:
     variables(parser)
     for name, form, text in REPEATED:
         parser.add_argument(name, action="append", default=[], metavar=form, help=f"{text}; repeatable")
-    parser.add_argument("--tolerance", type=float, metavar="SHARE", help="greatest error (default: 1e-3)")
     parser.add_argument(
-        "--budget", default="5m", metavar="TIME", help="time it all may take: 60s, 5m, 1h (5m)"
+        "--tolerance", type=float, metavar="SHARE", help="greatest relative error (default: 1e-3)"
+    )
+    parser.add_argument(
+        "--budget", default="5m", metavar="TIME", help="time for all runs: 60s, 5m, 1h (default: 5m)"
     )
     word_scheme(parser)
-    parser.add_argument("--builds", metavar="A,B", help="word schemes to try (default: with half the reals)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of it all (default: NAME-trade)")
+    parser.add_argument(
+        "--builds", metavar="A,B", help="word schemes to try (default: the one with 32-bit reals)"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for all files (default: NAME-trade)")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--half-step", action="store_true", help="only compare with half the step (report 4.6)")
-    what.add_argument("--digits", action="store_true", help="how many digits the deck determines at all")
     what.add_argument(
-        "--blame", action="store_true", help="the same, and which fields the others are lost in"
+        "--half-step", action="store_true", help="only compare the deck with half its time-step (report 4.6)"
+    )
+    what.add_argument(
+        "--digits", action="store_true", help="show how many digits of each quantity the deck determines"
+    )
+    what.add_argument(
+        "--blame", action="store_true", help="the same, and the fields in which the other digits are lost"
     )
     what.add_argument(
         "--levers",
         metavar="A,B",
-        help="levers of the model and their refinement: round,zones,stiffness,types",
+        help="vary and refine the model instead: round,zones,stiffness,types",
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="perturbed runs of --digits (default: 16)")
+    parser.add_argument(
+        "--runs", type=int, metavar="N", help="perturbed runs for --digits and --blame (default: 16)"
+    )
 
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
@@ -103,7 +113,7 @@ def _levers(args: argparse.Namespace) -> Listing:
     levers = [one.strip() for one in args.levers.split(",")]
     unknown = [one for one in levers if one not in model.LEVERS]
     if unknown:
-        raise ValueError(f"--levers {unknown[0]}: there are {', '.join(model.LEVERS)}")
+        raise ValueError(f"--levers {unknown[0]}: choose from {', '.join(model.LEVERS)}")
     deck = Deck(_text(args), args.deck.name, given(args.set), args.deck.parent)
     shop = Shop(deck, _options(args), _folder(args))
     result = shop.look()

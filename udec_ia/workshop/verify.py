@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from udec_ia.counting import counted
 from udec_ia.workshop.common import command
 
 if TYPE_CHECKING:
@@ -28,14 +29,14 @@ def add_commands(commands: Any) -> None:
         "names",
         nargs="*",
         metavar="NAME",
-        help="a problem, or a Python file with one; left off, all problems",
+        help="a problem, or a Python file with one (default: all problems)",
     )
     parser.add_argument("--build", metavar="A,B", help="word schemes (default: i32r64)")
     parser.add_argument("--blocks", metavar="A,B", help="types of blocks (default: rigid,sdef,fdef)")
     parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="write verification.md there, and images/verify"
+        "--out", type=Path, metavar="FOLDER", help="write verification.md and images/verify into this folder"
     )
-    parser.add_argument("--list", action="store_true", help="name the problems, and run none")
+    parser.add_argument("--list", action="store_true", help="list the problems without running them")
 
 
 def _problems(args: argparse.Namespace) -> list[Problem]:
@@ -78,13 +79,18 @@ def _verify(args: argparse.Namespace) -> Listing:
         print(result.said(), file=sys.stderr, flush=True)
         results.append(result)
     if not results:
-        raise ValueError(f"none of these problems makes sense for {', '.join(blocks)} in {', '.join(builds)}")
+        raise ValueError(
+            f"none of these problems makes sense for {', '.join(blocks)} in {', '.join(builds)}: "
+            "choose other --blocks or --build, as --list shows"
+        )
     wrong = sum(not one.holds for one in results)
-    many = "1 case" if len(results) == 1 else f"{len(results)} cases"
+    many = counted(len(results), "case")
     said = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
     short = [one.name for one in problems if any(scheme(build).real_bits < one.reals for build in builds)]
     if short:
-        said.append(f"not run with 32-bit reals, in which what they measure is lost: {', '.join(short)}")
+        said.append(
+            f"not run with 32-bit reals, which are too coarse for what they measure: {', '.join(short)}"
+        )
     if args.out is not None:
         said.append(f"written: {write(results, args.out, _command(args))}")
     return Listing(said, COLUMNS, list((rows if args.json else brief)(results)), int(wrong > 0))

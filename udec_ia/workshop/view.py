@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
 
 VERBS = ("view",)
-TEXT = "write a page that shows IA() beside the blocks, of one state or of several, for a browser"
+TEXT = "write a page for a browser that shows IA() beside the blocks, for one state or several"
 
 
 def add_commands(commands: Any) -> None:

@@ -38,7 +38,7 @@ def convert(array: MainArray, to: Scheme) -> Converted:
     made = rewrite(array, to)
     before, after = (int(one.h.ci[g.MFREE]) - 1 for one in (array, made.array))
     junk = junk_words(array)
-    said = [f"{array.scheme.name} to {to.name}: {before} words with {junk} of junk are {after} words now"]
+    said = [f"{array.scheme.name} to {to.name}: {before} words, {junk} of them junk, are now {after} words"]
     if to.real_bits == array.scheme.real_bits:
         return Converted(made.array, said, [])
     narrower = to.real_bits < array.scheme.real_bits
@@ -60,6 +60,6 @@ def _rounding(made: Fit) -> str:
     if not made.rounded:
         return f"none of {made.reals} reals has lost a digit"
     worst = f"the largest relative change is {made.change:.2g}, in {made.where}" if made.where else ""
-    gone = f"too small, and 0 now: {made.vanished}" if made.vanished else ""
+    gone = f"too small, now 0: {made.vanished}" if made.vanished else ""
     lost = f"{made.rounded} of {made.reals} reals have lost digits"
     return "; ".join(part for part in (lost, worst, gone) if part)

@@ -31,4 +31,4 @@ def too_coarse(array: MainArray) -> list[Violation]:
     if d >= ROUNDING_DIGITS * digit:
         return []
     what = f"the rounding length is {d:g}, and {array.scheme.real_bits}-bit reals resolve {digit:g} there"
-    return [Violation(7, f"{what}, which asks for {ROUNDING_DIGITS * digit:g}")]
+    return [Violation(7, f"{what}: it must be at least {ROUNDING_DIGITS * digit:g}")]

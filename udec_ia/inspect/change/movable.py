@@ -61,7 +61,7 @@ def _check_words(array: MainArray, found: dict[str, Any]) -> None:
     if len(wrong):
         begin, end = int(begins[wrong[0]]), int(ends[wrong[0]])
         if begin > end:
-            raise Unsound(f"words {end + 1} to {begin - 1} are in no group, so nobody knows what they mean")
+            raise Unsound(f"words {end + 1} to {begin - 1} are in no group, so their meaning is unknown")
         raise Unsound(f"the group that ends at word {end} and the one that begins at {begin} share words")
 
 

@@ -44,7 +44,7 @@ def renumber(array: MainArray) -> Listing:
     changed = sum(int(np.count_nonzero(moved[at] != at)) for at in order.values())
     said = [
         f"{changed} of {sum(map(len, order.values()))} groups have another address; {junk} words were junk",
-        "mean jump in words along the lists, from group to group and from what is looked up to the next:",
+        "mean jump in words along each list, between its groups or between what is looked up for them:",
     ]
     rows = [
         (*place, jumps, round(jump, 1), round(after[place][1], 1), text)

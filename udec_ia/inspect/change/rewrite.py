@@ -82,5 +82,5 @@ def _check_fit(array: MainArray, fit: Fit, to: Scheme) -> None:
         holds = f"{to.int_bits}-bit integers hold {limits.min} to {limits.max}"
     else:
         holds = f"{to.real_bits}-bit reals hold numbers up to {np.finfo(to.real_type).max:.2g}"
-    more = f", the first of {fit.misfits} numbers beyond these words" if fit.misfits > 1 else ""
+    more = f", the first of {fit.misfits} numbers that these words cannot hold" if fit.misfits > 1 else ""
     raise UdecError(28, f"{what} is {value}{more}", f"{holds}: take wider words")

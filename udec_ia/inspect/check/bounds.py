@@ -37,7 +37,7 @@ def _check_places(state: State) -> None:
         has = "has zones" if with_zones[k] else "has none"
         state.report(6, f"bound@{bounds[k]} acts on {what}, but block@{block[k]} {has}")
     for k in np.flatnonzero(point & corner):
-        state.report(6, f"bound@{bounds[k]} acts on a grid-point and on a corner")
+        state.report(6, f"bound@{bounds[k]} acts on a grid-point and on a corner: only one may be named")
     for k in np.flatnonzero(corner & (state.column("bound", "KUFIX") != 0)):
         state.report(6, f"bound@{bounds[k]} gives velocities to a corner")
 
@@ -56,7 +56,8 @@ def _check_edges(state: State) -> None:
     beside = (before[rows[0]] == other) | (before[rows[1]] == corner)
     for k in np.flatnonzero((other != 0) & ((corner == 0) | ~beside)):
         state.report(
-            6, f"KUQ of bound@{bounds[k]} is corner@{other[k]}, no other end of an edge at {corner[k]}"
+            6,
+            f"KUQ of bound@{bounds[k]} is corner@{other[k]}, but no edge leads there from {corner[k]} (KUP)",
         )
     alone = ~np.isin(other * state.free + corner, corner * state.free + other)
     for one, two in (slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1)):
@@ -85,8 +86,8 @@ def _check_held(state: State) -> None:
             target = state.address[kind][row[k]]
             state.report(
                 6,
-                f"bound@{bounds[k]} gives velocities (KUFIX is {given[k]}) that {field} of {kind}@{target}, "
-                f"{state.get(int(target), field)}, does not hold",
+                f"bound@{bounds[k]} gives velocities (KUFIX is {given[k]}), but {field} of {kind}@{target} "
+                f"is {state.get(int(target), field)}, which does not hold them",
             )
 
 
@@ -94,7 +95,7 @@ def _check_signals(state: State) -> None:
     signals, number = state.address["signal"], state.column("signal", "KTNUM")
     first = state.column("signal", "KTP")
     for k in np.flatnonzero((number != 0) != (first != 0)):
-        what = "no points" if number[k] else "points, which a sine has not"
+        what = "no points" if number[k] else "points, which a sine does not have"
         state.report(6, f"KTNUM of signal@{signals[k]} is {number[k]}, but it has {what}")
     order = np.argsort(number, kind="stable")
     for k in np.flatnonzero((number[order[1:]] == number[order[:-1]]) & (number[order[1:]] != 0)):

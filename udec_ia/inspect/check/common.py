@@ -21,9 +21,13 @@ def check_common(state: State) -> None:
     alike = np.allclose(tolerances, cr, rtol=4 * np.finfo(cr.dtype).eps, atol=0, equal_nan=True)
     ended = ci[g.NSPOIL]
     trusted = [
-        (ci[g.MTOP] == size and 1 <= ci[g.MFREE] <= size + 1, 1, f"MFREE and MTOP are not of {size} words"),
-        (ended <= 0 or ended in MESSAGES, 5, f"NSPOIL is {ended}, which is no number of an error"),
-        (0 <= d < np.inf and alike, 5, f"tolerances are not those of the rounding length, {d:g}"),
+        (
+            ci[g.MTOP] == size and 1 <= ci[g.MFREE] <= size + 1,
+            1,
+            f"MFREE and MTOP do not fit an array of {size} words",
+        ),
+        (ended <= 0 or ended in MESSAGES, 5, f"NSPOIL is {ended}, which is not the number of an error"),
+        (0 <= d < np.inf and alike, 5, f"tolerances do not follow from the rounding length, {d:g}"),
     ]
     for true, number, message in trusted:
         if not true:

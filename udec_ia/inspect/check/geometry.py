@@ -283,7 +283,9 @@ def check_outlines(state: State, o: Outlines) -> None:
     from_first = o.p - o.p.take(o.first[o.owner], 0)
     area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
     for i in np.flatnonzero(~(area > 0)):
-        state.report(7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}")
+        state.report(
+            7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}: not positive"
+        )
     rows = state.rows("block", o.block)
     roundings = 2.0 - o.pointed - o.pointed[o.before]
     room, shortest = roundings * o.d, roundings * (o.d - state.tolerance("FTOL") / 2)
@@ -291,7 +293,8 @@ def check_outlines(state: State, o: Outlines) -> None:
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
-            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, less than the {room[i]} of its roundings",
+            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, "
+            f"too short for its roundings, which take {room[i]}",
         )
     _check_circles(state, o)
     centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)

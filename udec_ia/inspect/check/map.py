@@ -14,6 +14,7 @@ from collections import Counter
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.inspect.check.groups import HOSTS, INDEX, KR, TABLE, Numbers, State, corner_before, names
 from udec_ia.layout import offsets as g
 
@@ -41,7 +42,7 @@ def _check_corners(state: State) -> None:
     rings = state.rings
     corners = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(rings.item) else rings.count
     for k in np.flatnonzero(corners < 3):
-        state.report(3, f"block@{rings.block[k]} has {corners[k]} corners")
+        state.report(3, f"block@{rings.block[k]} has {counted(corners[k], 'corner')}")
     index = np.flatnonzero(~rings.contact)
     corner, block = rings.item[index], rings.block[rings.owner[index]]
     host, previous, before = state.read(corner, KNB), state.read(corner, KR), rings.item[corner_before(rings)]
@@ -94,7 +95,7 @@ def _check_contacts(state: State) -> None:
         for k in out[np.isin(block[out], rings.block)]:
             state.report(
                 4,
-                f"contact@{contacts[k]} names block@{block[k]} in {name}, but stands not in the block's list",
+                f"contact@{contacts[k]} names block@{block[k]} in {name}, but is not in the block's list",
             )
     for i in np.flatnonzero(rings.contact & (rings.row < 0)):
         block = rings.block[rings.owner[i]]
@@ -220,7 +221,7 @@ def _check_domains(state: State, with_loop: Numbers, whole: bool) -> None:
         without = np.ones(len(domains) + 1, bool)  # one more, for row -1
         without[state.rows("domain", with_loop)] = False
         for k in np.flatnonzero(without[:-1]):
-            state.report(4, f"no loop of contacts is that of domain@{domains[k]}")
+            state.report(4, f"no loop of contacts belongs to domain@{domains[k]}")
 
 
 def _check_counts(state: State) -> None:
@@ -229,14 +230,16 @@ def _check_counts(state: State) -> None:
     if blocks and blocks - contacts + domains != 2:
         state.report(5, f"{blocks} blocks - {contacts} contacts + {domains} domains is not 2")
     if not blocks and contacts + domains:
-        state.report(5, f"there are no blocks, but {contacts} contacts and {domains} domains")
+        state.report(
+            5, f"there are no blocks, but {counted(contacts, 'contact')} and {counted(domains, 'domain')}"
+        )
     virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == g.VIRTUAL))
     soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != g.MRIG))
     counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
     for name, count in counts.items():
         if state.common(name) != count:
             text = next(field.text for field in TABLE.common if field.name == name)
-            state.report(5, f"{name}, the {text}, is {state.common(name)}, but there are {count}")
+            state.report(5, f"{name}, the {text}, is {state.common(name)}, but counting gives {count}")
 
 
 def _check_connected(state: State) -> None:

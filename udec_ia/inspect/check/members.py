@@ -93,7 +93,7 @@ def _check_counts(state: State) -> None:
             state.report(
                 5,
                 f"{name} of fdef@{state.address['fdef'][k]}, the {text}, is {noted[k]}, "
-                f"but there are {there[rows[k]]}",
+                f"but counting gives {there[rows[k]]}",
             )
 
 
@@ -134,8 +134,8 @@ def _check_cover(state: State) -> None:
         one, two = order[k], order[k + 1]
         state.report(
             6,
-            f"zone@{zones[zone[one]]} and zone@{zones[zone[two]]} lie on the same side of "
-            f"gridpoint@{points[start[one]]} and gridpoint@{points[end[one]]}",
+            f"zone@{zones[zone[one]]} and zone@{zones[zone[two]]} lie on the same side of the "
+            f"line from gridpoint@{points[start[one]]} to gridpoint@{points[end[one]]}",
         )
     outline, corner = _outline(state)
     for k in np.flatnonzero(~np.isin(outline, side)):
@@ -144,8 +144,8 @@ def _check_cover(state: State) -> None:
     for k in np.flatnonzero(~inner & ~np.isin(side, outline)):
         state.report(
             6,
-            f"zone@{zones[zone[k]]} has no neighbour over gridpoint@{points[start[k]]} and "
-            f"gridpoint@{points[end[k]]}",
+            f"zone@{zones[zone[k]]} has no neighbour beyond its side from gridpoint@{points[start[k]]} to "
+            f"gridpoint@{points[end[k]]}, which is no edge of the block",
         )
     alone = np.ones(n, bool)
     alone[start] = False
@@ -189,7 +189,7 @@ def check_zone_areas(state: State) -> None:
     (x1, x2, x3), (y1, y2, y3) = ([values[row] for row in rows] for values in (x, y))
     area = ((x3 - x1) * (y2 - y1) - (x2 - x1) * (y3 - y1)) / 2
     for k in np.flatnonzero(area <= 0):
-        state.report(7, f"the area of zone@{state.address['zone'][k]}, clockwise, is {area[k]}")
+        state.report(7, f"the area of zone@{state.address['zone'][k]}, clockwise, is {area[k]}: not positive")
     row = state.rows("gridpoint", state.column("corner", KGP))
     for corner, point, values in (("KXP", "KXG", x), ("KYP", "KYG", y)):
         here = state.column("corner", corner)

@@ -39,8 +39,8 @@ def check_pieces(state: State, o: Outlines) -> None:
             for i in np.flatnonzero(wrong):
                 state.report(
                     4,
-                    f"block@{o.block[hosts[i]]} hangs in domain@{domain}, but lies on the other side of the "
-                    f"part of its boundary that runs along block@{o.block[hosts[k]]}",
+                    f"block@{o.block[hosts[i]]} hangs in domain@{domain} by virtual contacts, but lies "
+                    f"outside it, beyond the part of its boundary along block@{o.block[hosts[k]]}",
                 )
 
 

@@ -20,7 +20,7 @@ def unjudged(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
     """
     phase, error, cycle = (int(array.h.ci[place]) for place in (g.JPHASE, g.NSPOIL, g.MCSPOI))
     broken = any(one.invariant < BEYOND_LINKS for one in found)
-    return unfinished(phase, error, cycle) + (["not judged: what hangs on broken links"] if broken else [])
+    return unfinished(phase, error, cycle) + (["not judged: what depends on broken links"] if broken else [])
 
 
 def unfinished(phase: int, error: int, cycle: int) -> list[str]:
@@ -31,8 +31,8 @@ def unfinished(phase: int, error: int, cycle: int) -> list[str]:
     said = []
     if phase != g.AT_BLOCKS:
         said.append(
-            "not judged: contacts against outlines, as the state stopped in the midst of a cycle, "
-            f"{PHASES.get(phase, 'before a pass that there is not')} (JPHASE {phase})"
+            "not judged: contacts against outlines, as the state stopped in the middle of a cycle, "
+            f"{PHASES.get(phase, 'before an unknown pass')} (JPHASE {phase})"
         )
     if error in DISORDERED:
         said.append(

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.inspect.compare.tell import CALLED, LIMIT
 from udec_ia.inspect.look.atlas import TABLE, Atlas
@@ -29,12 +30,15 @@ def raw(one: MainArray, two: MainArray, limit: int = LIMIT, called: Sequence[str
     at = np.flatnonzero(one.h.ia[:used] != two.h.ia[:used]) + 1
     rows = list(_common(one, two))
     count = len(at) + len(rows)
-    said = [f"{called[0]} and {called[1]}: {len(at)} of {used} words differ, {len(rows)} variables"]
+    verb = "differs" if len(at) == 1 else "differ"
+    said = [
+        f"{called[0]} and {called[1]}: {len(at)} of {used} words {verb}, {counted(len(rows), 'variable')}"
+    ]
     for atlas, name in zip(atlases, called, strict=True):
         if atlas.free - 1 > used:
-            said.append(f"{name} has {atlas.free - 1 - used} words more in use")
+            said.append(f"{name} has {counted(atlas.free - 1 - used, 'more word')} in use")
     if count > limit:
-        said.append(f"the first {limit} of {count} are shown")
+        said.append(f"the first {limit} of {count}:")
     for address in at[: max(limit - len(rows), 0)].tolist():
         what = [_what(atlas, address) for atlas in atlases]
         told = " / ".join(dict.fromkeys(what))

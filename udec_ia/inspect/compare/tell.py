@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.compare.compare import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.inspect.compare.side import Side
@@ -57,16 +58,19 @@ def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -
     differ = f"{numbers} numbers differ" if numbers > 1 else f"{numbers or 'no'} number differs"
     said = [f"{called[0]} and {called[1]}: {differ} in {_compared(found)}"]
     for k, what in enumerate(("deleted", "made")):
-        counts = [_many(len(alone[k]), kind) for kind, alone in found.alone.items() if len(alone[k])]
+        counts = [counted(len(alone[k]), kind) for kind, alone in found.alone.items() if len(alone[k])]
         if counts:
             said.append(f"{what}: {', '.join(counts)}")
     coded = [one for one in found.fields if one.field.name == "KCCOD"]
-    said += [f"re-coded: {_many(len(one.one), one.kind)}" for one in coded]
+    said += [f"re-coded: {counted(len(one.one), one.kind)}" for one in coded]
     bits = [array.scheme.real_bits for array in arrays]
     if bits[0] != bits[1]:
         said.append(f"reals of {bits[0]} and {bits[1]} bits are compared in {min(bits)}")
     for side, name in zip(found.matching.sides, called, strict=True):
-        said += [f"left out: {words} words of {name} that nothing leads to" for words in _lost(side.atlas)]
+        said += [
+            f"left out: {counted(words, 'word')} of {name} that nothing leads to"
+            for words in _lost(side.atlas)
+        ]
     return said
 
 
@@ -74,12 +78,8 @@ def _compared(found: Compared) -> str:
     """What was looked at."""
     pairs = found.matching.pairs
     matched = sum(len(at) for kind, (at, _) in pairs.items() if kind in found.kinds)
-    groups = [f"{_many(matched, 'group')} of both"] if found.kinds - {COMMON} else []
+    groups = [f"{counted(matched, 'group')} of both"] if found.kinds - {COMMON} else []
     return " and ".join([*groups, *(["the common block"] if COMMON in found.kinds else [])])
-
-
-def _many(count: int, what: str) -> str:
-    return f"{count} {what}" + ("" if count == 1 else "s")
 
 
 def _lost(atlas: Atlas) -> list[int]:

@@ -68,9 +68,9 @@ def costs(array: MainArray, laws: LawBook | None = None, seconds: float = SECOND
     size, each = array.scheme.int_bits // 8, float(np.median(times)) / n
     rows = [_row(one, here, share, each, size) for (one, here), share in zip(used, shares, strict=True)]
     said = [
-        f"a cycle takes {each * 1e9:,.0f} ns of processor time: median of {len(times)} times {n} cycles",
-        f"CYCLE prepares and judges the time-step in {_preparing(whole.array) * 1e3:.3g} ms, "
-        "once after each change",
+        f"a cycle takes {each * 1e9:,.0f} ns of processor time: median of {len(times)} runs of {n} cycles",
+        f"CYCLE takes {_preparing(whole.array) * 1e3:.3g} ms to prepare itself and to judge the time-step, "
+        "once after each change of the model",
     ]
     return Listing(said, COLUMNS, rows)
 
@@ -133,14 +133,14 @@ def _without(one: Facility, whole: Trial, n: int) -> tuple[Trial | None, Share]:
     """A trial without a facility, None if there can be none; and the words that it sets free."""
     before, change = Scene(whole.array), WITHOUT[one.name]
     if isinstance(change, str):
-        return None, Share(words=one.words(before), why_not=f"does not run without: {change}")
+        return None, Share(words=one.words(before), why_not=f"cannot be left out: {change}")
     trial = Trial(whole.array.copy(), whole.laws)
     try:
         change(trial)
         words = before.in_use - Scene(trial.array).in_use
         _piece(trial, n)
     except UdecError as error:
-        return None, Share(words=one.words(before), why_not=f"does not run without: {error.detail}")
+        return None, Share(words=one.words(before), why_not=f"cannot be left out: {error.detail}")
     return trial, Share(words=words)
 
 

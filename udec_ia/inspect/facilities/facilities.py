@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.facilities.scene import Scene
 from udec_ia.inspect.look.listing import Listing
@@ -39,7 +40,7 @@ def facilities(array: MainArray) -> Listing:
 
 
 def _many(n: int, what: str) -> str:
-    return f"{n:,} {what}" + ("" if n == 1 else "s") if n else ""
+    return counted(n, what, ",") if n else ""
 
 
 def _together(*parts: str) -> str:
@@ -59,7 +60,7 @@ def _domain_pass(s: Scene) -> str:
     if not s.moves:
         return ""
     reach = float(s.h.cr[g.ETOL])
-    return f"looks for contacts where blocks have moved by {reach:.3g} m" if reach > 0 else "yet to begin"
+    return f"looks for contacts where blocks have moved by {reach:.3g} m" if reach > 0 else "has not run yet"
 
 
 def _short_edges(s: Scene) -> str:
@@ -119,7 +120,7 @@ def _remembered(s: Scene) -> int:
 
 
 def _scaled(s: Scene) -> str:
-    return "inertial masses, not the weight" if s.h.ci[g.LSCALE] else ""
+    return "of inertial masses, not of the weight" if s.h.ci[g.LSCALE] else ""
 
 
 def _scaling(s: Scene) -> int:
@@ -133,7 +134,7 @@ def _shared(s: Scene) -> str:
 
 
 def _watched(s: Scene) -> str:
-    return "and of the time-step" if s.moves else ""
+    return "also of the time-step; a run that gains energy ends" if s.moves else ""
 
 
 MAP = ("block", "corner", "contact", "domain", "jointext")
@@ -152,7 +153,7 @@ FACILITIES = (
     Facility("DAMPING INTERNAL", _coefficient(g.ALPB, "ALPB", "1/s")),
     Facility("DAMPING to rest", _relaxation, _remembered),
     Facility("FRACTION SCALED", _scaled, _scaling),
-    Facility("both of these", _shared, lambda s: s.words("relax")),
+    Facility("to rest and SCALED", _shared, lambda s: s.words("relax")),
     Facility("ENERGY", lambda s: "an account is kept" if s.h.ci[g.LENER] else ""),
     Facility("HISTORY", lambda s: _many(s.count("history"), "number"), lambda s: s.words("history")),
     Facility("watch of the energy", _watched),

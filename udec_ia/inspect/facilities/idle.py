@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.facilities.facilities import FACILITIES
@@ -61,10 +62,10 @@ def _fixed(s: Scene) -> Found:
     """What is calculated of blocks that are fixed."""
     fixed = s.column("block", "KBFIX") == g.FIXED
     if strained := int((fixed & (s.column("block", "HEAD") != g.MRIG)).sum()):
-        yield "SDEF, FDEF", f"{strained} deformable blocks are fixed, and are not strained"
+        yield "SDEF, FDEF", f"not strained, being fixed: {counted(strained, 'deformable block')}"
     ends = [s.of_blocks(s.column("contact", k), "KBFIX") == g.FIXED for k in ("KB1", "KB2")]
     if between := int((s.touching & ends[0] & ends[1]).sum()):
-        yield "FIX", f"{between} contacts between fixed blocks are calculated, and move nothing"
+        yield "FIX", f"calculated between fixed blocks, where nothing moves: {counted(between, 'contact')}"
 
 
 def _conditions(s: Scene) -> Found:
@@ -72,7 +73,7 @@ def _conditions(s: Scene) -> Found:
     yield from (("BOUNDARY", text) for text in on_loads(s.array, s.found))
     empty = np.all([s.column("bound", k) == 0 for k in LOADS], axis=0) & (s.column("bound", "KUFIX") == 0)
     if many := int(empty.sum()):
-        yield "BOUNDARY", f"{many} conditions have no load and give no velocity"
+        yield "BOUNDARY", f"without a load or a velocity: {counted(many, 'condition')}"
     signals, used = s.atlas.groups["signal"], s.column("bound", "KUS")
     for number in s.column("signal", "KTNUM")[~np.isin(signals, used)].tolist():
         yield f"FUNCTION {number}", "no condition follows it"
@@ -84,9 +85,12 @@ def _histories(s: Scene) -> Found:
     for number, ih in enumerate(chain(s.h, int(s.h.ci[g.IHPNT]), g.KH), 1):
         every, kind = iget(s.h, ih, g.KHN), iget(s.h, ih, g.KHK)
         if kind > 0 and iget(s.h, ih, g.KHG) == 0:
-            yield f"HISTORY {number}", "its group has gone, and nothing is recorded any more"
+            yield f"HISTORY {number}", "its group is no longer there, so only NaN is recorded"
         elif every > cycles > 0:
-            yield f"HISTORY {number}", f"recorded every {every} cycles, and {cycles} have been run"
+            yield (
+                f"HISTORY {number}",
+                f"records every {every} cycles; the run has only {counted(cycles, 'cycle')}",
+            )
 
 
 def _materials(s: Scene) -> Found:
@@ -95,18 +99,18 @@ def _materials(s: Scene) -> Found:
     of_blocks = s.column("block", "KMAT")
     used = np.union1d(of_blocks, s.column("contact", "KCM")[s.touching])
     for m in np.setdiff1d(np.concatenate([*given.values()]), used).astype(int).tolist():
-        yield f"PROPERTY MATERIAL={m}", "no block and no contact is of it"
+        yield f"PROPERTY MATERIAL={m}", "no block and no contact has this material"
     soft = of_blocks[s.column("block", "HEAD") != g.MRIG]
     stiff = np.setdiff1d(np.concatenate([given[name] for name in MODULI]), soft)
     for m in np.intersect1d(stiff, used).astype(int).tolist():
-        yield f"PROPERTY MATERIAL={m}", "BULK and G: no block of it is deformable"
+        yield f"PROPERTY MATERIAL={m}", "BULK and G have no effect: no block of this material is deformable"
     yield from (("PROPERTY", text) for text in on_laws(s.array, s.found))
 
 
 def _pressures(s: Scene) -> Found:
     """Pore pressures, which have words and no code."""
     if many := int((s.column("domain", "KPP") != 0).sum()):
-        yield "pore pressure", f"set in {many} domains, and no routine looks at it"
+        yield "pore pressure", f"set in {counted(many, 'domain')}, and no routine looks at it"
 
 
 RULES = (_motion, _damping, _fixed, _conditions, _histories, _materials, _pressures)

@@ -114,7 +114,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "DAMPING INTERNAL": _put(ALPB=0.0, C1B=1.0, C2B=1.0),
     "DAMPING to rest": _unrelaxed(how=True),
     "FRACTION SCALED": _unrelaxed(scaled=True),
-    "both of these": _unrelaxed(how=True, scaled=True),
+    "to rest and SCALED": _unrelaxed(how=True, scaled=True),
     "ENERGY": _put(LENER=0),
     "HISTORY": _unrecorded,
     "watch of the energy": _unjudged,

@@ -66,10 +66,10 @@ def satisfying(atlas: Atlas, text: str) -> Found:
     Raises Wrong, a ValueError, for what is no condition.
     """
     if len(text) > LONGEST:
-        raise ValueError(f"the condition is longer than {LONGEST} characters")
+        raise ValueError(f"the condition is longer than {LONGEST} characters: shorten it")
     given = FORM.match(text)
     if given is None:
-        raise ValueError(f"give a kind of group and a condition: {' or '.join(KINDS[:3])} where ...")
+        raise ValueError("give a kind of group and a condition, as in: block where KXD > 0.1")
     kind, where, rest = given.groups()
     if kind not in KINDS:
         raise Wrong(text, given.start(1), _no_kind(kind))
@@ -78,7 +78,7 @@ def satisfying(atlas: Atlas, text: str) -> Found:
         return Found(kind, at, {})
     if where != "where":
         raise Wrong(
-            text, given.start(2), f"after the kind of group comes: where, and a condition of {ALLOWED}"
+            text, given.start(2), f"after the kind of group write: where, and a condition of {ALLOWED}"
         )
     judge = _Judge(atlas, kind, text, given.start(3))
     with np.errstate(all="ignore"):
@@ -108,7 +108,7 @@ class _Judge:
         source = plain.lstrip()
         self.start += len(plain) - len(source)
         if not source:
-            raise Wrong(self.text, len(self.text), f"after where comes a condition of {ALLOWED}")
+            raise Wrong(self.text, len(self.text), f"after where write a condition of {ALLOWED}")
         try:
             with warnings.catch_warnings(action="ignore"):
                 return ast.parse(source, mode="eval").body

@@ -155,7 +155,7 @@ def _junk_links(atlas: Atlas, span: Span, radix: int) -> Iterator[Row]:
             value = int(word[0])
             told = text if name == "JSIZE" else f"{text}: {value or 'none'}"
             if name == "JSIZES" and span.first not in heads:
-                told = "of no meaning but in the first group of a size"
+                told = "has a meaning only in the first group of each size"
             yield span.first + offset, digits(word, radix)[0], name, value, "", told
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import variable
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas
 from udec_ia.inspect.look.condition import ADDRESS, satisfying
@@ -59,7 +60,8 @@ def find_value(atlas: Atlas, value: float, tolerance: float = TOLERANCE, limit: 
     at = np.concatenate([np.zeros(0, np.int64), *(hit.at for hit in hits)])
     chosen = np.argsort(at, kind="stable")[: max(limit - len(found), 0)]
     source = np.searchsorted(ends, chosen, "right") - 1
-    said = f"{len(found) + len(at)} numbers are {value:.15g} (tolerance {tolerance:g} of it)"
+    many = counted(len(found) + len(at), "number")
+    said = f"{many} with the value {value:.15g} (tolerance {tolerance:g} of it)"
     rows = found[:limit]
     for k, s, group in zip(chosen.tolist(), source.tolist(), _containing(atlas, at[chosen]), strict=True):
         hit = hits[s]
@@ -73,7 +75,7 @@ def find_pointers(atlas: Atlas, address: int, limit: int = LIMIT) -> Listing:
     found = list(pointing(atlas, address))
     many = sum(len(one.at) for one in found)
     (there,) = leads_to(atlas, "any", np.array([address], np.int64))
-    said = f"{many} pointers lead to {address}, {there}{_first(many, limit)}"
+    said = f"{counted(many, 'pointer')} to {address}, {there}{_first(many, limit)}"
     return Listing([said], (ADDRESS, "group", "field"), pointer_rows(atlas, found, limit))
 
 

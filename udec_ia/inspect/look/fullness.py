@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, Atlas
 from udec_ia.inspect.look.listing import Listing
 
@@ -44,9 +45,10 @@ def _scattered(given: int, used: int, sizes: int, runs: Any) -> Iterator[str]:
         yield "junk: none"
         return
     largest = int(runs.max())
-    yield f"junk: {given} words, {given / used:.1%} of those, in {sizes} sizes"
+    yield f"junk: {given} words, {given / used:.1%} of those, in {counted(sizes, 'size')}"
     share = 1 - largest / given
-    yield f"fragmentation: {len(runs)} runs, {share:.1%} of the junk outside the largest, of {largest} words"
+    runs_of = counted(len(runs), "run")
+    yield f"fragmentation: {runs_of}, {share:.1%} of the junk outside the largest, of {largest} words"
 
 
 def _words(atlas: Atlas, kind: str) -> int:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NOTHING, Atlas
 from udec_ia.inspect.look.fields import COMMON
 from udec_ia.inspect.look.kinds import COLOURS
@@ -140,10 +141,12 @@ def graph(atlas: Atlas, address: int, depth: int = 1) -> Listing:
 def said(found: Graph) -> list[str]:
     """What is in a graph, and what is not."""
     first, groups = next(iter(found.nodes.values())), sum(node.kind in KINDS for node in found.nodes.values())
-    lines = [f"{len(found.edges)} pointers between {groups} groups around {first.name}"]
+    many = counted(len(found.edges), "pointer")
+    lines = [f"{many} between {counted(groups, 'group')} around {first.name}"]
     if found.left_out:
         furthest = max(node.depth for node in found.nodes.values())
-        lines.append(f"left out: {found.left_out} more groups {furthest} pointers away, and what is further")
+        left = counted(found.left_out, "more group")
+        lines.append(f"left out: {left} at a distance of {counted(furthest, 'pointer')}, and all beyond")
     return lines
 
 

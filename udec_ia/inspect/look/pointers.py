@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.array import variable
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.inspect.look.fields import COMMON
@@ -63,5 +64,5 @@ def who(atlas: Atlas, address: int) -> Listing:
     """All words that point to the group at, or around, `address`, by field. IndexError outside IA()."""
     span = atlas.span(address)
     rows = pointer_rows(atlas, pointing(atlas, span.first))
-    said = f"{called(atlas, span)} is pointed to by {len(rows)} words"
+    said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
     return Listing([said], ("address", "group", "field"), rows)

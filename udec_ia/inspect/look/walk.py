@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.inspect.look.atlas import TABLE, Atlas, Word
 from udec_ia.inspect.look.listing import Listing
 from udec_ia.inspect.look.names import leads_to, names
@@ -43,7 +44,7 @@ def walk(
             found.append(iad)
     except Unsound as error:
         broken = f", and then it breaks: {error.detail}"
-    said = f"{way}: {len(found)} groups{broken}"
+    said = f"{way}: {counted(len(found), 'group')}{broken}"
     if limit is not None and limit < len(found):
         said += f"; the first {limit}:"
     at = np.array(found[:limit], np.int64)

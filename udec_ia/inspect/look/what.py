@@ -19,7 +19,7 @@ def what(atlas: Atlas, address: int) -> Listing:
     if span.kind not in KINDS:
         return Listing([f"{address} is word {place} of {size} that are {span.kind}"])
     if word is None:
-        said.append("no field: it fills up the group to whole reals")
+        said.append("no field: it fills the group up to a whole number of reals")
     else:
         told = meaning(atlas, span, word)
         more = f", {told}" if told != word.field.text else ""

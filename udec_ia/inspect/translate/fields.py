@@ -175,7 +175,7 @@ class Translation:
     def _put(self, values: Any, rows: Rows, old: Field, new: Field, held: Any) -> None:
         """Let `values` of the field `new` be what the field `old` of the name has `held`."""
         many = min(old.count, new.count) if is_alike(old, new) else 0
-        self._refuse(held[:, many:] != 0, rows, old.name, held[:, many:], f"and is {in_words(new)} here")
+        self._refuse(held[:, many:] != 0, rows, old.name, held[:, many:], f"but it is {in_words(new)} here")
         held = held[:, :many]
         if new.target is not None:
             held = self._renewed(rows, old, new, held)
@@ -190,14 +190,14 @@ class Translation:
         if len(codes) == 1:
             values[:] = min(codes)
         elif codes or not may_be_0(field):
-            self._refuse(values == 0, rows, field.name, values, "being new, but must not be 0")
+            self._refuse(values == 0, rows, field.name, values, "as it is new, but must not be 0")
 
     def _renewed(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
         """Pointers to where the groups are now."""
         if self.places is None:
             return held
         moved, astray = self.places.followed(held, str(new.target))
-        self._refuse(astray, rows, old.name, held, f"and there is no {new.target}")
+        self._refuse(astray, rows, old.name, held, f"but there is no {new.target} at that address")
         return moved
 
     def _recoded(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import MainArray
@@ -260,7 +261,9 @@ def _check_pairs(zones: list[Triple]) -> None:
     """Error 33 unless zones 1 and 2, 3 and 4 ... have a common side."""
     advice = "with MIXED, zones 1 and 2, 3 and 4 ... have a common side"
     if len(zones) % 2:
-        raise UdecError(33, f"{len(zones)} zones cannot be made into pairs", advice, parameter="mixed")
+        raise UdecError(
+            33, f"{counted(len(zones), 'zone')} cannot be made into pairs", advice, parameter="mixed"
+        )
     for k in range(0, len(zones), 2):
         if len({*zones[k], *zones[k + 1]}) != 4:
             raise UdecError(33, f"zones {k + 1} and {k + 2} are not a pair", advice, parameter="mixed")

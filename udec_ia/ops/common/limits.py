@@ -13,6 +13,7 @@ from typing import Any, SupportsIndex
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.layout.table import read_table
@@ -68,7 +69,7 @@ def reals(n: int, **row: Any) -> Any:
     ((name, value),) = row.items()
     numbers = _items(name, value, f"{n} numbers")
     if len(numbers) != n:
-        detail = f"{name} has {len(numbers)} number{'s' * (len(numbers) != 1)} in {value!r}"
+        detail = f"{name} has {counted(len(numbers), 'number')} in {value!r}"
         raise UdecError(26 if len(numbers) < n else 10, detail, f"{name} takes {n} numbers", parameter=name)
     return tuple(real(**{name: one}) for one in numbers)
 

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.loading import DISABLED
 from udec_ia.kernels.body.law_call import FIRST, LAST
@@ -208,7 +209,7 @@ def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tupl
         try:
             numbers = tuple(map(float, function(*given)))
             if len(numbers) != n:
-                raise ValueError(f"{len(numbers)} numbers returned instead of {n}")
+                raise ValueError(f"{counted(len(numbers), 'number')} returned instead of {n}")
         except Exception:
             if np.isnan(noted[0]):
                 noted[:] = given[:6]

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
@@ -47,8 +48,8 @@ def on_properties(array: MainArray, material: int, values: dict[str, float | Non
         made = (integers(h, blocks, g.KMAT) == material) & (getr(h, blocks, g.KBM) > 0)
         if made.any():
             yield (
-                f"masses were made before the first cycle: the {made.sum()} blocks of material {material} "
-                "keep theirs, and their weight; a new density counts after a new START"
+                f"masses were made before the first cycle: {counted(made.sum(), 'block')} of material "
+                f"{material} will keep mass and weight; a new density counts after a new START"
             )
     for name in TANGENTS:
         value = values.get(name)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 
 MAX, MEAN = "max", "mean"  # what SOLVE judges by: the greatest unbalanced force, or the mean of all
@@ -60,10 +61,11 @@ class Solution(NamedTuple):
     @property
     def _ending(self) -> str:
         ratio = f"{self.ratio:.3g}" if np.isfinite(self.ratio) else "without bound, as no force is carried,"
+        cycles = counted(self.cycles, "cycle")
         if self.reached:
             greatest = f", the largest {self.largest:.3g}" if self.criterion == MEAN else ""
-            return f"{self._name} {self.wanted:g} reached: it is {ratio}{greatest} after {self.cycles} cycles"
-        found = f"{self._name} {self.wanted:g} NOT REACHED: it is {ratio} after {self.cycles} cycles"
+            return f"{self._name} {self.wanted:g} reached: it is {ratio}{greatest} after {cycles}"
+        found = f"{self._name} {self.wanted:g} NOT REACHED: it is {ratio} after {cycles}"
         if self.ratio > self.wanted:
             return f"{found}, most out of balance is {self.worst}{self._in_mean}{self._advice}"
         if self.motion > self.wanted:

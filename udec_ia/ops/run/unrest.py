@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
@@ -156,7 +157,8 @@ class Unrest:
         moved = self._named(h, motion)
         slipping = at_strength(h)
         slip = (
-            f", and {len(slipping)} contacts slip at their strength, as {place_of(h, int(slipping[0]))} does"
+            f", and joints slip at their strength in {counted(len(slipping), 'contact')}, "
+            f"as in {place_of(h, int(slipping[0]))}"
             if len(slipping)
             else ""
         )

@@ -6,7 +6,7 @@ import { former } from "./changes.js";
 import { styleName } from "./drawing.js";
 import { rows } from "./find.js";
 import { exact } from "./numbers.js";
-import { called, meaning, nameOf, named, whoPoints } from "./words.js";
+import { called, counted, meaning, nameOf, named, whoPoints } from "./words.js";
 
 const COMMON = "common"; // what goes for an address of the common block as a whole
 const SHOWN = 500; // rows of a list
@@ -66,7 +66,7 @@ export class Panel {
         "p",
         { className: "muted" },
         "Click on a block, a corner, a contact or a space between blocks, " +
-          "or on a cell of IA(): what is selected shows on both sides, and its words stand here.",
+          "or on a cell of IA(). What is selected is marked on both sides, and its words stand here.",
       ),
     ];
   }
@@ -163,7 +163,7 @@ export class Panel {
     });
     const left = found.length > SHOWN ? ` The first ${SHOWN} of them:` : "";
     return [
-      element("h3", {}, `Who points here: ${found.length} words.${left}`),
+      element("h3", {}, `Who points here: ${counted(found.length, "word")}.${left}`),
       element("table", {}, element("tbody", {}, ...lines)),
     ];
   }
@@ -178,7 +178,7 @@ export class Panel {
     );
     return [
       element("h2", {}, "the common block"),
-      element("p", { className: "muted" }, "of what there is for each material only what is not 0"),
+      element("p", { className: "muted" }, "of the arrays by material, only elements that are not 0"),
       this.fields(words, COMMON, null, words.find(meant)),
     ];
   }
@@ -213,11 +213,11 @@ export class Panel {
       return element("tr", {}, element("td", {}, place), ...numbers);
     });
     const head = ["group", ...list.words.map((word) => word.name)].map((text, k) => this.heading(text, k));
-    const more = all.length > SHOWN ? `, of which the first ${SHOWN} in this order are here` : "";
+    const more = all.length > SHOWN ? `; the first ${SHOWN} in this order:` : "";
     const text = list.words.length ? `${list.words[0].field.text}${unit ? ` (${unit})` : ""}: ` : "";
     this.found.replaceChildren(
       element("h2", {}, cell(list.kind), list.title, shut),
-      element("p", { className: "muted" }, `${text}${all.length} groups${more}`),
+      element("p", { className: "muted" }, `${text}${counted(all.length, "group")}${more}`),
       element(
         "div",
         { className: "rows" },
@@ -285,19 +285,19 @@ export class Panel {
         element(
           "details",
           {},
-          element("summary", {}, `The checker says ${many} things are wrong`),
+          element("summary", {}, `The checker finds ${counted(many, "violation")}`),
           ...faults.map((one) => this.fault(one)),
           ...left,
         ),
       );
     }
     if (deck.length) {
-      const left = deckLeft ? `... ${deckLeft} lines before these are left out\n` : "";
+      const left = deckLeft ? `... ${counted(deckLeft, "line")} before these left out\n` : "";
       parts.push(
         element(
           "details",
           {},
-          element("summary", {}, `The deck that led here: ${deck.length + deckLeft} lines`),
+          element("summary", {}, `The deck that led here: ${counted(deck.length + deckLeft, "line")}`),
           element("pre", {}, left + deck.join("\n")),
         ),
       );

@@ -37,6 +37,11 @@ function junkPlace(heap, span) {
   return `number ${chain.indexOf(heap.first[span]) + 1} of ${chain.length} of ${size} words`;
 }
 
+/** How many there are of something: 1 word, 2 words. */
+export function counted(n, what) {
+  return `${n} ${what}${n === 1 ? "" : "s"}`;
+}
+
 /** What the value of a field says: { text, to, sound }; `to` is an address that can be gone to, or 0. */
 export function meaning(heap, word, kind) {
   const { field } = word;
