@@ -53,9 +53,10 @@ def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     return _found[key]
 
 
-def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory) -> Any:
-    """The same if it is `wanted`, or has been; else 0."""
-    return entry(kernel, h) if mode.python or wanted or (kernel, _kind((h,))) in _found else 0
+def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
+    """The same if it is `wanted`, or has been in this process; else 0."""
+    known = wanted or mode.python or (kernel, _kind((h, *others))) in _found
+    return entry(kernel, h, *others) if known else 0
 
 
 def call_entry(where: Any, *args: Any) -> bool:
