@@ -111,7 +111,8 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                 if callable(handler) and handler is not _arrived:
                     _waiting.former[number] = handler
                     signal.signal(number, _arrived)
-            _waiting.tell_lost, sys.unraisablehook = sys.unraisablehook, _lost
+            if sys.unraisablehook is not _lost:  # as it is after a signal has come within these lines
+                _waiting.tell_lost, sys.unraisablehook = sys.unraisablehook, _lost
         _waiting.passing, _waiting.firm = False, self.firm or _waiting.firm
         _waiting.depth += 1
 

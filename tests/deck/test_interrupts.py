@@ -271,6 +271,26 @@ def test_that_an_interrupt_was_lost_on_the_way_is_not_told(
     assert sys.unraisablehook == told.append
 
 
+def test_a_signal_within_the_first_lines_of_a_hold_leaves_the_next_one_sound(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It leaves what tells of lost exceptions in place, which is not put in place once more then."""
+    told: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+
+    class Loses:
+        def __del__(self) -> None:
+            raise ValueError
+
+    with hold():
+        left = sys.unraisablehook
+    sys.unraisablehook = left
+    with hold():
+        Loses()
+    assert len(told) == 1
+    assert sys.unraisablehook == told.append
+
+
 def test_other_threads_hold_nothing() -> None:
     found = []
 
