@@ -99,7 +99,7 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"errors", "heap", "layout", "ops", "printable", "signals"},
+    "deck": {"counting", "errors", "heap", "layout", "ops", "printable", "signals"},
 }
 
 

@@ -16,6 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
+from udec_ia.counting import counted
 from udec_ia.deck.advice import at
 from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.obeying import Obeying
@@ -108,7 +109,7 @@ class Monitor:
             refused = UdecError(31, f"{error.strerror or error}: {error.filename or name}")
             raise at(refused, call.place_of(refused)) from error
         if name in COUNTED and isinstance(result, int):
-            self._write(counted(call, result, self.model))
+            self._write(outcome(call, result, self.model))
         self._show(result)
 
     def stop(self) -> None:
@@ -282,12 +283,12 @@ def names_a_file(text: str) -> bool:
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def counted(call: Call, n: int, model: Obeying) -> str:
+def outcome(call: Call, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
         reason = model.why_none(name, *call.positional)
         return f" {name.upper()}: {NONE.get(name, 'no block in range')}: {reason}"
-    now = f", {model.h.ci[g.NBLK]} blocks now" if name in ("split", "delete") else ""
+    now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if name in ("split", "delete") else ""
     what, _, done = COUNTED[name].partition(" ")
-    return f" {name.upper()}: {n} {what}{'s' if n > 1 else ''} {done}{now}"
+    return f" {name.upper()}: {counted(n, what)} {done}{now}"

@@ -23,11 +23,12 @@ _found: dict[Any, int] = {}  # by kernel and kinds of its arguments: numba takes
 
 
 def _kind(given: Any) -> Any:
-    """The same for all that numba has the same type for."""
+    """What decides which type numba has for what is `given`: never the same for two types."""
     if isinstance(given, tuple):
         return tuple(_kind(one) for one in given)
     if isinstance(given, np.ndarray):
-        return given.dtype, given.ndim, given.flags.c_contiguous, given.flags.writeable
+        how = given.flags
+        return given.dtype, given.ndim, how.c_contiguous, how.f_contiguous, how.aligned, how.writeable
     return type(given)
 
 
