@@ -233,6 +233,13 @@ def test_scenes_that_the_search_has_found(kind: str, seed: int, number: int) -> 
     assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"
 
 
+def test_an_edge_finds_a_blunt_arc_where_it_would_keep_it() -> None:
+    """The end of a blunt arc between the edge and its rounded end, in the short reals that told them apart."""
+    kind, seed, number = "extreme", 41, 590
+    found = impacts.play(kind, seed, number, "i16r32")
+    assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"
+
+
 def test_an_update_after_a_long_step_comes_to_an_end(tmp_path: Path) -> None:
     """Contacts that what has come into their gaps takes away are not made and given up for ever."""
     (tmp_path / "deck.dat").write_text(GIVEN_UP)

@@ -46,12 +46,13 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
     Past the arc of `iq`, if it has one: by the same number that tells arc_on_arc whether the centre is over
     the arc, so that rounding cannot leave a place between arc and edge that is neither. along: distance
     from `iq` along the edge to what touches it, which counts for a blunt corner, as that may be the end of
-    its arc. It counts at a concave corner, too: from ETOL before it on, as a blunt arc in the notch is deep
-    in the edge at once. Two edges that meet in an edge point share what is within FTOL of their bisector.
+    its arc: as far as a contact that is there stays on the edge, GTOL before its end (reclass.py). It
+    counts at a concave corner, too: from ETOL before it on, as a blunt arc in the notch is deep in the edge
+    at once. Two edges that meet in an edge point share what is within FTOL of their bisector.
     """
     rad = getr(h, iq, g.KRAD)
     if rad > 0 and is_blunt(h, ip):
-        return along - h.cr[g.DTOL]
+        return along - (h.cr[g.DTOL] - h.cr[g.GTOL])
     if rad > 0:
         dx, dy = getr(h, ip, g.KXCP) - getr(h, iq, g.KXCP), getr(h, ip, g.KYCP) - getr(h, iq, g.KYCP)
         ahead, behind = over_ends(h, iq, dx, dy)
