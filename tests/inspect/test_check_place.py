@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from udec_ia import Model
-from udec_ia.inspect.check.geometry import Touches, outlines
 from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.outlines import outlines
 from udec_ia.inspect.check.place import place
+from udec_ia.inspect.check.touches import Touches
 from udec_ia.layout import offsets as g
 
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from udec_ia.heap.accessors import puti
 from udec_ia.inspect.check.complete import _lies_in_third
-from udec_ia.inspect.check.geometry import outlines
 from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.outlines import outlines
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 

@@ -234,7 +234,7 @@ def test_scenes_that_the_search_has_found(kind: str, seed: int, number: int) -> 
 
 
 def test_an_edge_finds_a_blunt_arc_where_it_would_keep_it() -> None:
-    """The end of a blunt arc between the edge and its rounded end, in the short reals that told them apart."""
+    """Where the end of a blunt arc stands between an edge and its rounded end, in short reals."""
     kind, seed, number = "extreme", 41, 590
     found = impacts.play(kind, seed, number, "i16r32")
     assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"

@@ -18,8 +18,9 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, putr
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check.geometry import circles, outlines, reaches, touches
 from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.outlines import circles, outlines, reaches
+from udec_ia.inspect.check.touches import touches
 from udec_ia.layout import offsets as g
 
 

@@ -26,23 +26,18 @@ from udec_ia.inspect.check.bounds import check_bounds, check_times
 from udec_ia.inspect.check.codes import check_codes
 from udec_ia.inspect.check.common import check_common
 from udec_ia.inspect.check.complete import check_complete
-from udec_ia.inspect.check.geometry import (
-    Outlines,
-    check_contacts,
-    check_numbers,
-    check_outlines,
-    outlines,
-    touches,
-)
 from udec_ia.inspect.check.groups import State, Violation
 from udec_ia.inspect.check.history import check_histories
 from udec_ia.inspect.check.map import check_map
 from udec_ia.inspect.check.members import check_members, check_zone_areas
 from udec_ia.inspect.check.memory import check_memory
+from udec_ia.inspect.check.numbers import check_numbers
 from udec_ia.inspect.check.outer import check_outer
+from udec_ia.inspect.check.outlines import Outlines, check_outlines, outlines
 from udec_ia.inspect.check.pieces import check_pieces
 from udec_ia.inspect.check.place import check_places
 from udec_ia.inspect.check.pointers import check_pointers
+from udec_ia.inspect.check.touches import check_contacts, touches
 from udec_ia.layout import offsets as g
 
 

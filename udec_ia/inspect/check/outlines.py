@@ -1,30 +1,23 @@
-"""Invariant 7: the numbers make sense, and contacts are what the rounded outlines say.
+"""Invariant 7: the outlines of the blocks, taken apart once, and what holds for each alone.
 
-Outlines are taken apart once, for all blocks whose lists are sound: clockwise corners p, the edge that
-ends at p with its length z, its unit vector t (clockwise) and outward normal e = (-ty, tx), and the arc of
-p with centre c and radius r. All is computed in 64 bits; what the heap says may differ by as much as its
-own reals can.
+Of all blocks whose lists are sound: clockwise corners p, the edge that ends at p with its length z, its
+unit vector t (clockwise) and outward normal e = (-ty, tx), and the arc of p with centre c and radius r. All
+is computed in 64 bits; what the heap says may differ by as much as its own reals can.
 
 A point that GENERATE has put on an edge has an arc too: a circle of radius zero, however the edge is bent.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from udec_ia.heap.array import variable
-from udec_ia.inspect.check.codes import allowed
-from udec_ia.inspect.check.groups import INDEX, TABLE, Numbers, State
-from udec_ia.inspect.check.map import AHEAD
+from udec_ia.inspect.check.groups import INDEX, Numbers, State
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.kernels.geometry.shape import BULGE, FLAT, KEPT
-from udec_ia.layout import offsets as g
 
-FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
-TOGETHER = 50_000  # contacts that are looked at together
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 
 
@@ -236,41 +229,6 @@ def outlines(state: State) -> Outlines | None:
     )
 
 
-def check_numbers(state: State) -> None:
-    """Invariants 7 and 9: reals are finite, and masses and areas not negative."""
-    for kind, addresses in state.address.items():
-        finite = _all_finite(state, kind)
-        for field in TABLE.group(kind).fields:
-            if not field.real or (finite and not field.allowed) or not len(addresses):
-                continue
-            values = state.read(addresses, field.name)
-            bad = ~np.isfinite(values)
-            if field.allowed:
-                bad |= ~allowed(field, values)
-            for row in np.flatnonzero(bad):
-                number = 9 if field.name in FORCE_SUMS else 7
-                state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
-    sound = np.isfinite(state.h.cr).all() and np.isfinite(state.h.cd).all()
-    for field in TABLE.common if not sound else ():
-        values = variable(state.h, field)
-        for i in np.flatnonzero(~np.isfinite(values)):
-            element = f"({i + 1})" if field.count > 1 else ""
-            state.report(7, f"{field.name}{element} is {values[i]}")
-
-
-def _all_finite(state: State, kind: str) -> bool:
-    """Whether all reals of the groups of `kind` are: looked at together, as they nearly always are."""
-    reals = [state.offset[field.name] for field in TABLE.group(kind).fields if field.real]
-    addresses = state.address[kind]
-    if not reals:
-        return True
-    within = np.arange(min(reals) - 1, max(reals))
-    parts = (addresses[first : first + TOGETHER] for first in range(0, len(addresses), TOGETHER))
-    return all(
-        np.isfinite(state.h.ra.take(((part - 1) // state.ratio)[:, None] + within)).all() for part in parts
-    )
-
-
 def check_outlines(state: State, o: Outlines) -> None:
     """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings.
 
@@ -337,84 +295,4 @@ def _check_circles(state: State, o: Outlines) -> None:
             7,
             f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}, "
             f"KRAD {o.r[i]}, but its edges ask for {centre[i, 0]}, {centre[i, 1]}, {radius[i]}",
-        )
-
-
-@dataclass(frozen=True)
-class Touches:
-    """The contacts that can be compared with the outlines; arrays with one element for each.
-
-    row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
-    outlines; overlap, point: from the outlines, the point in the middle of the overlap; slack: what they may
-    be off by rounding, also because SPLIT has made the circles anew.
-    """
-
-    row: Numbers
-    code: Numbers
-    i: Numbers
-    j: Numbers
-    overlap: Numbers
-    point: Numbers
-    slack: Numbers
-
-    def part(self, first: int, last: int) -> Touches:
-        """Those from the first to before the last."""
-        return Touches(*(column[first:last] for column in self.columns()))
-
-    def columns(self) -> list[Numbers]:
-        """All arrays."""
-        return [getattr(self, field.name) for field in fields(self)]
-
-
-def touches(state: State, o: Outlines) -> Touches:
-    """The real contacts whose code and corners are sound, with the overlap that the outlines give."""
-    index = np.full(len(state.address["corner"]) + 1, -1, INDEX)  # one more, for row -1
-    index[state.rows("corner", o.corner)] = np.arange(len(o.corner))
-    code = state.column("contact", "KCCOD")
-    ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
-    comparable = (code >= g.CORNER_CORNER) & (code < g.VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
-    at = np.flatnonzero(comparable)
-    made = []
-    for first in range(0, max(len(at), 1), TOGETHER):
-        part = at[first : first + TOGETHER]
-        made.append(_touches(o, part, code[part], ends[0][part], ends[1][part]))
-    return Touches(*(np.concatenate(column) for column in zip(*map(Touches.columns, made), strict=True)))
-
-
-def _touches(o: Outlines, at: Numbers, code: Numbers, i: Numbers, j: Numbers) -> Touches:
-    """Those of the rows `at`, with these codes, at corners i and j."""
-    between = o.c.take(j, 0) - o.c.take(i, 0)
-    distance = length(between)
-    two_arcs = code == g.CORNER_CORNER
-    arc, edge = np.where(code == g.EDGE_CORNER, (j, i), (i, j))
-    inward = np.where(
-        two_arcs[:, None], between / distance[:, None], -o.normal(edge)
-    )  # away from the arc's block
-    deepest = o.deepest(arc, inward, ~two_arcs)
-    overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p.take(edge, 0), inward))
-    point = deepest - (overlap / 2)[:, None] * inward
-    return Touches(at, code, i, j, overlap, point, 2 * np.maximum(o.slack[i], o.slack[j]))
-
-
-def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
-    """Invariant 7: overlap and place of each contact are those of the outlines, the overlap within DTOL2."""
-    contacts = state.address["contact"][touch.row]
-    noted = state.column("contact", "KCN")[touch.row]
-    for k in np.flatnonzero(np.abs(noted - touch.overlap) > touch.slack):
-        state.report(
-            7,
-            f"KCN of contact@{contacts[k]} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
-            f"corner@{o.corner[touch.j[k]]} the outlines overlap by {touch.overlap[k]}",
-        )
-    where = np.stack([state.column("contact", name)[touch.row] for name in ("KXC", "KYC")], axis=1)
-    for k in np.flatnonzero(np.abs(where - touch.point).max(axis=1, initial=0.0) > touch.slack):
-        state.report(
-            7,
-            f"KXC, KYC of contact@{contacts[k]} are {where[k, 0]}, {where[k, 1]}, but the outlines meet at "
-            f"{touch.point[k, 0]}, {touch.point[k, 1]}",
-        )
-    limit = state.tolerance("DTOL2")
-    for k in np.flatnonzero(np.maximum(noted, touch.overlap) > limit + touch.slack):
-        state.report(
-            7, f"the overlap of contact@{contacts[k]} is {max(noted[k], touch.overlap[k])}, DTOL2 is {limit}"
         )

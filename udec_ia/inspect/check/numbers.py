@@ -1,0 +1,47 @@
+"""Invariants 7 and 9: what holds for each number alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.heap.array import variable
+from udec_ia.inspect.check.codes import allowed
+from udec_ia.inspect.check.groups import TABLE, State
+
+FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
+TOGETHER = 50_000  # groups that are looked at together
+
+
+def check_numbers(state: State) -> None:
+    """Invariants 7 and 9: reals are finite, and masses and areas not negative."""
+    for kind, addresses in state.address.items():
+        finite = _all_finite(state, kind)
+        for field in TABLE.group(kind).fields:
+            if not field.real or (finite and not field.allowed) or not len(addresses):
+                continue
+            values = state.read(addresses, field.name)
+            bad = ~np.isfinite(values)
+            if field.allowed:
+                bad |= ~allowed(field, values)
+            for row in np.flatnonzero(bad):
+                number = 9 if field.name in FORCE_SUMS else 7
+                state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
+    sound = np.isfinite(state.h.cr).all() and np.isfinite(state.h.cd).all()
+    for field in TABLE.common if not sound else ():
+        values = variable(state.h, field)
+        for i in np.flatnonzero(~np.isfinite(values)):
+            element = f"({i + 1})" if field.count > 1 else ""
+            state.report(7, f"{field.name}{element} is {values[i]}")
+
+
+def _all_finite(state: State, kind: str) -> bool:
+    """Whether all reals of the groups of `kind` are: looked at together, as they nearly always are."""
+    reals = [state.offset[field.name] for field in TABLE.group(kind).fields if field.real]
+    addresses = state.address[kind]
+    if not reals:
+        return True
+    within = np.arange(min(reals) - 1, max(reals))
+    parts = (addresses[first : first + TOGETHER] for first in range(0, len(addresses), TOGETHER))
+    return all(
+        np.isfinite(state.h.ra.take(((part - 1) // state.ratio)[:, None] + within)).all() for part in parts
+    )
