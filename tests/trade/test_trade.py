@@ -7,6 +7,7 @@ of half steps: 1 + 1/n times g t^2/2. The error goes with the step itself, and i
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,9 +17,10 @@ from udec_ia.cli import main
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.trade.blame import Blame
 from udec_ia.trade.digits import measure
+from udec_ia.trade.judge import Row
 from udec_ia.trade.noise import Noisy
 from udec_ia.trade.parting import parting
-from udec_ia.trade.report import changes, half_step, sentences
+from udec_ia.trade.report import changes, half_step, sentences, shown
 from udec_ia.trade.shop import SURVEYED, Options
 from udec_ia.trade.surveyed import segments
 from udec_ia.trade.trade import Price, trade
@@ -182,3 +184,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["trade", str(deck), *asked, "--half-step"]) == 0
     assert "TOO LARGE" in capsys.readouterr().out
     assert main(["trade", str(deck), "--tolerance", "0"]) == 2
+
+
+def test_what_was_not_run_has_no_numbers(fall: Price) -> None:
+    setting, numbers = fall.rows[0].setting, fall.rows[0].numbers
+    (row,) = shown(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
+    assert row == (setting.name, "", "", 2.0, "", "", 0, "not run: beyond the budget")

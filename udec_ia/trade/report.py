@@ -37,11 +37,19 @@ def table(price: Price) -> list[tuple[object, ...]]:
             row.cost,
             row.predicted,
             row.result.seconds if row.result else math.nan,
-            row.memory / 1e6,
+            row.memory / 1e6 if row.result else math.nan,
             row.result.cycles if row.result else 0,
             what(row),
         )
         for row in rows
+    ]
+
+
+def shown(price: Price) -> list[tuple[object, ...]]:
+    """The same to be read: nothing where no run has come to an end."""
+    return [
+        tuple("" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row)
+        for row in table(price)
     ]
 
 

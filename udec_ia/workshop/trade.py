@@ -63,7 +63,7 @@ def add_commands(commands: Any) -> None:
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.inspect.look.listing import Listing
-    from udec_ia.trade.report import COLUMNS, half_step, sentences, table
+    from udec_ia.trade.report import COLUMNS, half_step, sentences, shown
     from udec_ia.trade.trade import trade
 
     if args.digits or args.blame:
@@ -77,7 +77,7 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         return Listing(price.said if len(price.levels) < 2 else half_step(price))
     files = _files(price, args)
     written = [f"written: {', '.join(map(str, files))}"] if files else []
-    return Listing([*sentences(price), *written], COLUMNS, table(price), 0 if price.rows else 1)
+    return Listing([*sentences(price), *written], COLUMNS, shown(price), 0 if price.rows else 1)
 
 
 def _text(args: argparse.Namespace) -> str:
