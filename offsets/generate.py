@@ -13,6 +13,8 @@ from udec_ia.layout.table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, Ta
 HERE = Path(__file__).parent
 TABLE = HERE / "groups.table"
 LAYOUTS = HERE / "layouts.txt"
+NAMES = HERE / "names.txt"
+DRAFT = "draft"  # of a layout that no release has
 LAYOUT = HERE.parent / "udec_ia" / "layout"
 BANNER = "AUTO-GENERATED from offsets/groups.table by `python -m offsets`; do not edit."
 
@@ -118,23 +120,38 @@ def _group_lines(group: Group, ratio: int) -> list[str]:
 def layouts_text(table: Table, before: str) -> str:
     """The list of all layouts, `before`, with that of `table`, which has the next number if it is new.
 
-    TableError if it has the number of another one, or a field is younger than the layout.
+    It is then a draft, which gives way to another one or to none, until somebody takes the word away: from
+    a release on. TableError if the table has the number of another one, or a field is younger than it.
     """
-    lines = before.splitlines()
+    lines = [line for line in before.splitlines() if not line.endswith(DRAFT)]
     known = dict(line.split() for line in lines if not line.startswith("#"))
     number = str(table.layout)
     if number not in known and table.layout == len(known) + 1:
-        lines.append(f"{number}  {table.shape}")
+        lines.append(f"{number}  {table.shape}  {DRAFT}")
     elif known.get(number) != table.shape:
         raise TableError(
             f"groups.table: this is not layout {number} of layouts.txt: give it number {len(known) + 1} "
             f"(LAYOUT), new fields the page ours/{len(known) + 1}, and names that are gone a line RETIRED"
         )
-    fields = [*table.common, *(field for group in table.groups for field in group.fields)]
-    young = [field.name for field in fields if field.since > table.layout]
+    young = [field.name for field in table.fields if field.since > table.layout]
     if young:
         raise TableError(f"groups.table: {', '.join(young)} younger than layout {number}")
     return "\n".join(lines) + "\n"
+
+
+def names_text(table: Table, before: str, released: int) -> str:
+    """The list of all names that fields have had, `before`, with those of `table`: what restart files know.
+
+    released: the last layout that is no draft. TableError if a name of it is gone without a line RETIRED.
+    """
+    head, *lines = before.splitlines()
+    reserved = {name: since for name, since in map(str.split, lines) if int(since) <= released}
+    now = {field.name: str(field.since) for field in table.fields}
+    gone = sorted(reserved.keys() - now.keys() - {one.name for one in table.retired})
+    if gone:
+        line = f"RETIRED  {gone[0]}  {table.layout} | what it was"
+        raise TableError(f"groups.table: {gone[0]} is gone, but restart files have it: give it a line {line}")
+    return "\n".join([head, *(f"{name}  {since}" for name, since in {**reserved, **now}.items())]) + "\n"
 
 
 def files() -> dict[Path, str]:
@@ -144,6 +161,8 @@ def files() -> dict[Path, str]:
     texts = {LAYOUT / "offsets.py": python_text(table), LAYOUT / "groups.table": text}
     texts[LAYOUT / "material.py"] = material_text(table)
     texts[LAYOUTS] = layouts_text(table, LAYOUTS.read_text())
+    released = table.layout - texts[LAYOUTS].rstrip().endswith(DRAFT)
+    texts[NAMES] = names_text(table, NAMES.read_text(), released)
     for scheme in SCHEMES:
         texts[HERE / f"{scheme}.txt"] = scheme_text(table, scheme)
     return texts

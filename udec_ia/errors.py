@@ -162,10 +162,22 @@ MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
 ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 
 
-DISORDERED = (14, 15, 32, 36)  # errors that leave blocks deeper in each other or thinner than contacts allow
-
-
+# Numbers that kernels put into NERR, or that are asked for elsewhere
+OVERFLOW = 1
+TOO_SHORT = 14  # an edge can no longer hold its roundings
+OVERLAP_TOO_GREAT = 15  # blocks overlap by more than DTOL2, or without a contact
 DAMAGED = 20  # after this error the state can be saved by force only, to be looked at
+INSIDE_OUT = 32  # a body or zone is strained until it has no area any more
+LAW_FAILED = 35
+TOO_FAR = 36
+OUT_OF_NOWHERE = 37
+
+DISORDERED = (
+    TOO_SHORT,
+    OVERLAP_TOO_GREAT,
+    INSIDE_OUT,
+    TOO_FAR,
+)  # leave blocks too deep or too thin
 
 
 def spoilt(number: int, cycle: int) -> str:

@@ -12,7 +12,7 @@ MESSAGE = 2000  # characters of a whole message, in which there may be paths of 
 
 
 def printable(text: str, limit: int = NAME) -> str:
-    """The first `most` characters of `text`, each of which takes its place on a line."""
+    """The first `limit` characters of `text`, each of which takes its place on a line."""
     cut = text if len(text) <= limit else f"{text[:limit]}..."
     if cut.isprintable():
         return cut

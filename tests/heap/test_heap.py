@@ -12,10 +12,11 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from naive.memory import Memory as NaiveMemory
 from unchecked import with_any_offset, without_groups
 
+from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of
 from udec_ia.heap.array import LINE, MainArray
 from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import OVERFLOW, find, lose, room
+from udec_ia.heap.memory import find, lose, room
 from udec_ia.heap.words import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table

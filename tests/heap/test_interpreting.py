@@ -59,6 +59,8 @@ def test_what_a_kernel_calls_is_interpreted_too_and_all_is_told() -> None:
     ]
     assert four_times(array.h, int64(10)) == 80
     assert len(told) == 6
+    assert four_times(observe(array.h, lambda *access: told.append(access)), int64(10)) == 320
+    assert len(told) == 12
 
 
 def test_it_ends_with_the_context_whatever_ends_that() -> None:

@@ -229,7 +229,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         "0",
         "FIXED",
     ]
-    assert main(["diff", a, b, "--python", "--most", "3"]) == 0
+    assert main(["diff", a, b, "--python", "--limit", "3"]) == 0
     exec(compile_(capsys.readouterr().out), {})
     script = capsys.readouterr().out
     assert main(["diff", a, b, "--limit", "3"]) == 1  # as find and walk call it
@@ -237,7 +237,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["diff", a, b, "--json"]) == 1
     assert {*json.loads(capsys.readouterr().out)} == {"summary", "alone", "differences"}
     assert main(["diff", a, c]) == main(["diff", a, str(tmp_path)]) == 2
-    assert main(["diff", a, b, "--only", "block.KBFIX", "--raw"]) == main(["diff", a, b, "--most", "-1"]) == 2
+    assert (
+        main(["diff", a, b, "--only", "block.KBFIX", "--raw"]) == main(["diff", a, b, "--limit", "-1"]) == 2
+    )
     assert capsys.readouterr().err.count("udec diff: ") == 4
 
 

@@ -41,7 +41,7 @@ def runs_of(monkeypatch: pytest.MonkeyPatch, found: bool) -> list[int]:
         phases.append(int(h.ci[g.JPHASE]))
         these = list(find(h, *others))
         wanted = found or phases[-1] == g.AT_WAYS
-        these[passes.THROUGH] = entry(gone_through, h) if wanted else 0
+        these[passes.TUNNELLING] = entry(gone_through, h) if wanted else 0
         return tuple(these)
 
     monkeypatch.setattr(watch, "passes", told)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_words
 
-from offsets.generate import LAYOUTS, files, layouts_text, stale
+from offsets.generate import LAYOUTS, NAMES, files, layouts_text, names_text, stale
 from offsets.generate import TABLE as SOURCE
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
@@ -122,7 +122,7 @@ def test_pointers_name_a_kind_of_group() -> None:
 def test_generated_files_are_current() -> None:
     assert stale() == []
     assert TABLE.digest == offsets.DIGEST
-    assert len(files()) == 4 + len(ALL_SCHEMES)
+    assert len(files()) == 5 + len(ALL_SCHEMES)
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,11 @@ def test_a_layout_has_a_number_and_every_number_one_layout() -> None:
     more = text.replace("KBRO   real", f"KNEW   real  -  data  m  ours/{last + 1} | new\nKBRO   real")
     new = parse(more)
     assert {f.name: f.since for f in new.group("block").fields}["KNEW"] == last + 1
-    assert layouts_text(new, known) == f"{known}{last + 1}  {new.shape}\n"
+    draft = layouts_text(new, known)
+    assert draft == f"{known}{last + 1}  {new.shape}  draft\n"
+    other = parse(more.replace("KNEW", "KNEWER"))
+    assert layouts_text(other, draft) == f"{known}{last + 1}  {other.shape}  draft\n"  # a draft gives way
+    assert layouts_text(TABLE, draft) == known
     with pytest.raises(TableError, match=f"KNEW younger than layout {last + 1}"):
         layouts_text(parse(more.replace(f"ours/{last + 1}", f"ours/{last + 2}")), known)
     with pytest.raises(TableError, match=f"not layout {last + 2}"):
@@ -206,6 +210,19 @@ def test_a_layout_has_a_number_and_every_number_one_layout() -> None:
 def test_what_is_gone_is_told_and_its_name_is_kept() -> None:
     gone = changed("\nLAYOUT  ", "\nRETIRED  KOLD  1 | the colour of a block\nLAYOUT  ")
     assert [(one.name, one.until, one.text) for one in gone.retired] == [("KOLD", 1, "the colour of a block")]
+
+
+def test_a_name_that_a_release_has_had_is_not_lost() -> None:
+    known, last = NAMES.read_text(), TABLE.layout
+    assert names_text(TABLE, known, last) == known
+    more = changed("KBRO   real", f"KNEW   real  -  data  m  ours/{last + 1} | new\nKBRO   real")
+    draft = names_text(more, known, last)
+    assert set(draft.splitlines()) - set(known.splitlines()) == {f"KNEW  {last + 1}"}
+    assert names_text(TABLE, draft, last) == known
+    with pytest.raises(TableError, match=f"KNEW is gone, but .* RETIRED  KNEW  {last}"):
+        names_text(TABLE, draft, last + 1)
+    told = changed("\nLAYOUT  ", f"\nRETIRED  KNEW  {last + 1} | new\nLAYOUT  ")
+    assert names_text(told, draft, last + 1) == draft
 
 
 def test_the_text_says_when_a_pointer_is_0() -> None:

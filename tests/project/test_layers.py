@@ -17,7 +17,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
     "heap": {"errors", "layout", "signals"},
-    "kernels": {"heap", "layout"},
+    "kernels": {"errors", "heap", "layout"},
     "ops": {"counting", "errors", "heap", "kernels", "layout", "printable", "signals"},
     "inspect": {"counting", "errors", "heap", "kernels", "layout", "ops"},
     "restart": {"counting", "errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},

@@ -21,21 +21,21 @@ from udec_ia.restart import see
 
 ROOT = Path(__file__).parents[2]
 NEXT = read_table().layout + 1
-BOLT = """\
-GROUP  bolt  NVBO  IBOPNT  ours | one bolt
-HEAD   int   -     head  -  ours/{1} | MBOLT
-KBO    int   bolt  next  -  ours/{1} | next bolt; 0 at the end of the list
+NAIL = """\
+GROUP  nail  NVNA  INAPNT  ours | one nail
+HEAD   int   -     head  -  ours/{1} | MNAIL
+KNA    int   nail  next  -  ours/{1} | next nail; 0 at the end of the list
 """
-BOLTS = "IBOPNT  int  bolt  head  -  ours/{1} | list of bolts; 0 when there are none"
+NAILS = "INAPNT  int  nail  head  -  ours/{1} | list of nails; 0 when there are none"
 CHANGES = [
     ("LAYOUT  {0}\n", "LAYOUT  {1}\n"),
     ("\nKX     real", "\nKNEW   real*3  -  data  m  ours/{1} | new\nKX     real"),
     ("\nKHG    int", "\nKHNEW  int  -  data  -  ours/{1} | new\nKHG    int"),
     ("\nKLB    int", "\nKPNEW  int  block  data  -  ours/{1} | new; 0 for none\nKLB    int"),
     ("\nTIME    double", "\nTNEW    double  -  data  s  ours/{1} | new\nTIME    double"),
-    ("\nGROUP  corner", f"\n{BOLT}\nGROUP  corner"),
-    ("\nNBLK    int", f"\n{BOLTS}\nNBLK    int"),
-    ("HEAD  MCOR   4", "HEAD  MBOLT  12  bolt  | bolt\nHEAD  MCOR   14"),
+    ("\nGROUP  corner", f"\n{NAIL}\nGROUP  corner"),
+    ("\nNBLK    int", f"\n{NAILS}\nNBLK    int"),
+    ("HEAD  MCOR   4", "HEAD  MNAIL  92  nail  | nail\nHEAD  MCOR   14"),
     ("VIRTUAL        4 ", "VIRTUAL        5 "),
     ("KCCOD  int   1..4 ", "KCCOD  int   1..5 "),
     ("GIVEN_X  2 ", "GIVEN_X  4 "),

@@ -82,19 +82,19 @@ def group(kind: str) -> str:
     return TEXT[start : min(end for end in ends if end > 0)]
 
 
-BOLT = [
-    "GROUP  bolt  NVBO  IBOPNT  ours | one bolt",
-    "HEAD   int   -      head  -    ours/2 | MBOLT",
-    "KBO    int   bolt   next  -    ours/2 | next bolt; 0 at the end of the list",
-    "KBOB   int   block! host  -    ours/2 | block that it is in",
-    "KBOF   real  0..    data  N/m  ours/2 | force",
+NAIL = [
+    "GROUP  nail  NVNA  INAPNT  ours | one nail",
+    "HEAD   int   -      head  -    ours/2 | MNAIL",
+    "KNA    int   nail   next  -    ours/2 | next nail; 0 at the end of the list",
+    "KNAB   int   block! host  -    ours/2 | block that it is in",
+    "KNAF   real  0..    data  N/m  ours/2 | force",
 ]
-BOLTS = replaced(
-    ("HEAD  MSIG ", "HEAD  MBOLT  11  bolt | bolt\nHEAD  MSIG "),
-    ("GROUP  signal", "\n".join(BOLT) + "\nGROUP  signal"),
+NAILS = replaced(
+    ("HEAD  MSIG ", "HEAD  MNAIL  91  nail | nail\nHEAD  MSIG "),
+    ("GROUP  signal", "\n".join(NAIL) + "\nGROUP  signal"),
     (
         line("NBLK"),
-        "IBOPNT int   bolt   head  -    ours/2 | list of bolts; 0 when there are none\n" + line("NBLK"),
+        "INAPNT int   nail   head  -    ours/2 | list of nails; 0 when there are none\n" + line("NBLK"),
     ),
 )
 CODES = replaced(
@@ -127,11 +127,13 @@ class Case(NamedTuple):
     codes: Mapping[str, Mapping[int, int]] = {}
 
 
+NAMES = [field.name for field in OURS.group("block").fields]
+FROM_KX = len(NAMES) - NAMES.index("KX")
 CASES = {
     "comment": Case(replaced(("| one block\n", "| a block\n"), ("# type ", "# Type "))),
     "middle": Case(
         before("KX", "KNEW real - data m ours/2 | new"),
-        ("1 field is not known here, and 0 (KNEW of block)", "14 fields are elsewhere in the group"),
+        ("1 field is not known here, and 0 (KNEW of block)", f"{FROM_KX} fields are elsewhere in the group"),
     ),
     "end": Case(
         behind("KLB", "KNEW int 0..9 data - ours/2 | new"),
@@ -150,8 +152,8 @@ CASES = {
         ("1 field is new and 0 (KPP of domain)", "4 fields are elsewhere in the group (KUMAX of domain,"),
     ),
     "kind": Case(
-        BOLTS,
-        ("1 field is not known here, and 0 (IBOPNT)", "1 kind of group is not known here, and empty (bolt)"),
+        NAILS,
+        ("1 field is not known here, and 0 (INAPNT)", "1 kind of group is not known here, and empty (nail)"),
     ),
     "kind less": Case(
         TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("1 kind of group is new",)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.kinds import follow
 from udec_ia.heap.words import Scheme
@@ -19,7 +20,6 @@ from udec_ia.layout.table import Field
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
-OVERFLOW = 1  # error 1, memory overflow
 LINE = 64  # bytes that the machine's memory hands out at a time
 
 

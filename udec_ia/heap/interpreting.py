@@ -5,7 +5,8 @@
 
 All kernels that are called within run their Python source, bit for bit as compiled, a thousand times slower.
 So a debugger can see a cycle at work while all the others run at full speed: `observe` gives a memory of the
-same words that tells of each word that is read or written, and of nothing when no kernel is interpreted.
+same words that tells of each word that is read or written. A kernel that is called with it is interpreted
+anyway.
 """
 
 from __future__ import annotations
@@ -80,10 +81,17 @@ class Observed:
         self.tell(self.name, where, value, True)
 
 
-def observe(h: Memory, tell: Tell) -> Memory:
+class ObservedMemory(Memory):
+    """A memory of observed arrays."""
+
+    __slots__ = ()
+
+
+def observe(h: Memory, tell: Tell) -> ObservedMemory:
     """The words of `h`, for kernels that are interpreted.
 
     tell: called after each access with the name of the array, the index, the value, and True if it was
     written. A word of IA() is told by that view of it through which the kernel has gone.
     """
-    return Memory(*(Observed(name, array, tell) for name, array in zip(Memory._fields, h, strict=True)))
+    arrays = (Observed(name, array, tell) for name, array in zip(Memory._fields, h, strict=True))
+    return ObservedMemory(*arrays)

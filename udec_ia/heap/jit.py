@@ -11,12 +11,13 @@ import hashlib
 import os
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from udec_ia.heap.checked import CHECKED, named
 from udec_ia.heap.guarding import Guarded
-from udec_ia.heap.interpreting import mode
+from udec_ia.heap.interpreting import ObservedMemory, interpreted, mode
 from udec_ia.heap.loading import DISABLED, has_numba_side, load
 from udec_ia.layout import offsets as g
 
@@ -35,9 +36,9 @@ def _cache_home() -> Path:
 def source_digest() -> str:
     """Hash of the field table and of the sources that compiled kernels can depend on."""
     digest = hashlib.sha256(g.DIGEST.encode())
-    for folder in ("layout", "heap", "kernels"):
-        for path in sorted((PACKAGE / folder).rglob("*.py")):
-            digest.update(path.read_bytes())
+    folders = (sorted((PACKAGE / folder).rglob("*.py")) for folder in ("layout", "heap", "kernels"))
+    for path in [PACKAGE / "errors.py", *chain.from_iterable(folders)]:
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
@@ -65,6 +66,9 @@ class Kernel:
     def __call__(self, *args: Any) -> Any:
         if mode.python:
             return self.py_func(*args)
+        if args and args[0].__class__ is ObservedMemory:
+            with interpreted():
+                return self.py_func(*args)
         return self.whole(*args)
 
     @cached_property

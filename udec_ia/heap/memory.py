@@ -21,8 +21,8 @@ does, is told when the group is given back.
 
 from __future__ import annotations
 
+from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
-from udec_ia.heap.array import OVERFLOW
 from udec_ia.heap.checked import SPARE, WHATEVER, offset
 from udec_ia.heap.guarding import begins, ends
 from udec_ia.heap.jit import kernel

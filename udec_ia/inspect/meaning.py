@@ -10,7 +10,7 @@ from typing import Any
 
 from udec_ia.layout.table import Field, Table, lay_out, read_table
 
-SAME_CODES = {"KUFIX": "KGFIX"}  # so the text of the field says
+SAME_CODES = {"KUFIX": "KGFIX"}  # a condition gives the same velocities as its grid-point notes
 HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
 UNGROUPED = {code.name: code.value for code in read_table().codes if code.field == KIND}
 SHOWN = 4  # names that a sentence lists

@@ -148,6 +148,11 @@ class Table:
         ]
         return hashlib.sha256(repr((groups, sizes)).encode()).hexdigest()
 
+    @property
+    def fields(self) -> list[Field]:
+        """All fields: those of the common block, and those of all groups."""
+        return [*self.common, *(field for group in self.groups for field in group.fields)]
+
     @cached_property
     def _by_name(self) -> dict[str, Group]:
         return {group.name: group for group in self.groups}

@@ -145,7 +145,7 @@ def _histories(series: Sequence[Series]) -> list[str]:
     """PRINT HISTORIES: what is recorded, how many numbers there are, and between which they lie."""
     if not series:
         return ["No histories"]
-    heads = ("history", "of", "at", "every", "numbers", "least", "greatest", "last", "unit")
+    heads = ("history", "of", "at", "every", "numbers", "minimum", "maximum", "last", "unit")
     rows = []
     for one in series:
         values = one.numbers[:, 2]

@@ -1,6 +1,6 @@
 """The command that compares two restart files.
 
-udec diff FILE OTHER --only contact.KCFN --tolerance m=1e-6 N/m=1 --most 50
+udec diff FILE OTHER --only contact.KCFN --tolerance m=1e-6 N/m=1 --limit 50
 """
 
 from __future__ import annotations
@@ -37,9 +37,7 @@ def add_commands(commands: Any) -> None:
         help="ignore smaller differences: m=1e-6, N/m=1, relative=1e-9, ulp=4",
     )
     parser.add_argument(
-        "--most",
         "--limit",
-        dest="limit",
         type=int,
         metavar="N",
         help="rows of a table to show (default: 20)",

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.slack import give_back
+from udec_ia.inspect.census import CHOICES
 from udec_ia.inspect.walk import HEADS, SOFT, follow, one_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
@@ -33,21 +34,21 @@ TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
 SHORT = 64  # items of a list that is walked together with others
 INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
 STRETCH = 256  # places in which groups are counted by a byte
-TARGETS |= {"item": ("corner", "contact"), "soft": tuple(SOFT.values()), "any": tuple(KIND_CODE)}
+TARGETS |= CHOICES | {"any": tuple(KIND_CODE)}
 
 
 @cache
 def names(kind: str, role: str) -> tuple[str, ...]:
-    """The fields of `kind` that the table gives the role `role`, in table order."""
+    """The fields of `kind` that the table gives the role `role`, in table order: those of 1980 come first."""
     return tuple(field.name for field in TABLE.group(kind).fields if field.role == role)
 
 
-(KP,) = names("block", "member")
-(KBEX,) = names("block", "extension")
-(KL,) = names("corner", "clockwise")
-(KR,) = names("corner", "anticlockwise")
-HOSTS = names("contact", "host")
-FORWARD = names("contact", "clockwise")
+KP, *_ = names("block", "member")
+KBEX, *_ = names("block", "extension")
+KL, *_ = names("corner", "clockwise")
+KR, *_ = names("corner", "anticlockwise")
+HOSTS = names("contact", "host")[:2]
+FORWARD = names("contact", "clockwise")[:2]
 
 
 LOST = "are in no group"  # what is said of words that no list leads to

@@ -18,12 +18,12 @@ from udec_ia.counting import counted
 from udec_ia.inspect.check.groups import HOSTS, INDEX, KR, TABLE, Numbers, State, corner_before, names
 from udec_ia.layout import offsets as g
 
-(KNB,) = names("corner", "host")
-(KLB,) = names("corner", "clockback")
-BACK = names("contact", "clockback")
-SIDES = names("contact", "loop")
-AHEAD = names("contact", "associate")
-(KDLOOP,) = names("domain", "loop")
+KNB, *_ = names("corner", "host")
+KLB, *_ = names("corner", "clockback")
+BACK = names("contact", "clockback")[:2]
+SIDES = names("contact", "loop")[:2]
+AHEAD = names("contact", "associate")[:2]
+KDLOOP, *_ = names("domain", "loop")
 
 
 def check_map(state: State) -> None:

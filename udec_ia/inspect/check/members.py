@@ -12,15 +12,17 @@ outline, and if none is turned over (invariant 7) there is neither gap nor overl
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from udec_ia.inspect.check.groups import TABLE, Numbers, State, corner_before, names
 
 OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block
 COUNTS = {"KFNG": "gridpoint", "KFNZ": "zone"}  # of an fdef group
-(KGP,) = names("corner", "backlink")
-(KCOR,) = names("gridpoint", "backlink")
-(KZG,) = names("zone", "triple")
+KGP, *_ = names("corner", "backlink")
+KCOR, *_ = names("gridpoint", "backlink")
+KZG, *_ = names("zone", "triple")
 KFMIX = "KFMIX"
 
 
@@ -36,10 +38,7 @@ def check_members(state: State) -> None:
 def _check_mutual(state: State) -> None:
     """Links back and forth between groups of two kinds."""
     for kind, addresses in state.address.items():
-        for name in names(kind, "backlink") if len(addresses) else ():
-            target = next(field.target for field in TABLE.group(kind).fields if field.name == name)
-            assert target is not None
-            (back,) = names(target, "backlink")
+        for name, target, back in _mutual(kind) if len(addresses) else ():
             values = state.column(kind, name)
             row = state.rows(target, values)
             answer = np.append(state.column(target, back), 0)[row]
@@ -49,6 +48,26 @@ def _check_mutual(state: State) -> None:
                     f"{name} of {kind}@{addresses[k]} is {values[k]}, "
                     f"but {back} of {target}@{values[k]} is {answer[k]}",
                 )
+
+
+@cache
+def _mutual(kind: str) -> list[tuple[str, str, str]]:
+    """Fields of `kind` that lead to groups of another kind, that kind, and its field that leads back.
+
+    Of several between the same two kinds the first answers the first, and so on.
+    """
+    targets = dict.fromkeys(field.target for field in TABLE.group(kind).fields if field.role == "backlink")
+    return [
+        (name, target, back)
+        for target in targets
+        if target is not None
+        for name, back in zip(_backlinks(kind, target), _backlinks(target, kind), strict=False)
+    ]
+
+
+def _backlinks(kind: str, target: str) -> list[str]:
+    fields = TABLE.group(kind).fields
+    return [field.name for field in fields if field.role == "backlink" and field.target == target]
 
 
 def block_of(state: State, kind: str) -> Numbers | None:

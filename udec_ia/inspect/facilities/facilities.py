@@ -13,6 +13,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.facilities.scene import Scene
 from udec_ia.inspect.look.listing import Listing
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 
 RELAXATIONS = {g.LOCAL: "LOCAL", g.COMBINED: "COMBINED", g.KINETIC: "KINETIC", g.ADAPTIVE: "ADAPTIVE"}
 REMEMBER = (g.COMBINED, g.ADAPTIVE)  # relaxations that keep the forces of the cycle before
@@ -137,7 +138,13 @@ def _watched(s: Scene) -> str:
     return "also of the time-step; a run that gains energy ends" if s.moves else ""
 
 
+def _others(s: Scene) -> str:
+    return _together(*(_many(s.count(kind), kind) for kind in OTHERS))
+
+
 MAP = ("block", "corner", "contact", "domain", "jointext")
+TOLD = (*MAP, "sdef", "fdef", "zone", "gridpoint", "bound", "signal", "tabpoint", "history", "relax")
+OTHERS = [group.name for group in read_table().groups if group.name not in TOLD]  # that no line speaks of
 FACILITIES = (
     Facility("blocks and contacts", _map, lambda s: s.words(*MAP)),
     Facility("domain pass", _domain_pass),
@@ -157,4 +164,5 @@ FACILITIES = (
     Facility("ENERGY", lambda s: "an account is kept" if s.h.ci[g.LENER] else ""),
     Facility("HISTORY", lambda s: _many(s.count("history"), "number"), lambda s: s.words("history")),
     Facility("watch of the energy", _watched),
+    Facility("other groups", _others, lambda s: s.words(*OTHERS)),
 )

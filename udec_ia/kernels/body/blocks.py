@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.jit import inlined, kernel
@@ -18,7 +19,6 @@ from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.geometry.shape import keep_circles
 from udec_ia.layout import offsets as g
 
-TOO_FAR = 36
 KEEP = 16  # cycles from one time to the next that rigid blocks have their circles put back
 FINE = 1e-10  # reals that cannot tell 1 + FINE from 1 need that
 

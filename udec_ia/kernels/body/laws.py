@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.errors import LAW_FAILED
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.law_call import FIRST, Laws, call, is_given
 from udec_ia.layout import offsets as g
 
-LAW_FAILED = 35
 IN_BLOCKS, AT_JOINTS = 0, 1  # rows of what numbers_in_use fills
 
 

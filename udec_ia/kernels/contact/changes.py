@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import apart, inlined, kernel
@@ -23,7 +24,7 @@ from udec_ia.kernels.contact.joint_law import is_open
 from udec_ia.kernels.contact.notch import has_no_place, leave_notch
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, faces
+from udec_ia.kernels.geometry.contact_geometry import faces
 from udec_ia.kernels.links.lists import is_contact
 from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
 from udec_ia.kernels.map.reclass import settle

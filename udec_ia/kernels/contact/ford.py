@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.apart import call_entry
@@ -21,7 +22,7 @@ from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.contact.changes import is_still, opens
 from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
 from udec_ia.kernels.contact.springs import by_springs
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, coord
+from udec_ia.kernels.geometry.contact_geometry import coord
 from udec_ia.layout import offsets as g
 
 

@@ -28,13 +28,14 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.detect.domains import relative_velocity
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT, tangents
+from udec_ia.kernels.geometry.contact_geometry import tangents
 from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.layout import offsets as g
 

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.apart import entry
 from udec_ia.heap.jit import apart, kernel
@@ -26,7 +27,6 @@ from udec_ia.heap.memory import room_for_two
 from udec_ia.kernels.detect.gaps import give_up_taken
 from udec_ia.kernels.detect.search import SMALL, STRAY, search
 from udec_ia.kernels.detect.tunnelling import edge_lies_in
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.map.bridge import bridge
 from udec_ia.kernels.map.segments import (
     ARC,

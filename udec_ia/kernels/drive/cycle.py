@@ -26,7 +26,7 @@ from udec_ia.kernels.drive.passes import (
     MOTION,
     RELAX,
     STRESSES,
-    THROUGH,
+    TUNNELLING,
     UPDATE,
 )
 from udec_ia.layout import offsets as g
@@ -75,9 +75,9 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 call_entry(passes[STRESSES], h)
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
         if h.ci[g.JPHASE] == g.AT_WAYS:
-            if passes[THROUGH] == 0:
+            if passes[TUNNELLING] == 0:
                 return done  # it is not compiled before a step needs it
-            call_entry(passes[THROUGH], h)
+            call_entry(passes[TUNNELLING], h)
             h.ci[g.JPHASE] = g.AT_DOMAINS
         if h.ci[g.JPHASE] == g.AT_DOMAINS:
             if not call_entry(passes[UPDATE], h, int64(0)):

@@ -20,10 +20,10 @@ from udec_ia.kernels.drive.recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.relax import relax
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.contacts import note_contact
-from udec_ia.kernels.energy.works import note_forces, note_loads, note_rigid, note_stresses
+from udec_ia.kernels.energy.work import note_forces, note_loads, note_rigid, note_stresses
 from udec_ia.layout import offsets as g
 
-UPDATE, THROUGH, BOUNDS, MOTION, RELAX, FORCES, LOADS, STRESSES = range(8)
+UPDATE, TUNNELLING, BOUNDS, MOTION, RELAX, FORCES, LOADS, STRESSES = range(8)
 CONTACT, CHANGES, MEASURES, RECORD, REST, OPENINGS = range(8, 14)
 
 
@@ -34,7 +34,7 @@ def passes(
 
     soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
     ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
-    A run of slow blocks does not need THROUGH; one that does stops before it.
+    A run of slow blocks does not need TUNNELLING; one that does stops before it.
     """
     keeps, loaded, how = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, h.ci[g.LREST]
     asked = measures(h) if recorded else NOT_MEASURED

@@ -22,7 +22,7 @@ CHECK = 10  # cycles between two looks at the force ratio
 
 @kernel
 def until_due(h: Memory, limit: int) -> int:
-    """Cycles until the next history is due, or `at_most` if that comes first."""
+    """Cycles until the next history is due, or `limit` if that comes first."""
     cycles = int64(limit)
     ih = int64(h.ci[g.IHPNT])
     while ih != 0:

@@ -31,7 +31,6 @@ from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g
 
 BLUNT = 8.0  # radius over D above which it matters where an arc ends: of a corner that turns by 14 degrees
-OVERLAP_TOO_GREAT = 15  # number of the error when blocks overlap by more than DTOL2, or without a contact
 
 
 @inlined

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.errors import TOO_SHORT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import idomp, next_corner
 from udec_ia.layout import offsets as g
 
-TOO_SHORT = 14  # number of the error when an edge can no longer hold its roundings
 FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
 BULGE = 0.02  # of D: if it stands out by less, from the line between its neighbours
 KEPT = 0.9  # of both: below it a strained corner loses its radius, or it would come and go with every breath

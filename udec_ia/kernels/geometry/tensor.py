@@ -5,8 +5,6 @@ from __future__ import annotations
 from udec_ia.heap.accessors import Memory, real
 from udec_ia.heap.jit import inlined
 
-INSIDE_OUT = 32  # number of the error when a body or zone is strained until it has no area any more
-
 
 @inlined
 def cayley(h: Memory, angle: float) -> tuple[float, float]:

@@ -19,11 +19,12 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.memory import find
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.ranges import edges_between, points_between
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function import find_function, lose_sines, make_sine
+from udec_ia.ops.common.hosted import HOSTED, drop
 from udec_ia.ops.common.limits import finite, held, not_negative, positive, reals
 from udec_ia.ops.common.memory import require
 from udec_ia.ops.common.ranges import Range, check_range, why_nothing
@@ -262,22 +263,9 @@ def number_of_conditions(h: Memory) -> int:
 
 
 def _drop(h: Memory, gone: list[int]) -> None:
-    """Take the conditions `gone` out of the list and give their groups back, in one walk along it."""
-    leaving = set(gone)
+    """Give the conditions `gone` back, and the sines that no other needs."""
     signals = {iget(h, iu, g.KUS) for iu in gone} - {0}
-    before, cut = 0, False
-    for iu in [*_all(h).tolist(), 0] if gone else ():
-        if iu in leaving:
-            cut = True
-            continue
-        if cut and before:
-            puti(h, before, g.KU, iu)
-        elif cut:
-            h.ci[g.IBNPNT] = iu
-        before, cut = iu, False
-    for iu in gone:
-        puti(h, iu, HEAD, 0)
-        lose(h, iu, g.NVBN)
+    drop(h, HOSTED["bound"], gone)
     if signals:
         lose_sines(h, signals.difference(integers(h, _all(h), g.KUS).tolist()))
 

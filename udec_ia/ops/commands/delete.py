@@ -10,6 +10,7 @@ from udec_ia.ops.commands.boundary import forget_blocks
 from udec_ia.ops.commands.change import become
 from udec_ia.ops.commands.rounding import update_flagged
 from udec_ia.ops.common.forces import renew_forces
+from udec_ia.ops.common.hosted import lose_hosted
 from udec_ia.ops.common.ranges import Range, blocks_in
 
 
@@ -27,6 +28,7 @@ def delete(array: MainArray, where: Range) -> int:
             19, f"only {int(h.ci[g.NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
         )
     forget_blocks(h, blocks)
+    lose_hosted(h, blocks)
     for ib in blocks:
         become(h, ib, g.MRIG)  # gives back what only a deformable block has
         delb(h, ib)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from udec_ia.errors import UdecError
+from udec_ia.errors import OVERLAP_TOO_GREAT, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
 from udec_ia.kernels.detect.update import update_domains
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
 from udec_ia.kernels.geometry.shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
 from udec_ia.kernels.links.flag import flag_all
@@ -22,7 +21,7 @@ STRAINED = "strained as it is after cycle"  # in the message of the error that e
 
 
 def too_short(d: float, shortest: float, x: float, y: float, when: str = "") -> UdecError:
-    """Error 14: roundings of length `d` have to share `least` on the edge that ends at (x, y)."""
+    """Error 14: roundings of length `d` have to share the edge of length `shortest` that ends at (x, y)."""
     return UdecError(
         14,
         f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}",

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from udec_ia.errors import UdecError
+from udec_ia.errors import OVERFLOW, UdecError
 from udec_ia.heap.accessors import size_of
-from udec_ia.heap.array import OVERFLOW, MainArray
+from udec_ia.heap.array import MainArray
 from udec_ia.heap.kinds import forget
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout import offsets as g

@@ -10,19 +10,24 @@ from collections.abc import Callable
 
 import numpy as np
 
-from udec_ia.errors import UdecError
+from udec_ia.errors import (
+    INSIDE_OUT,
+    LAW_FAILED,
+    OUT_OF_NOWHERE,
+    OVERFLOW,
+    OVERLAP_TOO_GREAT,
+    TOO_FAR,
+    TOO_SHORT,
+    UdecError,
+)
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.heap.array import OVERFLOW, MainArray
+from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import working_time
 from udec_ia.heap.interpreting import Sparing
-from udec_ia.kernels.body.blocks import TOO_FAR
-from udec_ia.kernels.body.laws import LAW_FAILED
 from udec_ia.kernels.body.masses import make_masses
 from udec_ia.kernels.drive.finite import not_finite
-from udec_ia.kernels.geometry.contact_geometry import OVERLAP_TOO_GREAT
-from udec_ia.kernels.geometry.shape import TOO_SHORT
-from udec_ia.kernels.geometry.tensor import INSIDE_OUT
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
 from udec_ia.ops.commands import energy
 from udec_ia.ops.commands.rounding import check_strained_edges, crowded, settle_default
 from udec_ia.ops.common.limits import last_digit
@@ -31,7 +36,7 @@ from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
 from udec_ia.ops.run.renewal import ahead, put_step
-from udec_ia.ops.run.runaway import OUT_OF_NOWHERE, Runaway
+from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.scaling import renew_relaxations
 from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
@@ -39,6 +44,7 @@ from udec_ia.signals import poll
 
 NOT_FINITE = Sparing(not_finite, 200)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
+KINDS = {head.value: head.group for head in read_table().heads}
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
 Report = Callable[[int], None]
@@ -226,6 +232,27 @@ def _without_contact(array: MainArray, ip: int) -> UdecError:
     return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=ip)
 
 
+def _too_deep(array: MainArray, group: int) -> UdecError:
+    """Error 15: `group` is the corner or contact where blocks overlap too much, or was it."""
+    h, cycle = array.h, int(array.h.ci[g.MCTOT])
+    if iget(h, group, HEAD) == g.MCOR:
+        return _without_contact(array, group)
+    if iget(h, group, HEAD) != g.MCON:  # it vanished in a later pass of the same cycle
+        return UdecError(OVERLAP_TOO_GREAT, f"in cycle {cycle}", "take a smaller FRACTION or a greater ROUND")
+    m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
+    limit = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
+    detail = (
+        f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
+        f"({getr(h, group, g.KXC):g}, {getr(h, group, g.KYC):g}) overlaps by {overlap:g}, more than "
+        f"{limit}, in cycle {cycle}"
+    )
+    advice = (
+        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
+        "of the critical one: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+    )
+    return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=group)
+
+
 def raise_error(array: MainArray, laws: LawBook) -> None:
     """Find memory if that is what a kernel stopped for; else raise the error it left behind.
 
@@ -258,21 +285,7 @@ def raise_error(array: MainArray, laws: LawBook) -> None:
         raise laws.failure(array, group)
     if number == TOO_FAR:
         raise _too_far(array, group)
-    if iget(h, group, HEAD) == g.MCOR:
-        raise _without_contact(array, group)
-    if iget(h, group, HEAD) != g.MCON:  # it vanished in a later pass of the same cycle
-        raise UdecError(
-            number, f"in cycle {int(h.ci[g.MCTOT])}", "take a smaller FRACTION or a greater ROUND"
-        )
-    m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
-    limit = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
-    detail = (
-        f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
-        f"({getr(h, group, g.KXC):g}, {getr(h, group, g.KYC):g}) overlaps by {overlap:g}, more than "
-        f"{limit}, in cycle {int(h.ci[g.MCTOT])}"
-    )
-    advice = (
-        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
-        "of the critical one: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
-    )
-    raise UdecError(number, detail, advice, group=group)
+    if number == OVERLAP_TOO_GREAT:
+        raise _too_deep(array, group)
+    named = f"{KINDS.get(iget(h, group, HEAD), '')}@{group} " if group else ""
+    raise UdecError(number, f"{named}in cycle {int(h.ci[g.MCTOT])}", group=group)

@@ -7,7 +7,7 @@ seen again. Whatever the run stopped for, it stops for here.
 from __future__ import annotations
 
 from udec_ia.heap.array import MainArray
-from udec_ia.kernels.drive.passes import THROUGH, passes
+from udec_ia.kernels.drive.passes import TUNNELLING, passes
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
@@ -38,5 +38,5 @@ class Replay:
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
                 renew(self.array)
-            if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[THROUGH] == 0:
+            if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[TUNNELLING] == 0:
                 self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

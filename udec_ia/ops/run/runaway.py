@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.errors import UdecError
+from udec_ia.errors import OUT_OF_NOWHERE, UdecError
 from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.body.bounds import power_of_loads
@@ -44,7 +44,6 @@ from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
 from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction, shortened
 
-OUT_OF_NOWHERE = 37
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
 LOOK = 100  # cycles between two looks at the energy; JUDGE of them at the contacts made, and at chatter

@@ -183,7 +183,7 @@ class Unrest:
         if force > wanted * float(carried(h, soft_in(h))) and motion.by.max() < 100 * digit:
             return "last digits", (
                 f"the last digit of coordinates, {digit:.2g} m, is a force of {force:.3g} N/m in stiff "
-                "joints: the reals allow no smaller ratio; take reals of 64 bits or a nearer origin"
+                "joints: the precision allows no smaller ratio; take reals of 64 bits or a nearer origin"
             )
         if motion.fall < FALLS:
             tenth = motion.cycles * math.log(10) / -math.log(max(motion.fall, 1e-9))

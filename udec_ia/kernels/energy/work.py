@@ -1,4 +1,4 @@
-"""Works of a cycle: what damping, boundary conditions and yielding take or give (ENERGY ON).
+"""The work of a cycle: what damping, boundary conditions and yielding take or give (ENERGY ON).
 
 Each is the work over a full step: the force at the full step, times the mean of the displacements of the two
 half steps around it (kernels.energy.stored).
