@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_words
 
-from offsets.generate import LAYOUTS, NAMES, files, layouts_text, names_text, stale
+from offsets.generate import DRAFT, LAYOUTS, NAMES, files, layouts_text, names_text, stale
 from offsets.generate import TABLE as SOURCE
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
@@ -184,9 +184,14 @@ def changed(old: str, new: str) -> Table:
     return parse(text.replace(old, new))
 
 
+def released(layouts: str) -> str:
+    """The list of layouts once none of them is a draft any more."""
+    return layouts.replace(f"  {DRAFT}\n", "\n")
+
+
 def test_a_layout_has_a_number_and_every_number_one_layout() -> None:
     """A new field needs the next one, and says since when it is there; a wording needs none."""
-    known = LAYOUTS.read_text()
+    known = released(LAYOUTS.read_text())
     last = TABLE.layout
     assert layouts_text(TABLE, known) == known
     assert layouts_text(changed("| block type number", "| type of the block"), known) == known
@@ -305,6 +310,7 @@ def test_a_changed_table_is_told_and_changes_the_run_after_it_was_written_out(tm
     for package in ("offsets", "udec_ia"):
         shutil.copytree(here / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
     (tree / "udec_ia" / "heap" / "probe.py").write_text(PROBE)
+    (tree / "offsets" / "layouts.txt").write_text(released(LAYOUTS.read_text()))
     first = run_probe(tree, cache)
     again = run_probe(tree, cache)
     assert (first[0], again[0]) == (False, True)

@@ -66,6 +66,8 @@ def other_program(folder: Path) -> Path:
         assert table.count(old) == 1, old
         table = table.replace(old, new)
     (folder / "offsets" / "groups.table").write_text(table)
+    layouts = folder / "offsets" / "layouts.txt"
+    layouts.write_text(layouts.read_text().replace("  draft\n", "\n"))  # as if this program were released
     return folder
 
 

@@ -118,4 +118,5 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "ENERGY": _put(LENER=0),
     "HISTORY": _unrecorded,
     "watch of the energy": _unjudged,
+    "other groups": "nothing here knows what they are for",
 }
