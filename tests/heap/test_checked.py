@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from numba.core import config
 
+from udec_ia.layout import offsets as g
+
 ROOT = Path(__file__).parents[2]
 TESTS = ROOT / "tests"
 EVERY = 7  # of the wrong pointers where kernels are interpreted
@@ -93,3 +95,9 @@ def test_it_is_too_late_once_kernels_are_loaded() -> None:
     done = run("-c", "import udec_ia.model, udec_ia.cli; exit(udec_ia.cli.main(['--checked', 'info', 'x']))")
     assert done.returncode == 2
     assert "kernels are already loaded: set UDEC_CHECKED=1" in done.stderr
+
+
+def test_chatter_is_looked_for_in_both_builds() -> None:
+    """A size has more numbers behind it in the checked build: words that share a mark are as many as ever."""
+    import_it = "from udec_ia.kernels.drive.openings import STRIDE; print(STRIDE)"
+    assert {run("-c", import_it, UDEC_CHECKED=build).stdout for build in "01"} == {f"{min(g.NVCN[:3])}\n"}

@@ -13,7 +13,7 @@ from udec_ia.heap.jit import apart
 from udec_ia.layout import offsets as g
 
 LOOK = 100  # cycles from one look to the next
-STRIDE = min(g.NVCN)  # words of IA() that share a mark
+STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; behind the three sizes there may be more
 
 
 @apart
