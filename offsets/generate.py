@@ -31,7 +31,8 @@ def python_text(table: Table) -> str:
     lines += ["from udec_ia.layout.table import require_current", ""]
     lines += [f'DIGEST = "{table.digest}"', "require_current(DIGEST)", ""]
     lines += [f"{head.name} = {head.value}  # {head.text}" for head in table.heads]
-    lines += ["", *(f"{code.name} = {code.value}  # {code.field}: {code.text}" for code in table.codes)]
+    lines.append("")
+    lines += [f"{one.name} = {one.value}  # {' and '.join(one.fields)}: {one.text}" for one in table.codes]
     for group in table.groups:
         layouts = [lay_out(group, ratio) for ratio in RATIOS]
         lines += ["", f"# {group.text} (page {group.page})"]

@@ -17,6 +17,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout import offsets
+from udec_ia.layout.codes import spelled
 from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, Table, TableError, lay_out, parse, read_table
 
 TABLE = read_table()
@@ -153,6 +154,8 @@ def test_bad_lines_are_named(bad: str) -> None:
     ("line", "said"),
     [
         ("CODE  OPEN  1  KNONE | of no field", "there is no field for the code OPEN"),
+        ("CODE  OPEN  1  KGFIX,KNONE | of one field only", "there is no field for the code OPEN"),
+        ("FLAG  OPEN  3  KGFIX | the sum of others", "the number of a flag is 1, 2, 4"),
         ("CODE  VIRTUAL  5  KCCOD | twice", "called VIRTUAL"),
         ("RETIRED  KX  2 | a name that is in use again", "retired names are called KX"),
         ("CODE  KX  5  KCCOD | a field's name", "called KX"),
@@ -171,11 +174,28 @@ def test_a_property_has_an_array() -> None:
 def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
     fields |= {field.name: field for field in TABLE.common}
-    assert {code.field for code in TABLE.codes} == {"KBFIX", "KCCOD", "KGFIX", "KHK", "JPHASE", "LREST"}
+    coded = {name for code in TABLE.codes for name in code.fields}
+    assert coded == {"KBFIX", "KCCOD", "KGFIX", "KUFIX", "KHK", "JPHASE", "LREST"}
     for code in TABLE.codes:
-        assert any(low <= code.value <= (high or 0) for low, high in fields[code.field].allowed)
+        for name in code.fields:
+            assert any(low <= code.value <= (high or 0) for low, high in fields[name].allowed)
         assert getattr(offsets, code.name) == code.value
-    assert fields["KUFIX"].allowed == fields["KGFIX"].allowed  # which have the same codes
+
+
+def test_flags_add_up_to_what_their_field_may_hold() -> None:
+    """The range of a field with flags holds their sums and nothing else, but for what excludes itself."""
+    for name, sums in {"KBFIX": {0, 1, 2, 4, 6}, "KGFIX": {0, 1, 2, 3}, "KUFIX": {0, 1, 2, 3}}.items():
+        codes = TABLE.codes_of(name)
+        assert all(code.flag for code in codes)
+        (field,) = (field for field in TABLE.fields if field.name == name)
+        held = {value for low, high in field.allowed for value in range(low, (high or 0) + 1)}
+        assert held == sums
+        for value in held:
+            assert sum(code.value for code in spelled(codes, value)) == value
+    assert [code.name for code in TABLE.codes if code.flag] == [
+        "FIXED", "GIVEN_X", "GIVEN_Y", "ALONG_X", "ALONG_Y",
+    ]  # fmt: skip
+    assert spelled(TABLE.codes_of("LREST"), 5) == []  # LOCAL and ADAPTIVE do not add up
 
 
 def changed(old: str, new: str) -> Table:

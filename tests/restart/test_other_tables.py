@@ -159,6 +159,11 @@ CASES = {
         TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("1 kind of group is new",)
     ),
     "codes": Case(CODES, ("7 codes are under another number (GIVEN_X",), NUMBERS),
+    "codes before flags": Case(
+        CODES.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX"),
+        ("7 codes are under another number (GIVEN_X",),
+        NUMBERS,
+    ),
     "heads": Case(
         replaced(("HEAD  MCOR   4", "HEAD  MCOR   14"), ("HEAD  MCON   5", "HEAD  MCON   4")),
         ("2 codes are under another number (MCOR, MCON)",),

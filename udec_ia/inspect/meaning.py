@@ -5,14 +5,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from udec_ia.layout.table import Field, Table, lay_out, read_table
+from udec_ia.layout.codes import spelled
+from udec_ia.layout.table import Code, Field, Table, lay_out, read_table
 
-SAME_CODES = {"KUFIX": "KGFIX"}  # a condition gives the same velocities as its grid-point notes
 HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
-UNGROUPED = {code.name: code.value for code in read_table().codes if code.field == KIND}
+UNGROUPED = {code.name: code.value for code in read_table().codes_of(KIND)}
 SHOWN = 4  # names that a sentence lists
 
 
@@ -25,13 +27,13 @@ def same_words(theirs: Table, ours: Table, counted: bool) -> bool:
 
     counted: there are histories, which know a variable of the common block by its number.
     """
-    known = {(code.field, code.name): code.value for code in ours.codes}
+    known = {code.name: code.value for code in ours.codes}
     return (
         [(group.name, [_word(field) for field in group.fields]) for group in theirs.groups]
         == [(group.name, [_word(field) for field in group.fields]) for group in ours.groups]
         and {(head.name, head.value, head.group) for head in theirs.heads}
         == {(head.name, head.value, head.group) for head in ours.heads}
-        and not (known and any(known.get((one.field, one.name)) != one.value for one in theirs.codes))
+        and not (known and any(known.get(one.name) != one.value for one in theirs.codes))
         and not (counted and [one.name for one in theirs.common] != [one.name for one in ours.common])
     )
 
@@ -108,26 +110,32 @@ class Meaning:
     def __init__(self, theirs: Table, ours: Table) -> None:
         self.theirs, self.ours = theirs, ours
 
-    def names(self, field: Field, kind: str, old: bool) -> dict[int, str]:
-        """What the codes of a field of groups of `kind` are called, by the `old` table or by the new one."""
-        table = self.theirs if old else self.ours
-        if field.role == "head" and field.target is None:
-            return {head.value: head.name for head in table.heads if head.group == kind}
-        known = {code.value: code.name for code in table.codes if code.field == field.name}
-        same = SAME_CODES.get(field.name)
-        return known or {code.value: code.name for code in table.codes if code.field == same}
-
     def codes(self, old: Field, new: Field, kind: str, values: list[int]) -> dict[int, int]:
         """The new number of each of `values` of a field, {} if none has another.
 
-        UnknownError if one has none.
-        A number without a name is a sum of flags, or 0. A field without names of codes has none to lose.
+        UnknownError if one has none. A field without names of codes has none to lose.
         """
-        here = {name: value for value, name in self.names(new, kind, old=False).items()}
-        there = self.names(old, kind, old=True)
-        if not here or not there or all(here.get(name) == value for value, name in there.items()):
+        if new.role == "head" and new.target is None:
+            there, ours = head_codes(self.theirs, kind), head_codes(self.ours, kind)
+        else:
+            ours = list(self.ours.codes_of(new.name))
+            there = self._there(old, {code.name: code.flag for code in ours})
+        here = {code.name: code.value for code in ours}
+        if not here or not there or all(here.get(code.name) == code.value for code in there):
             return {}
         return {value: _renumbered(value, there, here) for value in values}
+
+    def _there(self, field: Field, flags: dict[str, bool]) -> list[Code]:
+        """The codes of a field by the old table.
+
+        flags: codes of the new one by name, True for a flag. A table of before the word FLAG knew each code
+        of one field only, and not which of them add up.
+        """
+        return [
+            replace(code, flag=code.flag or flags.get(code.name, False))
+            for code in self.theirs.codes
+            if field.name in code.fields or code.name in flags
+        ]
 
     @cached_property
     def _numbers(self) -> dict[tuple[int, int], tuple[int, int]]:
@@ -163,13 +171,16 @@ class Meaning:
         raise UnknownError(f"records {what}" + (", which is not known here" if name else ""))
 
 
-def _renumbered(value: int, there: dict[int, str], here: dict[str, int]) -> int:
-    """The new number of one code, of the sum of several flags, or of 0."""
-    if value in there:
-        if there[value] not in here:
-            raise UnknownError(f"is {value}, {there[value]} in the file, which is not known here")
-        return here[there[value]]
-    flags = [code for code in there if code > 0 and code & (code - 1) == 0 and code & value]
-    if sum(flags) != value or any(there[code] not in here for code in flags):
+def head_codes(table: Table, kind: str) -> list[Code]:
+    """The head codes that groups of `kind` can have; none if they have no head code."""
+    return [Code(one.name, one.value, ("HEAD",), one.text) for one in table.heads if one.group == kind]
+
+
+def _renumbered(value: int, there: Iterable[Code], here: dict[str, int]) -> int:
+    """The new number of one code, of the sum of several flags, or of 0, which needs no name."""
+    names = [code.name for code in spelled(there, value)]
+    if lost := [name for name in names if name not in here]:
+        raise UnknownError(f"is {value}, {'+'.join(lost)} in the file, which is not known here")
+    if value and not names:
         raise UnknownError(f"is {value}, which is no code in the file")
-    return sum(here[there[code]] for code in flags)
+    return sum(here[name] for name in names)

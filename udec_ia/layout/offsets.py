@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "ce7939c84beb2e568b8a4c0994837a8ba8c56084504b684661402ff0b61669ff"
+DIGEST = "1ca3ee872a0d3439a98bfe28c42a9baf76b79c578b2ade5c230ab7d36fda682d"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -26,8 +26,8 @@ CORNER_CORNER = 1  # KCCOD: the arcs of two corners
 CORNER_EDGE = 2  # KCCOD: an arc of block KB1 and an edge of block KB2
 EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
 VIRTUAL = 4  # KCCOD: no contact: it keeps the map together
-ALONG_X = 1  # KGFIX: its x velocity is given; KUFIX has the same codes
-ALONG_Y = 2  # KGFIX: its y velocity is given
+ALONG_X = 1  # KGFIX and KUFIX: its x velocity is given
+ALONG_Y = 2  # KGFIX and KUFIX: its y velocity is given
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
 COMMON_BLOCK = 0  # KHK: a variable of the common block
 UNDAMPED = 0  # LREST: not at all

@@ -89,12 +89,13 @@ class HeadCode:
 
 @dataclass(frozen=True)
 class Code:
-    """What an integer of the field `field` says. Flags are codes that add up."""
+    """What an integer of the fields `fields` says. flag: it and others of the field add up."""
 
     name: str
     value: int
-    field: str
+    fields: tuple[str, ...]
     text: str
+    flag: bool = False
 
 
 @dataclass(frozen=True)
@@ -152,6 +153,10 @@ class Table:
     def fields(self) -> list[Field]:
         """All fields: those of the common block, and those of all groups."""
         return [*self.common, *(field for group in self.groups for field in group.fields)]
+
+    def codes_of(self, field: str) -> tuple[Code, ...]:
+        """The codes and flags of the field of that name."""
+        return tuple(code for code in self.codes if field in code.fields)
 
     @cached_property
     def _by_name(self) -> dict[str, Group]:
@@ -218,8 +223,8 @@ def parse(text: str) -> Table:
             elif words[0] == "HEAD" and words[2].isdigit():
                 group, _, extension = words[3].partition("/")
                 heads.append(HeadCode(words[1], int(words[2]), group, doc, extension))
-            elif words[0] == "CODE":
-                codes.append(Code(words[1], int(words[2]), words[3], doc))
+            elif words[0] in ("CODE", "FLAG"):
+                codes.append(_code(words, doc))
             elif fields is None:
                 raise ValueError("a field stands before the first GROUP")
             else:
@@ -241,6 +246,13 @@ def parse(text: str) -> Table:
     return Table(*parts, digest, tuple(properties), tuple(retired), layout)
 
 
+def _code(words: list[str], doc: str) -> Code:
+    word, name, value, fields = words
+    if word == "FLAG" and int(value).bit_count() != 1:
+        raise ValueError("the number of a flag is 1, 2, 4, 8, ...")
+    return Code(name, int(value), tuple(fields.split(",")), doc, word == "FLAG")
+
+
 def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:
     """TableError if two fields or codes have one name, or a code has no field: offsets.py has them all.
 
@@ -248,7 +260,7 @@ def _check_names(groups: list[Group], codes: list[Code], common: list[Field], re
     """
     names = [field.name for group in groups for field in group.fields if field.role != "head"]
     names += [field.name for field in common]
-    lost = [code.name for code in codes if code.field not in names]
+    lost = [code.name for code in codes if not {*code.fields} <= {*names}]
     if lost:
         raise TableError(f"groups.table: there is no field for the code {', '.join(lost)}")
     names += [code.name for code in codes] + [one.name for one in retired]

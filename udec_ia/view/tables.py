@@ -36,7 +36,11 @@ def tables(ratios: set[int]) -> dict[str, Any]:
         },
         "common": [_field(field, getattr(g, field.name)) for field in TABLE.common],
         "heads": [[head.group, head.value, f"{head.name}: {head.text}"] for head in TABLE.heads],
-        "codes": [[code.field, code.value, f"{code.name}: {code.text}"] for code in TABLE.codes],
+        "codes": [
+            [name, code.value, f"{code.name}: {code.text}", code.flag]
+            for code in TABLE.codes
+            for name in code.fields
+        ],
         "choices": CHOICES | {"any": KINDS},
         "notAllowed": NOT_ALLOWED,
         "layouts": {

@@ -9,7 +9,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check.groups import TABLE, Violation
 from udec_ia.layout import offsets as g
 
-PHASES = {code.value: code.text for code in TABLE.codes if code.field == "JPHASE"}
+PHASES = {code.value: code.text for code in TABLE.codes_of("JPHASE")}
 BEYOND_LINKS = 7  # the first invariant that is not of links
 
 

@@ -13,11 +13,11 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.compare.compare import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.inspect.compare.side import Side
 from udec_ia.inspect.compare.values import tolerance as limits
-from udec_ia.inspect.look.atlas import KINDS, NAMES, NOTHING, Atlas
-from udec_ia.inspect.look.fields import CODES
+from udec_ia.inspect.look.atlas import KINDS, NAMES, NOTHING, TABLE, Atlas
 from udec_ia.inspect.look.fields import COMMON as COMMON_BLOCK
 from udec_ia.inspect.look.listing import Listing, Tables
 from udec_ia.inspect.look.names import names
+from udec_ia.layout.codes import spelled
 
 LIMIT = 20  # rows of a table, if it is not said how many
 DISTANCES = ("difference", "relative", "ulp", "unit")
@@ -158,5 +158,5 @@ def _shown(side: Side, one: Differing, value: int | float) -> int | float | str:
     if isinstance(value, int) and (one.field.target or one.field.name in ADDRESSES):
         kind = side.atlas.starts[value] if 0 < value < side.atlas.free else 0
         return f"{KINDS[kind - 1]}@{value}" if kind else value
-    named = CODES.get(one.field.name, {})
-    return named[value].partition(":")[0] if isinstance(value, int) and value in named else value
+    codes = spelled(TABLE.codes_of(one.field.name), value) if isinstance(value, int) else []
+    return "+".join(code.name for code in codes) or value

@@ -14,14 +14,12 @@ import numpy as np
 from udec_ia.inspect.check.codes import allowed, in_words
 from udec_ia.inspect.look.atlas import TABLE, Atlas, Span, Word
 from udec_ia.inspect.look.names import leads_to
-from udec_ia.layout.table import Field
+from udec_ia.layout.codes import spelled
+from udec_ia.layout.table import Code, Field
 
 COLUMNS = ("address", "words", "field", "value", "unit", "meaning")
 Row = tuple[Any, ...]
 HEADS = {(head.group, head.value): f"{head.name}: {head.text}" for head in TABLE.heads}
-CODES: dict[str, dict[int, str]] = {}  # by field and value
-for _code in TABLE.codes:
-    CODES.setdefault(_code.field, {})[_code.value] = f"{_code.name}: {_code.text}"
 COMMON = "common block"  # what its variables stand under
 RADICES = (8, 10, 16)
 NOT_ALLOWED = "not allowed"  # begins what is said of a value that the table does not allow
@@ -108,19 +106,16 @@ def _meanings(atlas: Atlas, kind: str, field: Field, values: Any) -> Iterable[st
 
 def data_meanings(field: Field, values: Any) -> Iterable[str]:
     """The same for a field that is no pointer."""
-    good, told = np.isfinite(values) & allowed(field, values), CODES.get(field.name)
+    good, told = np.isfinite(values) & allowed(field, values), TABLE.codes_of(field.name)
     if good.all() and not told:
         return repeat(field.text, len(values))
     wrong = f"{NOT_ALLOWED}, {in_words(field) if field.allowed else 'finite'}: {field.text}"
     return [
-        (_coded(told, value, field.text) if told else field.text) if is_good else wrong
+        _coded(told, value, field.text) if is_good else wrong
         for value, is_good in zip(values.tolist(), good.tolist(), strict=True)
     ]
 
 
-def _coded(told: dict[int, str], value: int, text: str) -> str:
-    """The name of a code, or those of the flags that add up to it."""
-    flags = {flag: one for flag, one in told.items() if flag > 0 and value & flag == flag}
-    if value in told or sum(flags) != value:
-        return told.get(value, text)
-    return ", ".join(flags.values()) or text
+def _coded(codes: tuple[Code, ...], value: int, text: str) -> str:
+    """The name of a code, or those of the flags that add up to it; else the `text` of the field."""
+    return ", ".join(f"{code.name}: {code.text}" for code in spelled(codes, value)) or text

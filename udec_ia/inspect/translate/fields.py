@@ -15,6 +15,7 @@ from udec_ia.inspect.meaning import (
     NUMBER,
     Meaning,
     UnknownError,
+    head_codes,
     in_words,
     is_alike,
     may_be_0,
@@ -159,7 +160,7 @@ class Translation:
 
     def _is_head_of_one(self, kind: str, field: Field) -> bool:
         """True for a head code that says no more than the kind of the group does."""
-        return field.role == "head" and len(self.meaning.names(field, kind, old=True)) == 1
+        return field.role == "head" and len(head_codes(self.state.table, kind)) == 1
 
     def _gone(self, name: str) -> str:
         """What is known of a field that the new table has not."""
@@ -186,9 +187,9 @@ class Translation:
     def _begin(self, values: Any, rows: Rows, field: Field) -> None:
         """A field that is new is 0, or the head code of a kind that has one."""
         kind = rows.kind
-        codes = self.meaning.names(field, kind, old=False) if field.role == "head" and kind else {}
+        codes = head_codes(self.table, kind) if field.role == "head" and kind else []
         if len(codes) == 1:
-            values[:] = min(codes)
+            values[:] = codes[0].value
         elif codes or not may_be_0(field):
             self._refuse(values == 0, rows, field.name, values, "as it is new, but must not be 0")
 

@@ -68,7 +68,7 @@ function coded(heap, field, number) {
   const told = heap.table.codes.filter(([name]) => name === field.name);
   const one = told.find(([, code]) => code === number);
   if (one) return one[2];
-  const flags = told.filter(([, flag]) => flag > 0 && (number & flag) === flag);
+  const flags = told.filter(([, value, , flag]) => flag && (number & value) !== 0);
   const sum = flags.reduce((all, [, flag]) => all + flag, 0);
   return (sum === number && flags.map(([, , text]) => text).join(", ")) || field.text;
 }
