@@ -12,8 +12,8 @@ import soft_scenes
 from naive import census as naive
 
 from udec_ia import Model
+from udec_ia.heap.census import census
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.census import census
 from udec_ia.layout import offsets as g
 
 BUILDS = list(ALL_SCHEMES)

@@ -11,7 +11,8 @@ from naive.census import census as naive_census
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget, puti
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES, find, lose
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.memory import find, lose
 from udec_ia.inspect.look import Atlas, junk, walk, what, who
 from udec_ia.inspect.look.atlas import JUNK, UNUSED
 from udec_ia.inspect.walk import boundary, groups, loop, members

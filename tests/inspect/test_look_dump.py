@@ -12,7 +12,7 @@ from naive.names import names as naive_names
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.look import Atlas, common, dump, names, what
 from udec_ia.inspect.look.atlas import KINDS

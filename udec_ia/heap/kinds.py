@@ -9,20 +9,20 @@ pointers: groups with a head code first, so that a wrong pointer does not make a
 from __future__ import annotations
 
 import weakref
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from udec_ia.heap.census import census
 from udec_ia.heap.checked import CHECKED, KINDS, NOTHING, SPARE, TABLE
+from udec_ia.heap.junk import junk_chains
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Group, layouts
+from udec_ia.layout.table import layouts
 
 NOTES = 5  # what an access that was refused leaves behind: routine, address, field, element, 1 if it writes
 MARKS = g.MFREE, g.JUNK, g.IBPNT, g.ICPNT, g.IDPNT  # what only kernels change
-HEADS = {(head.group, head.value) for head in TABLE.heads}
-HEADED = {kind for kind, _ in HEADS}
-SOFT = {head.value: (head.extension,) for head in TABLE.heads if head.extension}
-CHOICES = {"item": ("corner", "contact"), "any": ()}  # what is of any kind is reached by its own lists
+HEADED = {head.group for head in TABLE.heads}  # kinds that their head code gives away
 
 
 class Shadow:
@@ -73,7 +73,7 @@ def enter(h: Any) -> None:
     here.notes[:] = 0
     if not here.known or here.left != _marks(h):
         here.kinds[:] = NOTHING
-        _Walk(h, here.kinds)
+        _find(h, here.kinds)
         here.known = True
 
 
@@ -86,55 +86,23 @@ def _marks(h: Any) -> tuple[int, ...]:
     return tuple(int(h.ci[mark]) for mark in MARKS)
 
 
-class _Walk:
-    """Through all pointers of the table, from those of the common block and the junk list on."""
+def _find(h: Any, kinds: Any) -> None:
+    """Put the kinds of all groups into `kinds`; of groups that lie in each other, that of the surest one."""
+    taken = np.zeros(len(kinds) + 2, np.int64)  # by address: groups that begin there less those that end
+    for number, at, size in _groups(h):
+        before = np.concatenate(([0], np.cumsum(np.cumsum(taken) > 0)))  # words of groups below an address
+        free = before[at + size] == before[at]
+        free[1:] &= at[1:] >= (at + size)[:-1]
+        kinds[at[free] - 1] = number
+        np.add.at(taken, at[free], 1)
+        np.add.at(taken, (at + size)[free], -1)
 
-    def __init__(self, h: Any, kinds: Any) -> None:
-        self.words, self.kinds = memoryview(getattr(h.ia, "array", h.ia)), kinds
-        self.ratio = int(h.ra.itemsize // h.ia.itemsize)
-        self.layouts = layouts(self.ratio)
-        self.top = max(1, min(int(h.ci[g.MFREE]), len(h.ia) + 1))
-        self.taken = bytearray(self.top)
-        self._junk(int(h.ci[g.JUNK]))
-        self.sure: list[tuple[str, int]] = []  # where groups with a head code may be
-        self.others: list[tuple[str, int]] = []
-        for field in TABLE.common:
-            if field.target:
-                self._ahead(field.target, int(h.ci[getattr(g, field.name)]), 0)
-        while self.sure or self.others:
-            self._claim(*(self.sure or self.others).pop())
 
-    def _take(self, kind: str, iad: int, size: int) -> bool:
-        """A group begins at `iad`, unless another one lies there."""
-        inside = 1 <= iad <= self.top - size and not (iad - 1) % self.ratio
-        if not inside or self.taken.find(1, iad - 1, iad - 1 + size) >= 0:
-            return False
-        self.taken[iad - 1 : iad - 1 + size] = b"\1" * size
-        self.kinds[iad - 1] = KINDS.index(kind)
-        return True
-
-    def _junk(self, first: int) -> None:
-        while 1 <= first < self.top - 2:
-            size, iad = self.words[first], first
-            first = self.words[first + 1]
-            while size > 0 and self._take(KINDS[SPARE], iad, size):
-                iad = self.words[iad - 1]
-
-    def _ahead(self, target: str, iad: int, code: int) -> None:
-        """A pointer leads to `iad`. code: the head code of the group that has it."""
-        if iad:
-            for kind in SOFT.get(code, ()) if target == "soft" else CHOICES.get(target, (target,)):
-                (self.sure if kind in HEADED else self.others).append((kind, iad))
-
-    def _claim(self, kind: str, iad: int) -> None:
-        """Let a group of `kind` be at `iad` if one can be, and go on from there."""
-        group: Group = TABLE.group(kind)
-        layout = self.layouts[kind]
-        code = int(self.words[iad - 1]) if 1 <= iad < self.top else 0
-        if (kind in HEADED and (kind, code) not in HEADS) or not self._take(kind, iad, layout.size):
-            return
-        for field in group.fields:
-            if field.target:
-                at = iad - 1 + layout.offset[field.name]
-                for i in range(field.count):
-                    self._ahead(field.target, int(self.words[at + i]), code)
+def _groups(h: Any) -> Iterator[tuple[int, Any, Any]]:
+    """Number of the kind, addresses, and words of the groups: junk, then what its head code gives away."""
+    layout, words = layouts(int(h.ra.itemsize // h.ia.itemsize)), getattr(h.ia, "array", h.ia)
+    top = max(1, min(int(h.ci[g.MFREE]), len(words) + 1))
+    junk = sorted(group for chain in junk_chains(words[: top - 1], int(h.ci[g.JUNK])) for group in chain)
+    yield SPARE, np.array([at for at, _ in junk], np.int64), np.array([size for _, size in junk], np.int64)
+    for kind, at in sorted(census(h).items(), key=lambda item: item[0] not in HEADED):
+        yield KINDS.index(kind), at, np.full(len(at), layout[kind].size)

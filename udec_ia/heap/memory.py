@@ -1,19 +1,7 @@
 """Memory management: FIND and LOSE (report 3.4).
 
 Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
-reuses it for the next request of exactly the same size; groups are never cut up.
-
-The figure of the junk list (Fig. 6) is lost. Our reading keeps one chain for each size, so that a
-request never has to search through groups of other sizes:
-
-    JUNK -> first group of size a  --(word 2)-->  first group of size b  --> ... --> 0
-                |(word 0)                              |(word 0)
-            next group of size a                   next group of size b
-                |                                      |
-                0                                      0
-
-Word 0 of a junk group: next junk group of the same size, or 0. Word 1: its size. Word 2: first group
-of the next size, or 0; it has a meaning only in the first group of a chain.
+reuses it for the next request of exactly the same size (junk.py); groups are never cut up.
 
 Its address may soon be that of another group. So whoever watches a group from outside the map, as a history
 does, is told when the group is given back.
@@ -23,14 +11,12 @@ from __future__ import annotations
 
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
-from udec_ia.heap.checked import SPARE, WHATEVER, offset
+from udec_ia.heap.checked import WHATEVER, offset
 from udec_ia.heap.guarding import begins, ends
 from udec_ia.heap.jit import kernel
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.layout import offsets as g
 
-JNEXT: Offset = offset("JNEXT", (0, 0, 0), SPARE)
-JSIZE: Offset = offset("JSIZE", (1, 1, 1), SPARE)
-JSIZES: Offset = offset("JSIZES", (2, 2, 2), SPARE)
 WORD: Offset = offset("WORD", (0, 0, 0), WHATEVER)  # the first one of any group
 
 

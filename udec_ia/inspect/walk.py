@@ -7,10 +7,8 @@ so that a damaged heap ends in Unsound and never in a hang.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
-
-import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
@@ -29,9 +27,6 @@ HEADS: dict[str, tuple[int, ...]] = {  # kinds with a head code, and what it may
     for kind in dict.fromkeys(head.group for head in TABLE.heads)
 }
 SIZES: dict[str, Offset] = {kind: getattr(g, TABLE.group(kind).size_name) for kind in HEADS}
-SOFT = {  # kind of the extension of a group with this head code
-    head.value: head.extension for head in TABLE.heads if head.extension
-}
 
 
 class Unsound(UdecError):
@@ -53,14 +48,6 @@ def follow(words: Any, first: int, step: int, last: int, ratio: int) -> tuple[li
         found.append(iad)
         iad = words[iad + step]
     return found, iad
-
-
-def one_of(values: Any, few: Sequence[int]) -> Any:
-    """True for each of `values` that is one of a `few` numbers."""
-    good = np.asarray(values == few[0])
-    for other in few[1:]:
-        good |= values == other
-    return good
 
 
 def kind_of(h: Memory, iad: int) -> str | None:

@@ -14,9 +14,9 @@ import numpy as np
 
 from udec_ia.heap.accessors import integers
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check.groups import KIND_CODE, TABLE, TARGETS
 from udec_ia.inspect.look.atlas import Atlas, junk_list
 from udec_ia.inspect.look.names import called
+from udec_ia.inspect.reading import KIND_CODE, TABLE, TARGETS
 from udec_ia.inspect.table import all_addresses
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import KR, State
+from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.members import zoned
+from udec_ia.inspect.reading import KR
 from udec_ia.layout import offsets as g
 
 

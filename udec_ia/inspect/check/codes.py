@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import TABLE, Numbers, State
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.reading import TABLE, Numbers
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
 

@@ -23,9 +23,10 @@ from math import hypot, isqrt
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import HOSTS, Numbers, State
+from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.outlines import Outlines, cross, dot, length
 from udec_ia.inspect.check.touches import Touches
+from udec_ia.inspect.reading import HOSTS, Numbers
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 Sides = Sequence[Numbers] | Numbers  # x and y

@@ -16,7 +16,9 @@ from functools import cache
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import TABLE, Numbers, State, corner_before, names
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.rings import corner_before
+from udec_ia.inspect.reading import TABLE, Numbers, names
 
 OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block
 COUNTS = {"KFNG": "gridpoint", "KFNZ": "zone"}  # of an fdef group

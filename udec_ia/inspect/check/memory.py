@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.check.groups import LOST, TABLE, Numbers, State
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
+from udec_ia.inspect.check.groups import LOST, State
+from udec_ia.inspect.reading import TABLE, Numbers
 
 
 def check_memory(state: State) -> None:

@@ -6,7 +6,8 @@ import numpy as np
 
 from udec_ia.heap.array import variable
 from udec_ia.inspect.check.codes import allowed
-from udec_ia.inspect.check.groups import TABLE, State
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.reading import TABLE
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 TOGETHER = 50_000  # groups that are looked at together

@@ -12,9 +12,10 @@ from collections import defaultdict
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import Numbers, State
+from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
 from udec_ia.inspect.check.outlines import Outlines, cross
+from udec_ia.inspect.reading import Numbers
 from udec_ia.layout import offsets as g
 
 

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import HOSTS, Numbers, State
+from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import neighbours
 from udec_ia.inspect.check.outlines import Outlines, cross, dot, length
 from udec_ia.inspect.check.touches import TOGETHER, Touches
+from udec_ia.inspect.reading import HOSTS, Numbers
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 

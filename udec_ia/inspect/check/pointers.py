@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import KBEX, TABLE, TARGETS, State
-from udec_ia.inspect.walk import SOFT, one_of
+from udec_ia.heap.census import SOFT, one_of
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.reading import KBEX, TABLE, TARGETS
 
 OPTIONAL = ((0, None),)  # what a pointer may be that is 0 at times
 

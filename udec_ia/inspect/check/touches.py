@@ -6,9 +6,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from udec_ia.inspect.check.groups import INDEX, Numbers, State
+from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.inspect.check.outlines import Outlines, dot, length
+from udec_ia.inspect.check.rings import INDEX
+from udec_ia.inspect.reading import Numbers
 from udec_ia.layout import offsets as g
 
 TOGETHER = 50_000  # contacts that are looked at together

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check.groups import TABLE, Violation
+from udec_ia.inspect.check.groups import Violation
+from udec_ia.inspect.reading import TABLE
 from udec_ia.layout import offsets as g
 
 PHASES = {code.value: code.text for code in TABLE.codes_of("JPHASE")}

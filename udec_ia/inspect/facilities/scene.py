@@ -1,6 +1,6 @@
 """A state, field by field: what tells which facilities are in use.
 
-Groups are found as in a damaged heap (inspect/census.py), so that nothing here follows a link.
+Groups are found as in a damaged heap (heap/census.py), so that nothing here follows a link.
 """
 
 from __future__ import annotations

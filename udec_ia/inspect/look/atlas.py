@@ -1,6 +1,6 @@
 """What each word of IA() is: part of a group, of a junk group, of nothing, or not used yet.
 
-The census (inspect/census.py) tells which groups the lists reach; the junk list tells what was given back.
+The census (heap/census.py) tells which groups the lists reach; the junk list tells what was given back.
 Between them there may be words that nothing leads to, in a damaged heap, and groups may lie in each other: a
 word then belongs to the group that begins nearest before it. Above MFREE nothing has been used.
 
@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.inspect.census import CHOICES, census, junk_chains
-from udec_ia.inspect.walk import one_of
+from udec_ia.heap.census import CHOICES, census, one_of
+from udec_ia.heap.junk import junk_chains
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.array import variable
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span
 from udec_ia.inspect.look.fields import (
     COLUMNS,

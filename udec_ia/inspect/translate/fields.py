@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.words import Scheme
 from udec_ia.inspect.meaning import (
     HISTORY,

@@ -12,23 +12,23 @@ The table may be that of another program, whose restart file is being read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory
-from udec_ia.heap.memory import JNEXT, JSIZE, JSIZES
-from udec_ia.inspect.walk import SOFT, one_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, Table, lay_out, read_table
 
 TABLE = read_table()
-CHOICES = {
+SOFT = {  # kind of the extension of a group with this head code
+    head.value: head.extension for head in TABLE.heads if head.extension
+}
+SOFT_NAMES = {head.name: head.extension for head in TABLE.heads if head.extension}
+CHOICES = {  # kinds that such a pointer can lead to
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
-}  # kinds that such a pointer can lead to
-SOFT_NAMES = {head.name: head.extension for head in TABLE.heads if head.extension}
+}
 
 
 class Shape(NamedTuple):
@@ -39,14 +39,15 @@ class Shape(NamedTuple):
     pointers: list[tuple[int, str]]
 
 
-def census(h: Memory) -> dict[str, Any]:
+def census(h: Any) -> dict[str, Any]:
     """Addresses of the groups of every kind, each an ascending array.
 
-    An address to which two kinds of pointer lead is counted once, as the kind that comes first.
+    An address to which two kinds of pointer lead is counted once: as a kind with a head code, if it has that.
     """
-    ratio, top = int(h.ra.itemsize // h.ia.itemsize), max(min(int(h.ci[g.MFREE]), len(h.ia) + 1), 1)
+    words, ratio = getattr(h.ia, "array", h.ia), int(h.ra.itemsize // h.ia.itemsize)
+    top = max(min(int(h.ci[g.MFREE]), len(words) + 1), 1)
     heads = ((str(field.target), int(h.ci[getattr(g, field.name)])) for field in list_heads(TABLE))
-    return reached(TABLE, ratio, h.ia[: top - 1], heads)
+    return reached(TABLE, ratio, words[: top - 1], heads)
 
 
 def list_heads(table: Table) -> list[Any]:
@@ -71,11 +72,14 @@ def reached(
     for kind, address in heads:
         wave.setdefault(kind, []).append(np.array([address], np.int64))
     while wave and not (strict and left < 0):
-        ahead: dict[str, list[Any]] = {}
+        sure = [
+            kind for kind in wave if shapes[kind].heads
+        ]  # first, so that a wrong pointer makes no other of them
+        turn = {kind: wave.pop(kind) for kind in sure or [*wave]}
         for number, (kind, shape) in enumerate(shapes.items(), 1):
-            if kind not in wave or shape.size >= top:
+            if kind not in turn or shape.size >= top:
                 continue
-            at = np.concatenate(wave[kind])
+            at = np.concatenate(turn[kind])
             at = at[(at >= 1) & (at <= top - shape.size) & ((at - 1) % ratio == 0)]
             at = at[kind_at[(at - 1) // ratio] == 0]
             at = at[_once((at - 1) // ratio, last_at)]
@@ -88,9 +92,16 @@ def reached(
             for offset, target in shape.pointers:
                 to = words[at + offset - 1].astype(np.int64)
                 for other, chosen in _by_kind(soft, words[at - 1], target, to):
-                    ahead.setdefault(other, []).append(chosen)
-        wave = ahead
+                    wave.setdefault(other, []).append(chosen)
     return {kind: np.flatnonzero(kind_at == number) * ratio + 1 for number, kind in enumerate(shapes, 1)}
+
+
+def one_of(values: Any, few: Sequence[int]) -> Any:
+    """True for each of `values` that is one of a `few` numbers."""
+    good = np.asarray(values == few[0])
+    for other in few[1:]:
+        good |= values == other
+    return good
 
 
 def _once(places: Any, last_at: Any) -> Any:
@@ -118,24 +129,3 @@ def _shape(table: Table, group: Group, ratio: int) -> Shape:
         for i in range(field.count)
     ]
     return Shape(layout.size, tuple(one.value for one in table.heads if one.group == group.name), pointers)
-
-
-def junk_chains(words: Any, first: int) -> list[list[tuple[int, int]]]:
-    """The junk list of the words in use, from `first` (JUNK) on, as far as it makes sense.
-
-    For each size the groups of its chain, address and words.
-    """
-    free, found, seen = len(words) + 1, [], set()
-    word, (following, size_at, sizes) = memoryview(words), (at[0] - 1 for at in (JNEXT, JSIZE, JSIZES))
-    while 1 <= first < free - JSIZES[0] and first not in seen:
-        size, after, chain = word[first + size_at], word[first + sizes], []
-        iad = first
-        while size > 0 and 1 <= iad <= free - size and iad not in seen:
-            seen.add(iad)
-            chain.append((iad, size))
-            iad = word[iad + following]
-        if not chain:
-            break
-        found.append(chain)
-        first = after
-    return found
