@@ -6,51 +6,65 @@ and told. A block whose lists do not close still has the corners that they lead 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from udec_ia.inspect.reading import FORWARD, HOSTS, KL, KP, KR, Numbers, Reading
+from udec_ia.inspect.reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
 from udec_ia.layout import offsets as g
 
 SHORT = 64  # items of a list that is walked together with others
 
 
-class Boundaries:
-    """The lists around the blocks at the addresses `blocks`.
+class Boundaries(NamedTuple):
+    """The lists around blocks.
 
     row, item: of each item of the clockwise lists that close, block by block, the row of its block and its
     address. corner, owner: the corners of all lists, each with the address of its block.
     """
 
-    def __init__(self, heap: Reading, blocks: Numbers) -> None:
+    row: Numbers
+    item: Numbers
+    corner: Numbers
+    owner: Numbers
+
+
+def boundaries(heap: Reading, blocks: Numbers) -> Boundaries:
+    """Those of the blocks at the addresses `blocks`. What breaks is reported."""
+    walker = _Walker(heap)
+    row, item, broken = walker.closed(blocks)
+    is_corner = heap.h.ia[item - 1] == g.MCOR
+    corner, owner = item[is_corner], row[is_corner]
+    turned = heap.read(corner, KR) != corner[_before(owner)]
+    again = [*broken, *blocks[np.unique(owner[turned])].tolist()]
+    return Boundaries(row, item, *walker.with_others(corner, blocks[owner], again))
+
+
+class _Walker:
+    """Walks round blocks with a number of steps: each is paid for by at least one word of the heap."""
+
+    def __init__(self, heap: Reading) -> None:
         self.heap = heap
         last = (heap.last(kind) for kind in ("corner", "contact"))
         self._steps = (*last, *(heap.offset[name] - 1 for name in (KL, *HOSTS, *FORWARD)))
-        self._left = heap.free  # every step of a sound walk is paid for by at least one word of the heap
-        self.row, self.item, broken = self._closed(blocks)
-        is_corner = heap.h.ia[self.item - 1] == g.MCOR
-        corner, owner = self.item[is_corner], self.row[is_corner]
-        turned = heap.read(corner, KR) != corner[_before(owner)]
-        again = [*broken, *blocks[np.unique(owner[turned])].tolist()]
-        self.corner, self.owner = self._with_others(corner, blocks[owner], again)
+        self._left = heap.free
 
-    def _closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, list[int]]:
+    def closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, list[int]]:
         """Row of the block and item, for the clockwise lists that close; and the blocks of the others."""
-        row, item = self._short_rings(blocks)
-        rows, items = [row], [item]
+        rows, items, closed = self._short_rings(blocks)
         broken: list[int] = []
-        for k in np.flatnonzero(np.bincount(row, minlength=len(blocks)) == 0).tolist():
-            ring, closed = self._ring(int(blocks[k]))
+        for k in np.flatnonzero(~closed).tolist():
+            ring, closes = self._ring(int(blocks[k]))
             self._left -= len(ring)
-            if closed:
-                rows.append(np.full(len(ring), k))
+            if closes:
+                rows.append(np.full(len(ring), k, rows[0].dtype))
                 items.append(np.array(ring, np.int64))
             else:
                 broken.append(int(blocks[k]))
-        row, item = np.concatenate(rows), np.concatenate(items)
-        order = np.argsort(row, kind="stable")
-        return row[order], item[order], broken
+        order = np.argsort(np.concatenate(rows), kind="stable")
+        return np.concatenate(rows)[order], np.concatenate(items)[order], broken
 
-    def _with_others(self, corner: Numbers, owner: Numbers, again: list[int]) -> tuple[Numbers, Numbers]:
+    def with_others(self, corner: Numbers, owner: Numbers, again: list[int]) -> tuple[Numbers, Numbers]:
         """The corners, and those of the lists of the blocks `again` that are not among them."""
         corners, owners = [corner], [owner]
         for block in again:
@@ -66,16 +80,17 @@ class Boundaries:
             at, owner = at[once], owner[once]
         return at, owner
 
-    def _short_rings(self, blocks: Numbers) -> tuple[Numbers, Numbers]:
-        """Row of the block and item, for the lists that close in a few steps; all are walked at a time.
+    def _short_rings(self, blocks: Numbers) -> tuple[list[Numbers], list[Numbers], Numbers]:
+        """Rows of blocks and items of the lists that close in a few steps, and which blocks these are.
 
-        The items of a block stand in the order of its list. What does not close is left to `_ring`.
+        All are walked at a time; the items of a block stand in the order of its list. What does not close is
+        left to `_ring`.
         """
         ia, (last_corner, last_contact, along, one, two, over_one, over_two) = self.heap.h.ia, self._steps
-        live = np.arange(len(blocks))
+        live = np.arange(len(blocks), dtype=INDEX)
         first = here = self.heap.read(blocks, KP)
         closed = np.zeros(len(blocks), bool)
-        rows, items = [], []
+        rows, items = [np.empty(0, INDEX)], [np.empty(0, np.int64)]
         for k in range(SHORT if last_corner > 0 else 0):
             at = np.where((here > 0) & (here <= last_corner) & ((here - 1) % self.heap.ratio == 0), here, 0)
             head = np.where(at > 0, ia[at - 1], 0)
@@ -94,9 +109,10 @@ class Boundaries:
             here, live = here[~back], live[~back]
             if not len(live):
                 break
-        row, item = (np.concatenate([np.empty(0, np.int64), *parts]) for parts in (rows, items))
-        kept = closed[row]
-        return row[kept], item[kept]
+        if not closed.all():
+            items = [item[closed[row]] for row, item in zip(rows, items, strict=True)]
+            rows = [row[closed[row]] for row in rows]
+        return rows, items, closed
 
     def _ring(self, block: int) -> tuple[list[int], bool]:
         """Clockwise list of `block` as far as it can be followed, and whether it closes."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import SOFT, one_of
-from udec_ia.inspect.boundaries import Boundaries
+from udec_ia.inspect.boundaries import Boundaries, boundaries
 from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
 from udec_ia.inspect.walk import HEADS, follow
 
@@ -55,7 +55,7 @@ class Lists(Reading):
             if kind in LISTED:
                 found = self._main_list(kind)
             elif kind == "corner":
-                self.boundaries = Boundaries(self, self.addresses("block"))
+                self.boundaries = boundaries(self, self.addresses("block"))
                 found, self.owner[kind] = self.boundaries.corner, self.boundaries.owner
             else:
                 found, self.owner[kind] = self._hung(kind)

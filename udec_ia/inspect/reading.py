@@ -18,6 +18,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 
 Numbers = NDArray[Any]
+INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
 
 TABLE = read_table()
 FIELDS = {field.name: field for group in TABLE.groups for field in group.fields}

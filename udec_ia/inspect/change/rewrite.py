@@ -21,6 +21,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.interpreting import interpreted
+from udec_ia.heap.slack import give_back
 from udec_ia.heap.words import Scheme
 from udec_ia.inspect.change.movable import movable, name_at
 from udec_ia.inspect.translate import Translation, words_of
@@ -46,15 +47,15 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     of `to` end before the groups do, and 28 if its integers or reals cannot hold all numbers.
     """
     found = movable(array)
+    give_back()
     _check_addresses(found, to)
     work = Translation(words_of(array), TABLE, to, found)
-    words, common = work.words(), work.variables()
-    fit = work.fit
-    _check_fit(array, fit, to)
-    del found, work  # where groups were and are, which takes as much memory as the words themselves
-    fresh = MainArray(to, int(common["MTOP"][0]))
+    work.move()
+    fresh = MainArray(to, work.room)
     fresh.fixed = array.fixed
-    fresh.h.ia[: len(words)] = words
+    work.write(fresh.h.ia[: work.used])
+    common, fit = work.variables(), work.fit
+    _check_fit(array, fit, to)
     for field in TABLE.common:
         variable(fresh.h, field)[:] = common[field.name]
     if to.real_bits != array.scheme.real_bits:

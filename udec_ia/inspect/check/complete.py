@@ -88,6 +88,7 @@ class Joined:
 def check_complete(state: State, o: Outlines, touch: Touches) -> None:
     """Invariant 8."""
     joined = Joined(state, o, touch)
+    state.leave_lists()
     reach = Reach(o)
     for a, b in _close_blocks(o):
         i, j = reach.corners(np.concatenate((a, b)), np.concatenate((b, a)))

@@ -10,9 +10,9 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import one_of
 from udec_ia.heap.slack import give_back
-from udec_ia.inspect.check.rings import INDEX, lay_out
+from udec_ia.inspect.check.rings import lay_out
 from udec_ia.inspect.lists import Lists
-from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, Numbers, names
+from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
 from udec_ia.layout import offsets as g
 
 STRETCH = 256  # places in which groups are counted by a byte
@@ -83,8 +83,8 @@ class State(Lists):
         give_back()
 
     def leave_lists(self) -> None:
-        """Keep no list either: what comes now looks at none."""
-        del self.rings
+        """Keep no list either, nor where groups begin: what comes now looks at none."""
+        del self.rings, self._kind_at, self._nth_at, self._before, self._row
         self.forget()
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:

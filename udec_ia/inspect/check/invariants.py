@@ -71,11 +71,13 @@ def check(array: MainArray) -> list[Violation]:
         shapes = _check_shapes(state)
         if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
             check_pieces(state, shapes)
+            state.forget()
             touching = touches(state, shapes)
             state.forget()
             check_contacts(state, shapes, touching)
+            state.forget()
             check_places(state, shapes, touching)
-            state.leave_lists()
+            state.forget()
             check_complete(state, shapes, touching)
     return state.violations()
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.rings import INDEX, corner_before
-from udec_ia.inspect.reading import HOSTS, KR, TABLE, Numbers, names
+from udec_ia.inspect.check.rings import corner_before
+from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.layout import offsets as g
 
 KNB, *_ = names("corner", "host")

@@ -18,7 +18,7 @@ import numpy as np
 from udec_ia.errors import DISORDERED
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.inspect.check.rings import INDEX
+from udec_ia.inspect.reading import INDEX
 from udec_ia.layout import offsets as g
 
 

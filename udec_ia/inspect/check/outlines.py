@@ -15,8 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.rings import INDEX
-from udec_ia.inspect.reading import Numbers
+from udec_ia.inspect.reading import INDEX, Numbers
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.kernels.geometry.shape import BULGE, FLAT, KEPT
 

@@ -16,7 +16,7 @@ from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import neighbours
 from udec_ia.inspect.check.outlines import Outlines, cross, dot, length
 from udec_ia.inspect.check.touches import TOGETHER, Touches
-from udec_ia.inspect.reading import HOSTS, Numbers
+from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 
@@ -94,6 +94,7 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
             _check_segment(state, o, part, here, side)
             positions.append(here.along)
         along.append(np.concatenate(positions))
+    state.forget()
     _check_order(state, touch, along)
 
 
@@ -145,12 +146,21 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     """
     virtual = np.flatnonzero(state.column("contact", "KCCOD") == g.VIRTUAL)
     block, before, after = neighbours(state, virtual)
-    index = np.full(len(state.address["contact"]), -1)
+    index = np.full(len(state.address["contact"]), -1, INDEX)
     index[touch.row] = np.arange(len(touch.row))
-    one, two = index[before], index[after]
-    known = (one >= 0) & (two >= 0)
-    block, one, two = block[known], one[known], two[known]
     hosts = [state.column("contact", name)[touch.row] for name in HOSTS]
+    for first in range(0, len(block), TOGETHER):
+        part = slice(first, first + TOGETHER)
+        one, two = index[before[part]], index[after[part]]
+        known = (one >= 0) & (two >= 0)
+        _check_behind(state, touch, along, hosts, (block[part][known], one[known], two[known]))
+
+
+def _check_behind(
+    state: State, touch: Touches, along: list[Numbers], hosts: list[Numbers], pairs: tuple[Numbers, ...]
+) -> None:
+    """The second of each pair of contacts is not behind the first. pairs: block, and both by their index."""
+    block, one, two = pairs
     here, other = (
         [np.where(hosts[0][k] == block, of[0][k], of[1][k]) for k in (one, two)]
         for of in (along, hosts[::-1])

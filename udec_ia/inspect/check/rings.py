@@ -9,10 +9,8 @@ import numpy as np
 
 from udec_ia.inspect.boundaries import Boundaries
 from udec_ia.inspect.lists import Lists
-from udec_ia.inspect.reading import HOSTS, Numbers
+from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
 from udec_ia.layout import offsets as g
-
-INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
 
 
 @dataclass(frozen=True)

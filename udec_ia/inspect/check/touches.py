@@ -9,11 +9,10 @@ import numpy as np
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.inspect.check.outlines import Outlines, dot, length
-from udec_ia.inspect.check.rings import INDEX
-from udec_ia.inspect.reading import Numbers
+from udec_ia.inspect.reading import INDEX, Numbers
 from udec_ia.layout import offsets as g
 
-TOGETHER = 50_000  # contacts that are looked at together
+TOGETHER = 20_000  # contacts that are looked at together
 
 
 @dataclass(frozen=True)

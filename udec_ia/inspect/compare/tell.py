@@ -122,24 +122,30 @@ def _alone(found: Compared, limit: int, called: Sequence[str]) -> Listing:
     for side, k in zip(found.matching.sides, (0, 1), strict=True):
         for alone in found.alone.values():
             count += len(alone[k])
-            rows += [(called[k], name) for name in names(side.atlas, alone[k][: max(limit - len(rows), 0)])]
+            shown = alone[k][: max(limit - len(rows), 0)]
+            rows += [(called[k], name) for name in names(side.atlas, shown)] if len(shown) else []
     said = [f"the first {limit} of {count} groups that only one has:"] if count > limit else []
     return Listing(said, ("only in", "group"), rows)
 
 
 def _greatest(found: Compared, limit: int) -> Listing:
     """The differences one by one: of codes, counts and pointers first, then of reals by their shares."""
-    shares = [one.share if one.field.real else np.full(len(one.one), FIRST) for one in found.fields]
-    order = np.argsort(-np.nan_to_num(np.concatenate([np.zeros(0), *shares]), nan=FIRST), kind="stable")
-    ends = np.cumsum([len(share) for share in shares])
-    rows: list[tuple[Any, ...]] = []
-    for place in order[:limit].tolist():
-        k = int(np.searchsorted(ends, place, "right"))
-        rows.append(_row(found, found.fields[k], place - int(ends[k]) + len(shares[k])))
-    said = [f"the greatest {limit} of {len(order)}, by their share of the greatest value of the field:"]
-    return Listing(
-        said if len(order) > limit else [], ("group", "field", "first", "second", *DISTANCES), rows
-    )
+    best = [(share, one, row) for one in found.fields for share, row in _first(one, limit)]
+    best.sort(key=lambda differing: -differing[0])
+    rows = [_row(found, one, row) for _, one, row in best[:limit]]
+    many = sum(len(one.one) for one in found.fields)
+    said = [f"the greatest {limit} of {many}, by their share of the greatest value of the field:"]
+    return Listing(said if many > limit else [], ("group", "field", "first", "second", *DISTANCES), rows)
+
+
+def _first(one: Differing, limit: int) -> list[tuple[float, int]]:
+    """The greatest differences of a field, and their rows; of equal ones the first."""
+    shares = np.nan_to_num(one.share, nan=FIRST) if one.field.real else np.full(len(one.one), FIRST)
+    rows = np.arange(len(shares))
+    if 0 < limit < len(shares):
+        rows = np.flatnonzero(shares >= np.partition(shares, -limit)[-limit])
+    order = rows[np.argsort(-shares[rows], kind="stable")][:limit]
+    return list(zip(shares[order].tolist(), order.tolist(), strict=True))
 
 
 def _row(found: Compared, one: Differing, row: int) -> tuple[Any, ...]:

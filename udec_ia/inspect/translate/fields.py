@@ -49,8 +49,12 @@ def translate(state: Words, table: Table, scheme: Scheme) -> Words:
     if scheme == state.scheme and same_words(state.table, table, counted):
         ia, common = state.ia, work.variables()
     else:
-        ia = work.words()
-        common = {} if work.faults else work.variables()
+        work.move()
+        ia = np.zeros(0 if work.faults else work.used, scheme.int_type)
+        common = {}
+        if not work.faults:
+            work.write(ia)
+            common = work.variables()
     if work.fit.first:
         work.faults.add(
             f"{work.fit.first} is {work.fit.first.value}, too large for {scheme.name}", work.fit.misfits
@@ -76,21 +80,35 @@ class Translation:
         self.faults, self.fit, self.found = Faults(), Fit(), found
         self.places: Places | None = None
 
-    def words(self) -> Any:
-        """The words of IA(); what is returned has no meaning if there are faults."""
-        groups = {group.name: group for group in self.table.groups}
-        new = {name: lay_out(group, self.scheme.ratio) for name, group in groups.items()}
-        self.places = places = Places(self.state, self.found)
-        places.move({kind: layout.size for kind, layout in new.items()}, self.faults)
-        if places.used > self.scheme.top_address:
+    def move(self) -> None:
+        """Give the groups their places. If there are faults now, nothing else can be done."""
+        self.places = Places(self.state, self.found)
+        sizes = {group.name: lay_out(group, self.scheme.ratio).size for group in self.table.groups}
+        self.places.move(sizes, self.faults)
+        if self.used > self.scheme.top_address:
             self.faults.add(
-                f"{places.used} words are needed, and {self.scheme.name} has no addresses for so many"
+                f"{self.used} words are needed, and {self.scheme.name} has no addresses for so many"
             )
-        if self.faults:
-            return ()
-        ia = np.zeros(places.used, self.scheme.int_type)
+
+    @property
+    def used(self) -> int:
+        """The words that the groups and the junk list take."""
+        return self.places.used if self.places else len(self.state.ia)
+
+    @property
+    def room(self) -> int:
+        """Those of IA(): as many as before, unless the groups need more or the addresses end before."""
+        ratio = self.scheme.ratio
+        return min(max(self.state.integer(TOP), self.used, ratio), self.scheme.top_address) // ratio * ratio
+
+    def write(self, ia: Any) -> None:
+        """Write the words into `ia` (used,), which is 0."""
+        assert self.places is not None
+        places, groups = self.places, {group.name: group for group in self.table.groups}
         for kind, at in places.at.items():
-            rows: Any = sliding_window_view(ia, new[kind].size, writeable=True) if len(at) else ()
+            if not len(at):  # of a kind that may not be known here
+                continue
+            rows: Any = sliding_window_view(ia, lay_out(groups[kind], self.scheme.ratio).size, writeable=True)
             for first in range(0, len(at), PIECE):
                 piece = slice(first, first + PIECE)
                 words = self._groups(groups[kind], Rows(kind, at[piece]))
@@ -98,7 +116,6 @@ class Translation:
         for link in (JNEXT, JSIZE, JSIZES) if places.stays else ():
             first = places.junk[places.junk[:, 1] > link[0], 0] - 1 + link[0]
             ia[first] = self.state.ia[first]
-        return ia
 
     def _groups(self, group: Group, rows: Rows) -> Any:
         """The words of groups by the new table, a row each."""
@@ -130,9 +147,7 @@ class Translation:
         told = self._translated(Rows(COMMON, ()), before, self.table.common, held)
         found = {field.name: row[0] for field, row in told}
         if self.places is not None:
-            used, ratio = self.places.used, self.scheme.ratio
-            room = min(max(self.state.integer(TOP), used, ratio), self.scheme.top_address)
-            found |= {FREE: np.array([used + 1]), TOP: np.array([room // ratio * ratio])}
+            found |= {FREE: np.array([self.used + 1]), TOP: np.array([self.room])}
             if not self.places.stays:
                 found |= {JUNK: np.zeros(1, np.int64), AT_FAULT: np.zeros(1, np.int64)}
         return found

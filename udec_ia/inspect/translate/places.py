@@ -82,7 +82,7 @@ class Places:
         self.start = dict(zip(self.at, np.split(start, np.cumsum(counts)[:-1]), strict=True))
         places = self.words // self.ratio + 2
         self._moved = np.zeros(places, np.int32 if self.used < 2**31 else np.int64)
-        self._kind = np.zeros(places, np.int16)
+        self._kind = np.zeros(places, np.min_scalar_type(len(self.at)))
         for number, (kind, addresses) in enumerate(self.at.items(), 1):
             here = self._places(addresses)
             self._moved[here], self._kind[here] = self.start[kind], number
