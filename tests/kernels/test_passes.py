@@ -40,7 +40,7 @@ def loaded() -> Model:
         (rigid, lambda m: m.damping(0.5, 10.0), set()),
         (rigid, lambda m: m.energy("on"), {"note_rigid", "note_contact"}),
         (rigid, lambda m: m.damping(local=0.8), {"relax"}),
-        (rigid, lambda m: m.damping(kinetic=True), {"look_at_motion"}),
+        (rigid, lambda m: m.damping(kinetic=True), {"look_at_motion", "relax"}),
         (rigid, lambda m: m.damping(adaptive=1.0), {"look_at_motion"}),
         (rigid, lambda m: m.fraction(0.9, scaled=True), {"relax"}),
         (strained, None, set()),

@@ -47,6 +47,8 @@ def bounces(way: str, f: float, dt: float, cycles: int) -> list[float]:
             damped = force - f * abs(force) * sign(v)
         elif way == "combined":
             damped = force - f * abs(force) * (sign(v) - sign(force - before)) / 2
+        elif way == "kinetic" and kinetic == 0:  # half a step from rest
+            damped = force / 2
         before = force
         v = (v * (1 - alpha * dt / 2) + damped / m * dt) / (1 + alpha * dt / 2)
         fall += v * dt

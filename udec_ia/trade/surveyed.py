@@ -120,7 +120,7 @@ class Survey(Watch):
         h = array.h
         limits = (found[-1].estimate, found[-1].bound) if found else (0.0, 0.0)
         if self.asked_for.limits and (self._made or not found):
-            safe = damped(bound(array).step, float(h.cr[g.BETA]))
+            safe = damped(h, bound(array).step)
             limits = estimate(array).step, safe
         asked, step = int(h.ci[g.NCYC]), float(h.cr[g.TDEL])
         one = Segment(

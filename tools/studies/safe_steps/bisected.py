@@ -163,7 +163,7 @@ def look(name: str) -> list[str | float]:
     while high - low > FINE:
         middle = (low + high) / 2
         low, high = (low, middle) if grows(middle * limit, state) else (middle, high)
-    safe = damped(bound(m.array).step, float(m.h.cr[g.BETA]))
+    safe = damped(m.h, bound(m.array).step)
     return [name, limit, low, safe / limit, estimate(m.array).step / limit]
 
 

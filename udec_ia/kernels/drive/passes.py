@@ -45,7 +45,7 @@ def passes(
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
         entry(apply_bounds, h) if loaded else 0,
         entry(look_at_motion, h) if how in (g.KINETIC, g.ADAPTIVE) else 0,
-        entry(relax, h) if how in (g.LOCAL, g.COMBINED) or h.ci[g.LSCALE] else 0,
+        entry(relax, h) if how in (g.LOCAL, g.COMBINED, g.KINETIC) or h.ci[g.LSCALE] else 0,
         entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
         entry(note_loads, h) if keeps and loaded else 0,
         entry(note_stresses, h) if keeps and soft is not None else 0,

@@ -5,10 +5,15 @@ its velocity and f the fraction RESTF, the law of motion gets, instead of F,
 
     LOCAL     F - f |F| sign(v)                               Cundall (1987)
     COMBINED  F - f |F| (sign(v) - sign(F - F'))/2
+    KINETIC   F/2 in the step that begins at rest, else F
     SCALED    s F, and so the inertial mass m/s, while the weight stays m g
 
 LOCAL takes nothing where forces are balanced. Where all moves one way under a steady force it is slow, and
 there COMBINED does better: it damps what swings, and half as strongly. KINETIC and ADAPTIVE: drive.peaks.
+
+What KINETIC has put to rest has no velocity now, while velocities are those of half a step ago. So the step
+that follows takes half of the force: with the whole of it all would swing farther than it was, and steps from
+0.4 of the critical one on were unstable.
 
 The motion on the way is not that of the model: only where it comes to rest, and only as far as that does not
 depend on the way. The factors s stand in relaxations (links.relaxations); ops/run/scaling.py finds them.
@@ -48,6 +53,8 @@ def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: floa
     elif h.ci[g.LREST] == g.COMBINED:
         damped = f - part * (sign(h, v) - sign(h, f - getr(h, ir, before))) * real(h, 0.5)
         putr(h, ir, before, f)
+    elif h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] == 0:
+        damped = f * real(h, 0.5)
     if h.ci[g.LSCALE] != 0:
         return damped * getr(h, ir, scale)
     return damped
@@ -110,7 +117,9 @@ def relax_strain(h: Memory, ie: int, ir: int) -> None:
 
 @apart
 def relax(h: Memory) -> bool:
-    """LOCAL and COMBINED damping and scaled masses of all that moves, for the step that begins."""
+    """LOCAL, COMBINED and KINETIC damping and scaled masses of all that moves, for the step that begins."""
+    if h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] != 0 and h.ci[g.LSCALE] == 0:
+        return True
     ir = int64(h.ci[g.IRXPNT])
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:

@@ -41,7 +41,7 @@ def renew(array: MainArray) -> Limit | None:
     elif h.ci[g.LSAFE] and (has_to_judge(h) or h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
         safe = bound(array)
-        step = float(h.cr[g.FRAC]) * damped(safe.step, float(h.cr[g.BETA]))
+        step = float(h.cr[g.FRAC]) * damped(h, safe.step)
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
             put_step(array, step)
             return safe

@@ -89,15 +89,16 @@ class Runaway:
     def judge(self, array: MainArray, anew: bool = False) -> None:
         """Find the safe bound if it may have changed, or `anew`; warn of a step above it, once for each."""
         h = array.h
-        step, beta, made = float(h.cr[g.TDEL]), float(h.cr[g.BETA]), int(h.ci[g.NMADE])
-        if alike(step, beta, *self._judged[:2]) and made == self._judged[2] and not anew:
+        step, made = float(h.cr[g.TDEL]), int(h.ci[g.NMADE])
+        left = damped(h, step)  # of a critical step like this one
+        if alike(step, left, *self._judged[:2]) and made == self._judged[2] and not anew:
             return
-        self._judged = step, beta, made
+        self._judged = step, left, made
         self.safe = bound(array)
-        self._suspected = step > SUSPECT * damped(self.safe.step, beta)
+        self._suspected = step > SUSPECT * damped(h, self.safe.step)
         warning = instability(array, self.safe)
-        if warning and not alike(step, beta, *self._warned):
-            self._warned = step, beta
+        if warning and not alike(step, left, *self._warned):
+            self._warned = step, left
             self.tell(warning)
 
     def renew(self, array: MainArray) -> None:
@@ -139,7 +140,7 @@ class Runaway:
     def look(self, array: MainArray) -> None:
         """Error 37 if there is more energy than there can be. A run not suspected is judged again."""
         h, account = array.h, self._account
-        self.chatter.judge(array, h.cr[g.TDEL] <= damped(self.safe.step, float(h.cr[g.BETA])))
+        self.chatter.judge(array, h.cr[g.TDEL] <= damped(h, self.safe.step))
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
             self.judge(array)
             self.begin(array, self._own_laws)
@@ -157,7 +158,7 @@ class Runaway:
         h = array.h
         _, largest, at = liveliest(h, soft_in(h))
         step = float(h.cr[g.TDEL])
-        share = step / damped(self.safe.step, float(h.cr[g.BETA]))
+        share = step / damped(h, self.safe.step)
         self._account = None
         detail = (
             f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "

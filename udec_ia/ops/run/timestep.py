@@ -91,7 +91,7 @@ def time_step(array: MainArray) -> float:
     critical = estimate(array).step
     if array.h.ci[g.LSAFE]:
         safe = scale(array) if array.h.ci[g.LSCALE] else bound(array).step
-        critical = damped(safe, float(array.h.cr[g.BETA])) if math.isfinite(safe) else critical
+        critical = damped(array.h, safe) if math.isfinite(safe) else critical
     step = float(array.h.cr[g.FRAC]) * critical
     reals = np.finfo(array.scheme.real_type)
     if not reals.smallest_normal < step < reals.max:
@@ -99,15 +99,18 @@ def time_step(array: MainArray) -> float:
     return step
 
 
-def damped(step: float, beta: float) -> float:
-    """The critical time-step with stiffness damping, `step` being that without it.
+def damped(h: Memory, step: float) -> float:
+    """The critical time-step with the damping of `h`, `step` being that without it.
 
     A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
-    damping at the frequency w.
+    damping at the frequency w. What swings as fast as the step lets it turns about in each cycle: LOCAL and
+    COMBINED damping then add f times the force that turns it, so that joints are 1 + f times as stiff.
     """
     if step == 0:
         return 0.0
-    share = beta / step
+    if h.ci[g.LREST] in (g.LOCAL, g.COMBINED):
+        step /= math.sqrt(1 + float(h.cr[g.RESTF]))
+    share = float(h.cr[g.BETA]) / step
     return step / (math.hypot(1, share) + share)
 
 
@@ -118,8 +121,8 @@ def safe_fraction(array: MainArray, share: float) -> float:
 
 def instability(array: MainArray, safe: Limit) -> str:
     """A warning if the time-step is above `safe`, or above what stiffness damping leaves of it, else ""."""
-    beta, step = float(array.h.cr[g.BETA]), float(array.h.cr[g.TDEL])
-    critical = damped(safe.step, beta)
+    step = float(array.h.cr[g.TDEL])
+    critical = damped(array.h, safe.step)
     if step <= critical:
         return ""
     if safe.step == 0:
@@ -128,14 +131,21 @@ def instability(array: MainArray, safe: Limit) -> str:
     share = step / critical if critical else math.inf
     fraction = f"FRACTION {safe_fraction(array, share):.2g} is safe"
     if step <= safe.step:
-        return (
-            f"stiffness damping BETA = {beta:.3g} s may make the time-step of {step:.3g} s unstable: "
-            f"{fraction}, or a smaller fcrit, or MASS damping alone"
-        )
+        cause, cure = _damping(array.h)
+        return f"{cause} may make the time-step of {step:.3g} s unstable: {fraction}, or {cure}"
     return (
         f"the time-step of {step:.3g} s is {share:.3g} of the safe bound, which "
         f"{_place(array.h, safe.address)} sets, and may be unstable: {fraction}"
     )
+
+
+def _damping(h: Memory) -> tuple[str, str]:
+    """The damping that lowers the safe time-step, and what to do instead of taking a shorter one."""
+    if h.cr[g.BETA]:
+        beta = float(h.cr[g.BETA])
+        return f"stiffness damping BETA = {beta:.3g} s", "a smaller fcrit, or MASS damping alone"
+    how = "LOCAL" if h.ci[g.LREST] == g.LOCAL else "COMBINED"
+    return f"{how} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
 
 
 def shortened(array: MainArray, before: float, safe: Limit) -> str:
