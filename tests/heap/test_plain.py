@@ -22,8 +22,9 @@ from udec_ia import Model
 m = Model()
 m.block(0, 0, 0, 1, 1, 1, 1, 0)
 m.property(1, density=2000, kn=1e8, ks=1e8)
-m.fix(0, 1, 0, 1)
+m.gravity(0, -10)
 m.rset(0.5, int(m.table("block")["address"][0]), 7)
+m.cycle(3)
 print(sha256(m.array.h.ia.tobytes() + m.array.h.cr.tobytes()).hexdigest(), m.check())
 """
 
@@ -38,7 +39,7 @@ def run(tmp_path: Path, **more: str) -> list[str]:
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_the_same_words_without_linking(tmp_path: Path) -> None:
-    """Who waits is told once, and the second time nothing is compiled."""
+    """Commands and cycles. Who waits is told once, and the second time nothing is compiled."""
     linked = run(tmp_path)[-1]
     place = {"UDEC_LINK": "plain", "UDEC_CACHE": str(tmp_path / "cache")}
     first, again = run(tmp_path, **place), run(tmp_path, **place)

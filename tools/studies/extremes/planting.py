@@ -7,8 +7,8 @@ One real at a time is made NaN, then infinite: of every field of every kind of g
 stands last in its list, and of the common block. First the checker looks, as it does after RSET and before a
 restart file is used: `named` counts the words that it names. Then one cycle is run all the same, as if the
 word had come out of a computation. `noticed`: an error says so. `healed`: there is a number again, and the
-state is that of a run without it, but for when domains are looked at next. Anything else has `spread`, and is
-listed.
+state is that of a run without it, but for when domains are looked at next. `stays`: it is still there, and
+nothing else differs: no pass has read it. Anything else has `spread`. What stays or spreads is listed.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import argparse
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -86,6 +87,13 @@ def searching(m: Model) -> np.ndarray:
     return np.array([*places, int(h.ci[g.MFREE]) + g.UPEND, int(h.ci[g.MFREE]) + g.ULOOK])
 
 
+def place(m: Model, address: int, k: Any) -> int:
+    """Where, among `reals`, a word stands."""
+    h = m.array.h
+    ratio = int(h.ra.itemsize // h.ia.itemsize)
+    return (address - 1) // ratio + int(k[ratio >> 1]) - 1 if address else int(h.ci[g.MFREE]) + int(k)
+
+
 def plant(file: Path, build: str, word: Word, value: float, right: np.ndarray) -> tuple[bool, str]:
     """Whether the checker names it, and what one cycle makes of it."""
     m = Model(build, out="/tmp")
@@ -105,7 +113,9 @@ def plant(file: Path, build: str, word: Word, value: float, right: np.ndarray) -
         return named, "noticed"
     now = reals(m)
     other = np.setdiff1d(np.flatnonzero(now != right), searching(m))
-    return named, "spread" if len(other) else "healed"
+    if not len(other):
+        return named, "healed"
+    return named, "stays" if [*other] == [place(m, address, k)] else "spread"
 
 
 def main() -> None:
@@ -119,15 +129,16 @@ def main() -> None:
     todo = words(m)
     m.cycle(1)
     right = reals(m)
-    print("| planted | words | named | noticed | healed | spread |\n|---|---|---|---|---|---|")
+    print("| planted | words | named | noticed | healed | stays | spread |\n|---|---|---|---|---|---|---|")
     spread = []
     for name, value in PLANTED.items():
         found = {word[0]: plant(file, given.build, word, value, right) for word in todo}
         count = Counter(what for _, what in found.values())
-        kinds = [str(count[kind]) for kind in ("noticed", "healed", "spread")]
+        kinds = [str(count[kind]) for kind in ("noticed", "healed", "stays", "spread")]
         named = sum(named for named, _ in found.values())
         print(f"| {name} | {len(found)} | {named} | {' | '.join(kinds)} |", flush=True)
-        spread += [f"{name} in {word}" for word, (_, what) in found.items() if what == "spread"]
+        left = {word: what for word, (_, what) in found.items() if what in ("stays", "spread")}
+        spread += [f"{name} in {word}: {what}" for word, what in left.items()]
         spread += [f"not named: {name} in {word}" for word, (named, _) in found.items() if not named]
     for one in spread:
         print("-", one)

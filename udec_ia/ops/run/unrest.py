@@ -37,7 +37,8 @@ ENOUGH = 8  # looks, without which nothing is said of what goes on
 ONE_WAY, STEADY = 0.3, 0.5  # share and steady from which on blocks move on
 FASTER, SLOWER = 1.15, 0.87  # growth of what collapses, and of what settles
 FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
-SLIPPED = 0.01  # of the strain energy: work of friction from which on the way is said to matter
+SLIPPED = 0.002  # of the strain energy: work of friction from which on the way is said to matter. Slip of a
+# hundredth of the elastic shear takes a fiftieth of the energy of shear, which may be a tenth of all
 AHEAD = 10_000  # cycles for which what still moves at rest is judged
 NAMED = 3  # blocks that are named
 STATES = (
