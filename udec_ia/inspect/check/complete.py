@@ -226,24 +226,25 @@ class Reach:
 
     def __init__(self, o: Outlines) -> None:
         self.o = o
-        at, near = o.p.T, o.d + o.slack
-        far = FAR * o.d + o.slack + AWRY * np.abs(o.r)
-        self.near = [(x - near, x + near) for x in at]
-        self.far = [(x - far, x + far) for x in at]
+        self.at = [x.copy() for x in o.p.T]
+        self.near = o.d + o.slack[o.first]  # of the corners of a block
+        self.far = FAR * o.d + o.slack + AWRY * np.abs(o.r)
         self.blocks = [(low.copy(), high.copy()) for low, high in zip(o.low.T, o.high.T, strict=True)]
 
     def corners(self, a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
         """Pairs (corner i of block a, corner j of block b) where i has an arc and is near the edge of j."""
         pair, place = ragged(self.o.count[a])
         i = self.o.first[a][pair] + place
-        inside = self.o.arc[i]
-        for (low, high), (low_of, high_of) in zip(self.near, self.blocks, strict=True):
-            inside &= (high[i] >= low_of[b][pair]) & (low[i] <= high_of[b][pair])
+        inside, near = self.o.arc[i], self.near[a]
+        for x, (low_of, high_of) in zip(self.at, self.blocks, strict=True):
+            low, high = (side[pair] for side in (low_of[b] - near, high_of[b] + near))
+            inside &= (x[i] >= low) & (x[i] <= high)
         i, b = i[inside], b[pair[inside]]
         pair, place = ragged(self.o.count[b])
         i, j = i[pair], self.o.first[b][pair] + place
-        for (low, high), (low_of, high_of) in zip(self.far, self.o.boxes, strict=True):
-            meet = (high[i] >= low_of[j]) & (low[i] <= high_of[j])
+        for x, (low_of, high_of) in zip(self.at, self.o.boxes, strict=True):
+            here, far = x[i], self.far[i]
+            meet = (here + far >= low_of[j]) & (here - far <= high_of[j])
             i, j = i[meet], j[meet]
         return i, j
 
