@@ -229,7 +229,7 @@ class Model(Files, Blocks, Numbers, Looks):
         self.remark(on_joints(self.array))
         self.remark(on_loads(self.array))
         self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
-        self.remark(on_resolution(self.array))
+        self.remark(on_resolution(self.array), what="resolution")
 
     @once
     def history(

@@ -109,11 +109,16 @@ class Session:
         """Tell `text`."""
         self.tell(text)  # not bound beforehand: a monitor changes it
 
-    def remark(self, remarks: Iterable[str], tell: Callable[[str], None] | None = None) -> None:
-        """Tell `remarks`, each once, by `tell` if it is not a warning."""
+    def remark(
+        self, remarks: Iterable[str], tell: Callable[[str], None] | None = None, what: str = ""
+    ) -> None:
+        """Tell `remarks`, each once, by `tell` if it is not a warning.
+
+        what: what they are about, if their numbers change with every cycle; one such is told.
+        """
         for text in remarks:
-            if text not in self._said:
-                self._said = self._said | {text}
+            if (what or text) not in self._said:
+                self._said = self._said | {what or text}
                 (tell or self.tell)(text)
 
     def summary_of(self, array: MainArray) -> str:

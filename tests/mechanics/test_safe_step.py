@@ -68,8 +68,8 @@ def test_a_safe_step_is_judged_again_when_contacts_are_made(
         m.cycle(50)
         assert step(m) <= 0.9 * Scene(m, (1.0, 1.0), JOINTS).critical() * (1 + 1e-9)
     whole.cycle(2000)
-    assert [text.split(" s ")[0] for text in said] == [f"the SAFE time-step is {said[0].split()[4]}"]
-    assert f"instead of {long:.3g} s from cycle" in said[0]
+    (shorter,) = (text for text in said if text.startswith("the SAFE time-step is"))
+    assert f"instead of {long:.3g} s from cycle" in shorter
     recorded.cycle(2000)
     assert step(m) < 0.5 * long
     assert step(m) <= 0.9 * bound(m.array).step * (1 + 1e-12)

@@ -12,7 +12,7 @@ from safe_steps.search import LIMITS, Found
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 
-BINS = np.geomspace(0.01, 10, 121)
+BINS = np.geomspace(0.1, 10, 101)
 COLOURS = {"bound": "tab:blue", "estimate": "tab:orange"}
 CALLED = {"bound": "safe bound (FRACTION 1 SAFE)", "estimate": "estimate of 1980 (FRACTION 1)"}
 
@@ -30,6 +30,6 @@ def draw(found: list[Found], path: Path) -> None:
         axis.set_title(f"{len(rows):,} {kind} scenes", fontsize=10)
         axis.set_ylabel("scenes")
     axes[0].legend(fontsize=8, loc="upper left")
-    axes[-1].set_xlabel("time-step over the true limit; all below 0.01 stand there")
+    axes[-1].set_xlabel("time-step over the true limit; all below 0.1 stand there")
     figure.savefig(path, dpi=120)
     plt.close(figure)

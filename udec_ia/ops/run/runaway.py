@@ -105,9 +105,10 @@ class Runaway:
         """Have a SAFE time-step or scaled masses renewed that are due; tell once that a step is shorter."""
         before = float(array.h.cr[g.TDEL])
         safe = renew(array)
-        if safe is not None and not self._shortened:
+        said = "" if safe is None or self._shortened else shortened(array, before, safe)
+        if said:
             self._shortened = True
-            self.tell(shortened(array, before, safe))
+            self.tell(said)
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
         """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow laws of the user's."""
@@ -160,12 +161,13 @@ class Runaway:
         step = float(h.cr[g.TDEL])
         share = step / damped(h, self.safe.step)
         self._account = None
+        fraction = min(safe_fraction(array, share), float(h.cr[g.FRAC]) / 2)
         detail = (
             f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "
             f"put in {came:.3g}: {kind_of(h, int(at))} leads with {largest:.3g}. The time-step "
             f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
-        advice = f"go back to where you began or saved, and take FRACTION {safe_fraction(array, share):.2g}"
+        advice = f"go back to where you began or saved, and take FRACTION {fraction:.2g}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))
 
 

@@ -20,6 +20,7 @@ from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
 from udec_ia.layout import offsets as g
+from udec_ia.ops.run.damped import what_damps
 from udec_ia.ops.run.rows import OVERFLOWS, Array, Limit, Rows, rate_of, reals
 from udec_ia.ops.run.scaling import scale, scaled
 
@@ -99,6 +100,13 @@ def time_step(array: MainArray) -> float:
     return step
 
 
+NEAR, IMPACTS = (
+    0.8,
+    0.5,
+)  # of the safe bound: where it is warned of if nothing damps, and what is advised then
+LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
+
+
 def damped(h: Memory, step: float) -> float:
     """The critical time-step with the damping of `h`, `step` being that without it.
 
@@ -120,11 +128,11 @@ def safe_fraction(array: MainArray, share: float) -> float:
 
 
 def instability(array: MainArray, safe: Limit) -> str:
-    """A warning if the time-step is above `safe`, or above what stiffness damping leaves of it, else ""."""
+    """A warning if the time-step is above `safe`, or above what damping leaves of it, else ""; or near it."""
     step = float(array.h.cr[g.TDEL])
     critical = damped(array.h, safe.step)
-    if step <= critical:
-        return ""
+    if step <= critical * (1 + LAST_DIGITS):
+        return _impacts(array, step / critical) if step > NEAR * critical else ""
     if safe.step == 0:
         place = _place(array.h, safe.address)
         return f"no time-step is safe: a mass or a stiffness of {place} is zero, infinite or no number"
@@ -139,6 +147,21 @@ def instability(array: MainArray, safe: Limit) -> str:
     )
 
 
+def _impacts(array: MainArray, share: float) -> str:
+    """A warning of a time-step that is just below the safe bound, if nothing damps.
+
+    The bound is that of joints that stay closed. One that closes within a step is pressed by as much as if it
+    had been closed all the time, and gives back more than it took.
+    """
+    if what_damps(array.h):
+        return ""
+    return (
+        f"nothing damps, and the time-step is {share:.2g} of the safe bound, which is that of joints that "
+        "stay closed: those that open and close may throw blocks ever higher; take "
+        f"FRACTION {float(array.h.cr[g.FRAC]) * IMPACTS / share:.2g}, or DAMPING"
+    )
+
+
 def _damping(h: Memory) -> tuple[str, str]:
     """The damping that lowers the safe time-step, and what to do instead of taking a shorter one."""
     if h.cr[g.BETA]:
@@ -149,10 +172,13 @@ def _damping(h: Memory) -> tuple[str, str]:
 
 
 def shortened(array: MainArray, before: float, safe: Limit) -> str:
-    """What is said of a SAFE time-step of `before` s that has become shorter in a run."""
+    """What is said of a SAFE time-step of `before` s that has become shorter in a run; "" if hardly."""
     h = array.h
+    now, then = f"{h.cr[g.TDEL]:.3g}", f"{before:.3g}"
+    if now == then:
+        return ""
     return (
-        f"the SAFE time-step is {h.cr[g.TDEL]:.3g} s instead of {before:.3g} s from cycle "
+        f"the SAFE time-step is {now} s instead of {then} s from cycle "
         f"{int(h.ci[g.MCTOT])} on: {_place(h, safe.address)} "
         "is held more stiffly than when the run began; it may become shorter still"
     )

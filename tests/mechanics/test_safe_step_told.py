@@ -1,0 +1,74 @@
+"""What is said of a time-step near the safe bound, and how often."""
+
+from __future__ import annotations
+
+import pytest
+from mechanics import box, model
+
+from udec_ia import Model, UdecError
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.timestep import bound, shortened
+
+IMPACTS = "nothing damps, and the time-step is"
+
+
+def resting(build: str = "i32r64", ks: float = 1e8, d: float = 0.1, gravity: float = 10.0) -> Model:
+    """A square on a fixed one."""
+    m = model(*box(0, 1, -1, 1), d=d, density=2000.0, stiffness=(2e8, ks), friction=0.5, build=build)
+    m.split(-1, 0, 2, 0)
+    m.fix(0, 1, -1, 0)
+    m.gravity(0, -gravity)
+    return m
+
+
+def told(m: Model) -> list[str]:
+    """All that the model tells from now on."""
+    said: list[str] = []
+    m.tell = said.append
+    return said
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+@pytest.mark.parametrize("damps", [True, False])
+@pytest.mark.parametrize("share", [0.5, 0.9, 1.0])
+def test_impacts_are_warned_of_near_the_bound_if_nothing_damps(build: str, damps: bool, share: float) -> None:
+    m = resting(build)
+    said = told(m)
+    if damps:
+        m.damping(local=0.5)
+    m.fraction(share, safe=True)
+    for _ in range(3):
+        m.cycle(10)
+    warned = [one for one in said if "safe bound" in one]
+    assert len(warned) == (not damps and share > 0.8)
+    assert all(IMPACTS in one and "FRACTION 0.5, or DAMPING" in one for one in warned)
+
+
+def test_a_block_that_is_thrown_up_is_told_of_before_and_stopped_with_a_cure() -> None:
+    """With hardly any shear stiffness the bound is the limit of the swing itself, and each landing gains."""
+    m = resting(ks=1e6, d=0.45)
+    said = told(m)
+    m.fraction(0.9, safe=True)
+    with pytest.raises(UdecError, match=r"more energy than was put in(.|\n)*take FRACTION 0\.45"):
+        m.cycle(3000)
+    assert any(IMPACTS in one for one in said)
+
+
+def test_a_step_that_is_hardly_shorter_is_not_told() -> None:
+    m = resting()
+    m.fraction(0.5, safe=True)
+    m.cycle(1)
+    step, safe = float(m.h.cr[g.TDEL]), bound(m.array)
+    assert shortened(m.array, step * (1 + 1e-6), safe) == ""
+    assert "instead of" in shortened(m.array, step * 1.1, safe)
+
+
+def test_what_reals_resolve_is_told_once_though_its_numbers_change() -> None:
+    m = resting("i32r32", gravity=0.001)
+    said = told(m)
+    m.damping(0.5, 100, "mass")
+    m.fraction(0.1, safe=True)
+    for place in (1.0, 30.0, 100.0):
+        m.gravity(0, -0.001 * place)
+        m.cycle(2)
+    assert sum("the last digit of coordinates" in one for one in said) == 1
