@@ -147,12 +147,17 @@ def losses(wide: Run, narrow: Run) -> tuple[float, float, float, int]:
     """
     assert wide.model is not None
     assert narrow.model is not None
-    farthest = way(wide)
-    pairs = list(zip(wide.looks, narrow.looks, strict=False))
-    apart = [float(np.hypot(*(a - b).T).max()) / farthest for (_, a), (_, b) in pairs]
-    parted = next((cycle for ((cycle, _), _), off in zip(pairs, apart, strict=True) if off > PARTED), 0)
+    apart = parting(wide, narrow)
+    parted = next((cycle for cycle, off in apart if off > PARTED), 0)
     most, every = (abs(a / b - 1) for a, b in zip(forces(narrow.model), forces(wide.model), strict=True))
-    return apart[-1], most, every, parted
+    return apart[-1][1], most, every, parted
+
+
+def parting(wide: Run, narrow: Run) -> list[tuple[int, float]]:
+    """Cycles, and by how much places differ there, as a part of the farthest way."""
+    farthest = way(wide)
+    pairs = zip(wide.looks, narrow.looks, strict=False)
+    return [(cycle, float(np.hypot(*(a - b).T).max()) / farthest) for (cycle, a), (_, b) in pairs]
 
 
 def times(models: dict[str, Model]) -> dict[str, float]:

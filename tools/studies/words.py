@@ -1,20 +1,23 @@
 """What the widths of integers and reals cost, bear and lose.
 
-    python tools/studies/words.py
+    python tools/studies/words.py [--out PICTURE]
 
 prints the tables of docs/words.md. First those that are alike wherever they are made: the deck
 examples/ball-rolling.dat is run in all five word schemes, without its plots, and held against the formulas
-for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scenes.py, and what each takes.
+for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scenes.py, and what each takes. The
+picture shows how places part from those in 64-bit reals, cycle by cycle.
 """
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator
 from math import hypot
 from pathlib import Path
 from typing import NamedTuple
 
-from word_scenes import SCENES, Run, losses, rest, run, times, way
+from matplotlib.figure import Figure
+from word_scenes import PARTED, SCENES, Run, losses, parting, rest, run, times, way
 
 from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
@@ -145,8 +148,11 @@ def price(name: str, runs: dict[str, Run]) -> str:
     return row(name, *cells)
 
 
-def prices() -> Iterator[str]:
-    """What 32-bit reals lose in each scene; then memory and time, which differ from run to run."""
+def prices(parted: dict[str, list[tuple[int, float]]]) -> Iterator[str]:
+    """What 32-bit reals lose in each scene; then memory and time, which differ from run to run.
+
+    parted: takes how places part, by scene.
+    """
     names = "places", "greatest force", "all forces", "part", "force ratio at the end, 64 and 32 bits"
     yield head("32-bit reals lose", "way", *names, "told before the run")
     taken = []
@@ -155,13 +161,39 @@ def prices() -> Iterator[str]:
         builds = ALL_SCHEMES if name in PRICED else (NARROW, DEFAULT_SCHEME)
         runs = {build: run(text, build) for build in builds}
         yield loss(name, text, runs[DEFAULT_SCHEME], runs[NARROW])
+        parted[name] = parting(runs[DEFAULT_SCHEME], runs[NARROW])
         if name in PRICED:
             taken.append(price(name, runs))
     yield "\n" + head("IA() in use and time of a cycle", *ALL_SCHEMES)
     yield from taken
 
 
-if __name__ == "__main__":
+def draw(parted: dict[str, list[tuple[int, float]]], path: Path) -> None:
+    """How far places in 32-bit reals are from those in 64-bit ones, over the cycles."""
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for name, looks in parted.items():
+        cycles, apart = zip(*((cycle, off) for cycle, off in looks if cycle > 0 and off > 0), strict=True)
+        axes.loglog(cycles, apart, ".-", label=name)
+    axes.axhline(PARTED, color="black", linewidth=0.8, linestyle=":")
+    axes.set_xlabel("cycle")
+    axes.set_ylabel("difference of places over the farthest way")
+    axes.legend(fontsize=8)
+    figure.savefig(path, dpi=120)
+
+
+def main() -> None:
+    """Print the tables, and draw."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--out", type=Path)
+    given = parser.parse_args()
     print(report())
-    for line in prices():
+    parted: dict[str, list[tuple[int, float]]] = {}
+    for line in prices(parted):
         print(line, flush=True)
+    if given.out:
+        draw(parted, given.out)
+
+
+if __name__ == "__main__":
+    main()

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 
 from safe_steps.search import LIMITS, Found
-
-mpl.use("Agg")
-import matplotlib.pyplot as plt
 
 BINS = np.geomspace(0.1, 10, 101)
 COLOURS = {"bound": "tab:blue", "estimate": "tab:orange"}
@@ -19,7 +16,8 @@ CALLED = {"bound": "safe bound (FRACTION 1 SAFE)", "estimate": "estimate of 1980
 
 def draw(found: list[Found], path: Path) -> None:
     """Two histograms, of rigid and of deformable scenes; a step to the right of 1 is unstable."""
-    figure, axes = plt.subplots(len(LIMITS), 1, figsize=(7, 5), sharex=True, layout="constrained")
+    figure = Figure(figsize=(7, 5), layout="constrained")
+    axes = figure.subplots(len(LIMITS), 1, sharex=True)
     for axis, kind in zip(axes, LIMITS, strict=True):
         rows = [one for one in found if one.kind == kind and np.isfinite(one.bound)]
         for name, colour in COLOURS.items():
@@ -32,4 +30,3 @@ def draw(found: list[Found], path: Path) -> None:
     axes[0].legend(fontsize=8, loc="upper left")
     axes[-1].set_xlabel("time-step over the true limit; all below 0.1 stand there")
     figure.savefig(path, dpi=120)
-    plt.close(figure)

@@ -123,8 +123,11 @@ def damped(h: Memory, step: float) -> float:
 
 
 def safe_fraction(array: MainArray, share: float) -> float:
-    """FRACTION that makes a time-step just below that which the present one is `share` of."""
-    return 0.95 * float(array.h.cr[g.FRAC]) / share
+    """FRACTION of a step that is safe, where the present one is `share` of the critical one.
+
+    It is just below that, or well below it if nothing damps what impacts give.
+    """
+    return (0.95 if what_damps(array.h) else IMPACTS) * float(array.h.cr[g.FRAC]) / share
 
 
 def instability(array: MainArray, safe: Limit) -> str:
@@ -158,7 +161,7 @@ def _impacts(array: MainArray, share: float) -> str:
     return (
         f"nothing damps, and the time-step is {share:.2g} of the safe bound, which is that of joints that "
         "stay closed: those that open and close may throw blocks ever higher; take "
-        f"FRACTION {float(array.h.cr[g.FRAC]) * IMPACTS / share:.2g}, or DAMPING"
+        f"FRACTION {safe_fraction(array, share):.2g}, or DAMPING"
     )
 
 
