@@ -16,7 +16,9 @@ from mechanics import box, model
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.timestep import damped
+from udec_ia.ops.run.damped import damped
+from udec_ia.ops.run.scaling import scale_anew
+from udec_ia.ops.run.timestep import bound
 
 DAMPINGS: dict[str, dict[str, Any]] = {
     "local": {"local": 0.8},
@@ -105,3 +107,21 @@ def test_kinetic_damping_never_swings_farther_than_it_began(share: float) -> Non
         closed = m.table("contact")
         greatest = max(greatest, float(closed["KCFN"][closed["KCCOD"] != g.VIRTUAL].max()) / 1e9)
     assert rest < greatest <= 2 * rest * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("how", DAMPINGS)
+@pytest.mark.parametrize("beta", [0.0, 1e-4])
+def test_masses_that_are_scaled_anew_suit_the_damping(how: str, beta: float) -> None:
+    """Where nothing has changed they are what they were: the step is the same, and as safe."""
+    m = column([1.0, 0.2, 1.0], **DAMPINGS[how])
+    m.h.cr[g.BETA] = beta
+    m.fraction(0.9, scaled=True)
+    m.cycle(0)
+    before = m.table("relax")
+    m.h.ci[g.MSCALE] = -1  # as if contacts had been made since
+    scale_anew(m.array)
+    after = m.table("relax")
+    assert len(before) > 2
+    for name in ("KRXM", "KRXI"):
+        np.testing.assert_allclose(after[name], before[name], rtol=1e-9)
+    assert float(m.h.cr[g.TDEL]) <= 0.9 * damped(m.h, bound(m.array).step) * (1 + 1e-9)

@@ -19,7 +19,8 @@ from udec_ia.heap.accessors import getr
 from udec_ia.heap.compiling import compile_seconds
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.timestep import bound, damped, estimate
+from udec_ia.ops.run.damped import damped
+from udec_ia.ops.run.timestep import bound, estimate
 from udec_ia.ops.run.watch import NO_MARKS, Watch
 from udec_ia.study.runs import Run
 

@@ -18,9 +18,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.layout import offsets as g
+from udec_ia.ops.run.damped import damped
 from udec_ia.ops.run.rows import Limit
 from udec_ia.ops.run.scaling import RESCALE, scale_anew
-from udec_ia.ops.run.timestep import bound, damped
+from udec_ia.ops.run.timestep import bound
 
 JUDGE = 1000  # cycles
 

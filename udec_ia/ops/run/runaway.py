@@ -40,9 +40,10 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.chatter import JUDGE, Chatter
+from udec_ia.ops.run.damped import damped
 from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, damped, instability, kind_of, safe_fraction, shortened
+from udec_ia.ops.run.timestep import bound, instability, kind_of, safe_fraction, shortened
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be

@@ -23,6 +23,7 @@ from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import NMAT
 from udec_ia.ops.common.memory import require
+from udec_ia.ops.run.damped import undamped
 from udec_ia.ops.run.rows import OVERFLOWS, Array, Rows
 
 SHARE = (
@@ -65,8 +66,8 @@ def scale_anew(array: MainArray) -> None:
     """The same for the time-step as it is, if contacts have been made since."""
     h = array.h
     if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
-        step, beta = float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]), float(h.cr[g.BETA])
-        _put_factors(array, Rows(h, even=True), math.sqrt((step + beta) ** 2 - beta**2))
+        step = undamped(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
+        _put_factors(array, Rows(h, even=True), step)
 
 
 @OVERFLOWS

@@ -20,7 +20,7 @@ from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import what_damps
+from udec_ia.ops.run.damped import damped, what_damps
 from udec_ia.ops.run.rows import OVERFLOWS, Array, Limit, Rows, rate_of, reals
 from udec_ia.ops.run.scaling import scale, scaled
 
@@ -105,21 +105,6 @@ NEAR, IMPACTS = (
     0.5,
 )  # of the safe bound: where it is warned of if nothing damps, and what is advised then
 LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
-
-
-def damped(h: Memory, step: float) -> float:
-    """The critical time-step with the damping of `h`, `step` being that without it.
-
-    A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
-    damping at the frequency w. What swings as fast as the step lets it turns about in each cycle: LOCAL and
-    COMBINED damping then add f times the force that turns it, so that joints are 1 + f times as stiff.
-    """
-    if step == 0:
-        return 0.0
-    if h.ci[g.LREST] in (g.LOCAL, g.COMBINED):
-        step /= math.sqrt(1 + float(h.cr[g.RESTF]))
-    share = float(h.cr[g.BETA]) / step
-    return step / (math.hypot(1, share) + share)
 
 
 def safe_fraction(array: MainArray, share: float) -> float:
