@@ -148,12 +148,12 @@ def losses(wide: Run, narrow: Run) -> tuple[float, float, float, int]:
     assert wide.model is not None
     assert narrow.model is not None
     apart = parting(wide, narrow)
-    parted = next((cycle for cycle, off in apart if off > PARTED), 0)
+    parted = int(next((cycle for cycle, off in apart if off > PARTED), 0))
     most, every = (abs(a / b - 1) for a, b in zip(forces(narrow.model), forces(wide.model), strict=True))
     return apart[-1][1], most, every, parted
 
 
-def parting(wide: Run, narrow: Run) -> list[tuple[int, float]]:
+def parting(wide: Run, narrow: Run) -> list[tuple[float, float]]:
     """Cycles, and by how much places differ there, as a part of the farthest way."""
     farthest = way(wide)
     pairs = zip(wide.looks, narrow.looks, strict=False)

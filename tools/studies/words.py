@@ -16,8 +16,8 @@ from math import hypot
 from pathlib import Path
 from typing import NamedTuple
 
-from matplotlib.figure import Figure
-from word_scenes import PARTED, SCENES, Run, losses, parting, rest, run, times, way
+from drawn import Curves, draw
+from word_scenes import SCENES, Run, losses, parting, rest, run, times, way
 
 from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
@@ -148,7 +148,7 @@ def price(name: str, runs: dict[str, Run]) -> str:
     return row(name, *cells)
 
 
-def prices(parted: dict[str, list[tuple[int, float]]]) -> Iterator[str]:
+def prices(parted: Curves) -> Iterator[str]:
     """What 32-bit reals lose in each scene; then memory and time, which differ from run to run.
 
     parted: takes how places part, by scene.
@@ -168,31 +168,17 @@ def prices(parted: dict[str, list[tuple[int, float]]]) -> Iterator[str]:
     yield from taken
 
 
-def draw(parted: dict[str, list[tuple[int, float]]], path: Path) -> None:
-    """How far places in 32-bit reals are from those in 64-bit ones, over the cycles."""
-    figure = Figure(figsize=(7, 4.5), layout="constrained")
-    axes = figure.subplots()
-    for name, looks in parted.items():
-        cycles, apart = zip(*((cycle, off) for cycle, off in looks if cycle > 0 and off > 0), strict=True)
-        axes.loglog(cycles, apart, ".-", label=name)
-    axes.axhline(PARTED, color="black", linewidth=0.8, linestyle=":")
-    axes.set_xlabel("cycle")
-    axes.set_ylabel("difference of places over the farthest way")
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=120)
-
-
 def main() -> None:
     """Print the tables, and draw."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
     print(report())
-    parted: dict[str, list[tuple[int, float]]] = {}
+    parted: Curves = {}
     for line in prices(parted):
         print(line, flush=True)
     if given.out:
-        draw(parted, given.out)
+        draw(given.out, parted, "cycle", "difference of places over the farthest way", "log")
 
 
 if __name__ == "__main__":

@@ -72,9 +72,7 @@ def reached(
     for kind, address in heads:
         wave.setdefault(kind, []).append(np.array([address], np.int64))
     while wave and not (strict and left < 0):
-        sure = [
-            kind for kind in wave if shapes[kind].heads
-        ]  # first, so that a wrong pointer makes no other of them
+        sure = [kind for kind in wave if shapes[kind].heads]  # first: a wrong pointer makes no other of them
         turn = {kind: wave.pop(kind) for kind in sure or [*wave]}
         for number, (kind, shape) in enumerate(shapes.items(), 1):
             if kind not in turn or shape.size >= top:

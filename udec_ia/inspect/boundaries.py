@@ -35,7 +35,7 @@ def boundaries(heap: Reading, blocks: Numbers) -> Boundaries:
     row, item, broken = walker.closed(blocks)
     is_corner = heap.h.ia[item - 1] == g.MCOR
     corner, owner = item[is_corner], row[is_corner]
-    turned = heap.read(corner, KR) != corner[_before(owner)]
+    turned = heap.read(corner, KR) != corner[one_before(owner)]
     again = [*broken, *blocks[np.unique(owner[turned])].tolist()]
     return Boundaries(row, item, *walker.with_others(corner, blocks[owner], again))
 
@@ -174,7 +174,7 @@ class _Walker:
         return list(corners)
 
 
-def _before(owner: Numbers) -> Numbers:
+def one_before(owner: Numbers) -> Numbers:
     """The index of the corner before each one on its block. owner: block of each; block by block."""
     before = np.arange(-1, len(owner) - 1)
     if len(owner):

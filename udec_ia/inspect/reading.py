@@ -83,7 +83,10 @@ class Reading:
         return int(self.words[iad + self.offset[name] - 1])
 
     def read(self, addresses: Numbers, name: str, i: int = 0) -> Numbers:
-        """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field."""
+        """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field.
+
+        The accessors' rule from address to index, for many groups at once.
+        """
         k = self.offset[name] + i - 1
         if FIELDS[name].real:
             return np.asarray(self.h.ra[k:].take((addresses - 1) >> self._shift), np.float64)

@@ -1,8 +1,4 @@
-"""Groups of one kind as a table: a structured NumPy array with the field table's own names.
-
-Each field is gathered from all groups at once. That takes the array's two views as wholes, so this file
-repeats the accessors' rule from address to index.
-"""
+"""Groups of one kind as a table: a structured NumPy array with the field table's own names."""
 
 from __future__ import annotations
 
@@ -12,7 +8,7 @@ import numpy as np
 
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.lists import Lists
-from udec_ia.layout.table import Field, layouts, read_table
+from udec_ia.layout.table import read_table
 
 
 def table(array: MainArray, kind: str) -> Any:
@@ -28,7 +24,8 @@ def table(array: MainArray, kind: str) -> Any:
     groups = {group.name: group for group in read_table().groups}
     if kind not in groups:
         raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(groups)}")
-    at, fields = addresses(array, kind), groups[kind].fields
+    lists, fields = Lists(array), groups[kind].fields
+    at = lists.addresses(kind)
     types: list[Any] = [("address", np.int64)]
     for field in fields:
         base = array.scheme.real_type if field.real else np.dtype(np.int64)
@@ -36,7 +33,9 @@ def table(array: MainArray, kind: str) -> Any:
     rows = np.empty(len(at), types)
     rows["address"] = at
     for field in fields:
-        rows[field.name] = _gathered(array, kind, field, at)
+        columns = rows[field.name].reshape(len(at), field.count)
+        for i in range(field.count):
+            columns[:, i] = lists.read(at, field.name, i)
     return rows
 
 
@@ -49,14 +48,3 @@ def all_addresses(array: MainArray) -> dict[str, Any]:
     """The same of every kind."""
     lists = Lists(array)
     return {group.name: lists.addresses(group.name) for group in read_table().groups}
-
-
-def _gathered(array: MainArray, kind: str, field: Field, at: Any) -> Any:
-    """A field of the groups of `kind` at the addresses `at`: shape (n,), or (n, count)."""
-    ratio = array.scheme.ratio
-    offset = layouts(ratio)[kind].offset[field.name]
-    if field.real:
-        view, first = array.h.ra, (at - 1) // ratio + offset - 1
-    else:
-        view, first = array.h.ia, at + offset - 1
-    return view[first] if field.count == 1 else view[first[:, np.newaxis] + np.arange(field.count)]

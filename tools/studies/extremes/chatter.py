@@ -28,7 +28,8 @@ import numpy as np
 ROOT = Path(__file__).parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tools" / "studies")]
 
-from extremes.drawn import draw  # noqa: E402
+from drawn import draw  # noqa: E402
+
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 

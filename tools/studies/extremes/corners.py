@@ -29,6 +29,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tools" / "studies")]
 
+from drawn import Curves, draw  # noqa: E402
+
 from extremes.corner_scenes import (  # noqa: E402
     BUILDS,
     DENSITY,
@@ -39,7 +41,6 @@ from extremes.corner_scenes import (  # noqa: E402
     scene,
     standing,
 )
-from extremes.drawn import Curves, draw  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 

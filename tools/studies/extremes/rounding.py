@@ -29,9 +29,9 @@ import numpy as np
 ROOT = Path(__file__).parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tools" / "studies")]
 
+from drawn import Curves, draw  # noqa: E402
 from naive.stiffness import Scene  # noqa: E402
 
-from extremes.drawn import Curves, draw  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.heap.accessors import putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.inspect.boundaries import Boundaries
+from udec_ia.inspect.boundaries import Boundaries, one_before
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
 from udec_ia.layout import offsets as g
@@ -76,8 +76,4 @@ def lay_out(lists: Lists, boundaries: Boundaries, rows: Callable[[str, Numbers],
 def corner_before(rings: Rings) -> Numbers:
     """For each corner of the lists the index of the corner before it, clockwise."""
     corner = np.flatnonzero(~rings.contact)
-    number = np.cumsum(~rings.contact) - 1  # of the corner, among all
-    first = number[rings.first][rings.owner[corner]]
-    count = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(corner) else rings.count
-    here = np.arange(len(corner))
-    return corner[np.where(here == first, first + count[rings.owner[corner]] - 1, here - 1)]
+    return np.asarray(corner[one_before(rings.owner[corner])])

@@ -43,7 +43,7 @@ from udec_ia.ops.run.chatter import JUDGE, Chatter
 from udec_ia.ops.run.damped import damped
 from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, instability, kind_of, safe_fraction, shortened
+from udec_ia.ops.run.timestep import bound, instability, is_safe, kind_of, safe_fraction, shortened
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
@@ -82,8 +82,8 @@ class Runaway:
         self.tell = tell
         self.safe = Limit(np.inf, 0)
         self.chatter = Chatter(tell)
-        self._judged = (0.0, 0.0, -1)  # step, BETA and contacts made at that time
-        self._warned = (0.0, 0.0)  # step and BETA
+        self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
+        self._warned = (0.0, 0.0)  # step, and what damping left of it
         self._suspected = self._own_laws = self._shortened = False
         self._account: Account | None = None
 
@@ -142,7 +142,7 @@ class Runaway:
     def look(self, array: MainArray) -> None:
         """Error 37 if there is more energy than there can be. A run not suspected is judged again."""
         h, account = array.h, self._account
-        self.chatter.judge(array, h.cr[g.TDEL] <= damped(h, self.safe.step))
+        self.chatter.judge(array, is_safe(h, self.safe))
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
             self.judge(array)
             self.begin(array, self._own_laws)
@@ -162,7 +162,7 @@ class Runaway:
         step = float(h.cr[g.TDEL])
         share = step / damped(h, self.safe.step)
         self._account = None
-        fraction = min(safe_fraction(array, share), float(h.cr[g.FRAC]) / 2)
+        fraction = min(safe_fraction(array, share), float(h.cr[g.FRAC]) / 2)  # a safe step was not enough
         detail = (
             f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "
             f"put in {came:.3g}: {kind_of(h, int(at))} leads with {largest:.3g}. The time-step "

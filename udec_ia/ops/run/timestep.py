@@ -100,11 +100,14 @@ def time_step(array: MainArray) -> float:
     return step
 
 
-NEAR, IMPACTS = (
-    0.8,
-    0.5,
-)  # of the safe bound: where it is warned of if nothing damps, and what is advised then
+NEAR = 0.8  # of the safe bound: from here on it is warned of impacts if nothing damps
+IMPACTS = 0.5  # of the safe bound: what is advised then
 LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
+
+
+def is_safe(h: Memory, safe: Limit) -> bool:
+    """True if the time-step is not above what damping leaves of the bound `safe`."""
+    return bool(h.cr[g.TDEL] <= damped(h, safe.step) * (1 + LAST_DIGITS))
 
 
 def safe_fraction(array: MainArray, share: float) -> float:
@@ -119,7 +122,7 @@ def instability(array: MainArray, safe: Limit) -> str:
     """A warning if the time-step is above `safe`, or above what damping leaves of it, else ""; or near it."""
     step = float(array.h.cr[g.TDEL])
     critical = damped(array.h, safe.step)
-    if step <= critical * (1 + LAST_DIGITS):
+    if is_safe(array.h, safe):
         return _impacts(array, step / critical) if step > NEAR * critical else ""
     if safe.step == 0:
         place = _place(array.h, safe.address)

@@ -69,7 +69,7 @@ function coded(heap, field, number) {
   const one = told.find(([, code]) => code === number);
   if (one) return one[2];
   const flags = told.filter(([, value, , flag]) => flag && (number & value) !== 0);
-  const sum = flags.reduce((all, [, flag]) => all + flag, 0);
+  const sum = flags.reduce((all, [, value]) => all + value, 0);
   return (sum === number && flags.map(([, , text]) => text).join(", ")) || field.text;
 }
 

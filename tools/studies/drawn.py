@@ -1,17 +1,18 @@
-"""A picture of curves, as the studies in this folder write it with --out."""
+"""A picture of curves, as studies write it with --out."""
 
 from __future__ import annotations
 
 from pathlib import Path
+
+from matplotlib.figure import Figure
 
 Curves = dict[str, list[tuple[float, float]]]
 
 
 def draw(file: Path, curves: Curves, across: str, up: str, x: str = "linear", y: str = "log") -> None:
     """Write `file`. across, up: what the axes show; x, y: their scales."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(8, 5))
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    axes = figure.subplots()
     for label, points in curves.items():
         axes.plot([one for one, _ in points], [one for _, one in points], "o-", ms=3, label=label)
     axes.set(xlabel=across, ylabel=up, xscale=x, yscale=y)
