@@ -178,7 +178,8 @@ def main() -> None:
     for line in prices(parted):
         print(line, flush=True)
     if given.out:
-        draw(given.out, parted, "cycle", "difference of places over the farthest way", "log")
+        curves = {name: [one for one in looks if min(one) > 0] for name, looks in parted.items()}
+        draw(given.out, curves, "cycle", "difference of places over the farthest way", "log")
 
 
 if __name__ == "__main__":
