@@ -14,45 +14,20 @@ from numba.core import config
 from udec_ia.heap import plain
 
 ROOT = Path(__file__).parents[2]
-RUN = """
-import logging, sys
-from hashlib import sha256
-logging.basicConfig(level=logging.WARNING, stream=sys.stdout, format="%(message)s")
-from udec_ia import Model
-from udec_ia.heap.apart import entry
-from udec_ia.heap.jit import apart
-from udec_ia.kernels.drive import passes
-
-@apart
-def nothing_there(h, domain):
-    "The update of domains, which takes two thirds of the time to compile: a lone block finds nothing."
-    return True
-
-passes.updating = lambda h: entry(nothing_there, h, 0)
-m = Model()
-m.block(0, 0, 0, 1, 1, 1, 1, 0)
-m.property(1, density=2000, kn=1e8, ks=1e8)
-m.gravity(0, -10)
-m.rset(0.5, int(m.table("block")["address"][0]), 7)
-m.cycle(3)
-print(sha256(m.array.h.ia.tobytes() + m.array.h.cr.tobytes()).hexdigest(), m.check())
-"""
+ALONE = ROOT / "tests" / "alone.py"
 
 
 def run(tmp_path: Path, **more: str) -> list[str]:
-    """The lines that RUN prints."""
+    """The lines that tests/alone.py prints."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), **more}
-    script = tmp_path / "run.py"
-    script.write_text(RUN)
-    done = subprocess.run(
-        [sys.executable, str(script)], env=env, cwd=tmp_path, check=True, stdout=subprocess.PIPE
-    )
+    python = [sys.executable, str(ALONE)]
+    done = subprocess.run(python, env=env, cwd=tmp_path, check=True, stdout=subprocess.PIPE)
     return done.stdout.decode().splitlines()
 
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_the_same_words_without_linking(tmp_path: Path) -> None:
-    """Commands and cycles. Who waits is told once, and the second time nothing is compiled."""
+    """Commands, and cycles without the update of domains. Who waits is told; nothing is compiled twice."""
     linked = run(tmp_path)[-1]
     place = {"UDEC_LINK": "plain", "UDEC_CACHE": str(tmp_path / "cache")}
     first, again = run(tmp_path, **place), run(tmp_path, **place)

@@ -1,0 +1,39 @@
+"""A lone block made, changed and moved for some cycles: what tests/heap/test_plain.py runs in its processes.
+
+Printed are whatever is told of compiling, and in the last line a hash of all words and what the checker says.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from hashlib import sha256
+
+from udec_ia import Model
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.apart import entry
+from udec_ia.heap.jit import apart
+from udec_ia.kernels.drive import passes
+
+
+@apart
+def nothing_found(h: Memory, domain: int) -> bool:
+    """Stands for the update of domains, two thirds of the time to compile: a lone block finds nothing."""
+    return True
+
+
+def main() -> None:
+    """Play the scene."""
+    logging.basicConfig(level=logging.WARNING, stream=sys.stdout, format="%(message)s")
+    passes.updating = lambda h: entry(nothing_found, h, 0)
+    m = Model()
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.gravity(0, -10)
+    m.rset(0.5, int(m.table("block")["address"][0]), 7)
+    m.cycle(3)
+    print(sha256(m.array.h.ia.tobytes() + m.array.h.cr.tobytes()).hexdigest(), m.check())
+
+
+if __name__ == "__main__":
+    main()
