@@ -14,6 +14,7 @@ import re
 import traceback
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
@@ -135,6 +136,12 @@ def _of_file(path: Path) -> list[Law]:
         names = sorted(law.stem.replace("_", "-") for law in SHIPPED.glob("[!_]*.py"))
         reason = getattr(error, "strerror", None) or error
         raise _wrong(f"{file} cannot be read: {reason}", f"give a file, or {' or '.join(names)}") from error
+    return _of_shipped(path, text) if path.parent == SHIPPED else _of_text(path, text)
+
+
+def _of_text(path: Path, text: str) -> list[Law]:
+    """The laws that the file of this text defines."""
+    file = str(path)
     linecache.checkcache(file)
     space: dict[str, Any] = {"__name__": path.stem, "__file__": file}
     try:
@@ -149,6 +156,9 @@ def _of_file(path: Path) -> list[Law]:
         raise _wrong(f"{file} defines no law", f"a law is a function called {', '.join(RESULTS)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     return [_law(name, function, path.name, digest) for name, function in functions.items()]
+
+
+_of_shipped = cache(_of_text)  # they depend on nothing but their text: a process compiles each once
 
 
 def _of_mapping(functions: Mapping[str, Callable[..., Any]]) -> list[Law]:
