@@ -1,8 +1,9 @@
-"""Memory that has been freed, given back to the system.
+"""Memory that has been freed: kept for the next arrays, or given back to the system.
 
 The C library keeps what is free between arrays that stay, for the next ones; of large models that is as much
-as the arrays themselves. Between two parts of a long look it is given back. Where the library is not GNU's,
-nothing is done.
+as the arrays themselves. Between two parts of a long look it is given back. Within a part it is worth
+keeping: what a look makes and frees by the thousand are arrays of megabytes, and the system clears all that
+it hands out again. Where the library is not GNU's, nothing is done.
 """
 
 from __future__ import annotations
@@ -13,15 +14,25 @@ from contextlib import suppress
 from functools import cache
 from typing import Any
 
+TRIM_THRESHOLD, MMAP_THRESHOLD = -1, -3  # numbers of malloc.h
+ARRAY_LIMIT, KEPT_LIMIT = 2**25, 2**30  # bytes of one array that is kept, and of all together
+
+
+def keep_freed() -> None:
+    """From now on keep what is freed until `give_back`: for a process that does nothing but one long look."""
+    for what, size in ((MMAP_THRESHOLD, ARRAY_LIMIT), (TRIM_THRESHOLD, KEPT_LIMIT)):
+        _routine("mallopt")(what, size)
+
 
 def give_back() -> None:
     """Give back to the system what nothing uses."""
-    _trim()(0)
+    _routine("malloc_trim")(0)
 
 
 @cache
-def _trim() -> Callable[[int], Any]:
-    """The routine of the C library that does so."""
+def _routine(name: str) -> Callable[..., Any]:
+    """A routine of the C library; one that does nothing where there is none."""
     with suppress(OSError, AttributeError, TypeError):
-        return ctypes.CDLL(None).malloc_trim
-    return lambda _: None
+        routine: Callable[..., Any] = getattr(ctypes.CDLL(None), name)
+        return routine
+    return lambda *_: None

@@ -33,11 +33,13 @@ def add_commands(commands: Any) -> None:
 
 def _look(args: argparse.Namespace) -> Listing:
     """All violations in a file, sound or not, and what was not judged."""
+    from udec_ia.heap.slack import keep_freed
     from udec_ia.inspect.check import check, unjudged
     from udec_ia.inspect.look.listing import Listing
     from udec_ia.printable import printable
     from udec_ia.restart import see
 
+    keep_freed()
     seen = see(args.file)
     found = check(seen.array)
     many = counted(len(found), "violation")
