@@ -48,6 +48,15 @@ def integers(h: Memory, iads: Any, k: Offset, i: int = 0) -> Any:
     return h.ia[iads + k[_which(h)] + i - 1].astype(np.int64)
 
 
+def gather(h: Memory, iads: Any, words: int, real: bool) -> Any:
+    """What stands `words` behind each of many addresses: integers as int64, or reals; not for kernels.
+
+    words: from the address of a group to a field, as the table lays it out for the scheme at hand.
+    """
+    at = iads + (words - 1)
+    return h.ra.take(at >> _which(h)) if real else h.ia.take(at).astype(np.int64, copy=False)
+
+
 def puti(h: Memory, iad: Address, k: Offset, n: int, i: int = 0) -> None:
     """IA(iad + k + i) := n."""
     h.ia[iad + k[_which(h)] + i - 1] = n

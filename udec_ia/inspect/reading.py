@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from udec_ia.heap.accessors import gather
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import CHOICES
 from udec_ia.inspect.walk import HEADS, Unsound
@@ -83,14 +84,11 @@ class Reading:
         return int(self.words[iad + self.offset[name] - 1])
 
     def read(self, addresses: Numbers, name: str, i: int = 0) -> Numbers:
-        """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field.
-
-        The accessors' rule from address to index, for many groups at once.
-        """
-        k = self.offset[name] + i - 1
+        """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field."""
+        k = self.offset[name] + i
         if FIELDS[name].real:
-            return np.asarray(self.h.ra[k:].take((addresses - 1) >> self._shift), np.float64)
-        return np.asarray(self.h.ia.take(addresses + k), np.int64)
+            return np.asarray(gather(self.h, addresses, (k - 1) * self.ratio, True), np.float64)
+        return np.asarray(gather(self.h, addresses, k, False))
 
     def hosts(self, contact: int) -> tuple[int, int]:
         """The two blocks that the contact names."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory
+from udec_ia.heap.accessors import Memory, gather
 from udec_ia.heap.census import CHOICES, census, one_of
 from udec_ia.heap.junk import junk_chains
 from udec_ia.layout import offsets as g
@@ -170,8 +170,7 @@ class Atlas:
 
     def gather(self, word: Word, at: Any) -> Any:
         """What a field of a shape holds in the groups at the addresses `at`: int64, or reals."""
-        index = at + (word.first - 1)
-        return self.h.ra[index // self.ratio] if word.field.real else self.h.ia[index].astype(np.int64)
+        return gather(self.h, at, word.first, word.field.real)
 
     # ---- relations
 
