@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
+from extremes.bricks import slope
 from kinds import every_kind
 from mechanics import block, on_base, push
 
@@ -221,18 +221,8 @@ def test_a_command_puts_no_work_in() -> None:
 
 
 def bricks(out: Path, **damping: float) -> Model:
-    """Courses of bricks on a slope of 30 degrees, whose friction would hold them at 45."""
-    m = Model(out=out)
-    m.property(1, density=2500, kn=1e10, ks=1e10, friction=1)
-    m.round(0.05)
-    m.gravity(5, -8.66)
-    m.block(0, -1, 0, 5, 24, 5, 24, -1)
-    for y in range(5):
-        m.split(-1, y, 25, y)
-    for y in range(5):
-        for x in np.arange(1.5 if y % 2 else 3.0, 24, 3):
-            m.split(x, y - 0.01, x, y + 1.01)
-    m.fix(0, 24, -1, 0)
+    """Courses of bricks on a slope, with mass damping of 1 Hz or another `damping`."""
+    m = slope(out)
     if damping:
         m.damping(**damping)
     else:

@@ -30,6 +30,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tools" / "studies")]
 
 from drawn import draw  # noqa: E402
 
+from extremes.bricks import slope  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 
@@ -47,23 +48,6 @@ KINDS: dict[str, dict[str, Any]] = {
 }
 
 
-def slope() -> Model:
-    """The bricks, before their first cycle."""
-    m = Model(out="/tmp")
-    m.property(1, density=2500, kn=1e10, ks=1e10, friction=1)
-    m.round(0.05)
-    m.gravity(5, -8.66)
-    m.fraction(0.5, safe=True)
-    m.block(0, -1, 0, 5, 24, 5, 24, -1)
-    for y in range(5):
-        m.split(-1, y, 25, y)
-    for y in range(5):
-        for x in np.arange(1.5 if y % 2 else 3.0, 24, 3):
-            m.split(x, y - 0.01, x, y + 1.01)
-    m.fix(0, 24, -1, 0)
-    return m
-
-
 def closed(m: Model) -> set[int]:
     """Contacts that bear a force."""
     rows = m.table("contact")
@@ -72,7 +56,8 @@ def closed(m: Model) -> set[int]:
 
 def look(kind: str, cycles: int) -> tuple[list[int], list[str]]:
     """Changes in each of the last cycles, and the cells of the row."""
-    m, told = slope(), [0]
+    m, told = slope("/tmp"), [0]
+    m.fraction(0.5, safe=True)
 
     def tell(text: str) -> None:
         if text.startswith("contacts chatter"):
