@@ -12,7 +12,9 @@ from math import sqrt
 import numpy as np
 import scenes
 from naive.triangulate import triangulate
-from scenes import Scene, blocks, outline
+from outlines import random_outline
+from splits import split_somehow
+from steps import Numbers, Scene, blocks, outline
 
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.layout.offsets import DTOL, KBM, KX, KY, MFDEF, MRIG, NBLK, TDEL
@@ -23,7 +25,7 @@ TYPES = ("rigid", "sdef", "fdef")
 FIRST_FUNCTION = 1
 
 
-def around(scene: Scene, ib: int) -> scenes.Numbers:
+def around(scene: Scene, ib: int) -> Numbers:
     """A range that holds the centroid of block `ib` alone."""
     x, y = float(getr(scene.model.h, ib, KX)), float(getr(scene.model.h, ib, KY))
     return x - 1e-4, x + 1e-4, y - 1e-4, y + 1e-4
@@ -57,7 +59,7 @@ def soften_all(scene: Scene, rng: np.random.Generator) -> None:
         soften(scene, rng)
 
 
-def range_of(scene: Scene, rng: np.random.Generator) -> scenes.Numbers:
+def range_of(scene: Scene, rng: np.random.Generator) -> Numbers:
     """A strip along one side of the scene, a rectangle in it, or all of it."""
     points = np.array([p for ib in blocks(scene.model) for p in outline(scene.model, ib)])
     (ax, ay), (bx, by) = points.min(axis=0) - 0.01, points.max(axis=0) + 0.01
@@ -108,7 +110,7 @@ def stress_some(scene: Scene, rng: np.random.Generator) -> None:
 
 LATER = (
     *(soften, soften, soften, load_some, load_some, unload_some, stress_some),
-    *(scenes.split_somehow, scenes.delete_one, scenes.fix_some, scenes.free_some, scenes.change_some),
+    *(split_somehow, scenes.delete_one, scenes.fix_some, scenes.free_some, scenes.change_some),
     *(scenes.throw_some, scenes.throw_some, scenes.pull, scenes.damp),
 )
 
@@ -134,13 +136,13 @@ def play(
     scene.model.tell = lambda _: None  # of steps that stiffness damping makes unstable
     materials(scene, rng)
     for _ in range(20):
-        corners = scenes.random_outline(rng)
+        corners = random_outline(rng)
         if scene.do("block", *(number for point in corners for number in point), material=1):
             break
     for _ in range(60):
         if scene.model.h.ci[NBLK] >= 2 + rng.integers(MAX_BLOCKS - 2):
             break
-        scenes.split_somehow(scene, rng)
+        split_somehow(scene, rng)
     if rng.random() < 0.5:
         scenes.round_some(scene, rng, most=0.35)  # an edge that shortens must still hold two roundings
     soften_all(scene, rng)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from kinds import every_kind
 from naive.relocate import relocate
-from scenes import blocks, play
+from scenes import play
+from steps import blocks
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpreted import both_ways, unlike
 from naive.relocate import differences, essence, relocate
-from scenes import Scene, Step, replay
 from soft_scenes import play, types
+from steps import Scene, Step, replay
 
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import JUNK, MRIG, NSOFT

@@ -13,7 +13,8 @@ import pytest
 from interpreted import both_ways, unlike
 from naive.compare import disagreements
 from naive.relocate import differences, essence, relocate
-from scenes import Scene, Step, blocks, outline, play, replay
+from scenes import play
+from steps import Scene, Step, blocks, outline, replay
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import ALL_SCHEMES

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 from kinds import GROUPS, every_kind
 from naive.contacts import rounded_polygon
-from scenes import blocks, outline
 from shapely.geometry import Point, Polygon
+from steps import blocks, outline
 
 from udec_ia import Model
 from udec_ia.heap.array import MainArray
