@@ -39,7 +39,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from damage import every_kind
-from hostile import SECRET, hostile, one
+from hostile import SECRET, hostile
+from hostile_files.storage import one
 
 from udec_ia import cli
 from udec_ia.heap.array import MainArray

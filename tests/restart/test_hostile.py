@@ -12,7 +12,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from hostile import base, new_table, packed_names
+from hostile import base
+from hostile_files.contents import new_table
+from hostile_files.storage import packed_names
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -1,0 +1,1 @@
+"""What is done to a good restart file to make it hostile, for tools/hostile.py."""
