@@ -10,6 +10,8 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.layout.offsets import KTD, KXD, KYD, TDEL
@@ -65,6 +67,26 @@ def on_base(b: float, h: float, d: float, width: float, **numbers: Any) -> Model
     return m
 
 
+def standing(out: Path, **numbers: Any) -> Model:
+    """A block of 1 by 1 at rest on a fixed base; two contacts, which carry no force yet."""
+    m = on_base(1.0, 1.0, 0.1, 4.0, friction=0.5, **numbers)
+    m.out = out
+    return m
+
+
+def side_by_side(out: Path | None = None, **named: object) -> Model:
+    """Two blocks side by side on a fixed base."""
+    m = Model(out=out or ".", **named)  # type: ignore[arg-type]
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.gravity(0, -10)
+    m.block(0, 0, 0, 3, 4, 3, 4, 0)
+    m.split(-1, 1, 5, 1)
+    m.split(2, 0.5, 2, 4)
+    m.round(0.1)
+    m.fix(0, 4, 0, 1)
+    return m
+
+
 def block(m: Model, x: float, y: float) -> Row:
     """The block whose centroid is nearest to (x, y)."""
     blocks = m.table("block")
@@ -76,6 +98,13 @@ def at(m: Model, kind: str, address: int) -> Row:
     rows = m.table(kind)
     (row,) = rows[rows["address"] == address]
     return row
+
+
+def value(m: Model, kind: str, address: int, field: str) -> float:
+    """The field of one group, by the table; NaN if there is no such group."""
+    rows = m.table(kind)
+    (found,) = rows[field][rows["address"] == address] if address in rows["address"] else (np.nan,)
+    return float(found)
 
 
 def push(m: Model, address: int, xd: float = 0.0, yd: float = 0.0, td: float = 0.0) -> None:

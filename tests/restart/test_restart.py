@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from handmade import two_blocks
-from interrupts import kill_saves
+from interrupted.saves import kill_saves
 from mechanics import box, model, on_base
 
 from udec_ia import Model

@@ -1,0 +1,1 @@
+"""Interrupts inside commands, of processes and of SAVE, for tools/interrupts.py."""
