@@ -7,6 +7,9 @@ numbers. Every address is tested before it is used and every walk is bounded, wh
 
 A list that breaks ends it in Unsound; the checker notes it and goes on with the rest (check/groups.py). What
 a damaged heap still holds, found by whatever pointer leads there, is for the census to say (heap/census.py).
+It cannot stand in for the lists: a group that its list has lost counts in a census, as long as anything
+points to it, and that is what the checker has to find; a table wants the order of its list, and needs no
+more of the heap than that list.
 """
 
 from __future__ import annotations
