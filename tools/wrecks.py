@@ -54,6 +54,7 @@ from udec_ia.restart import info, load, save
 BATCH = 1000  # cases to a process
 ROOM = 2**30  # bytes of addresses that a process may take beyond those that it begins with
 MEMORY = 64 * 2**20  # bytes that a command may take; a picture takes as much by itself
+TIMES = 3  # as much as the damaged file, if that is more
 SECONDS = 5.0  # of the processor for one command
 MOMENT = 0.1  # seconds of compiling that count
 PICTURES = 0.02  # share of the files of which pictures and pages are made, which takes long
@@ -183,8 +184,8 @@ class Ended(NamedTuple):
     wrong: list[str]
 
 
-def obey(command: list[str]) -> Ended:
-    """Run a command line here, within its time and memory. What compiles a kernel is allowed any."""
+def obey(command: list[str], memory: int) -> Ended:
+    """Run a command line here, within its time and so many bytes. What compiles a kernel is allowed any."""
     out, err = io.StringIO(), io.StringIO()
     peak()
     before, clock, waited = peak(), time.process_time(), compiled()
@@ -206,7 +207,7 @@ def obey(command: list[str]) -> Ended:
         wrong.append(f"the status {status}: {said[-300:]}")
     if took > SECONDS and not warmed:
         wrong.append(f"{took:.1f} s")
-    if used > MEMORY and not warmed:
+    if used > memory and not warmed:
         wrong.append(f"{used / 2**20:.0f} MB of memory")
     if not said:
         wrong.append("nothing was said")
@@ -268,7 +269,7 @@ def cases(seed: int, first: int, last: int, sound: Path, only: list[str]) -> Ite
                 if only and command[0] not in only:
                     continue
                 yield [case, what, command, None, []]
-                ended = obey(command)
+                ended = obey(command, max(MEMORY, TIMES * len(kept)))
                 yield [case, what, command, ended.status, ended.wrong + clear(bad, kept)]
 
 
