@@ -72,6 +72,40 @@ def test_a_block_on_springs_moves_as_the_formula_says(way: dict[str, Any]) -> No
     assert max(map(abs, speeds)) > 1e3 * grain
 
 
+def test_adaptive_damping_looks_at_all_that_moves_and_back_over_the_cycles_before() -> None:
+    """Two blocks apart, of 1 x 1 and 1 x 3 m, which share one ALPHA: Rayleigh's quotient of both, fading."""
+    m = model(*box(0, 9, -1, 3), d=0.05, density=DENSITY, stiffness=(KN, KN))
+    m.split(-1, 0, 10, 0)
+    m.split(1, -0.5, 1, 4)
+    m.split(8, -0.5, 8, 4)
+    m.split(7.5, 1, 10, 1)
+    m.delete(1, 8, 0, 3)
+    m.delete(8, 9, 1, 3)
+    m.fix(0, 9, -1, 0)
+    m.damping(adaptive=0.6)
+    masses = np.array([3 * DENSITY, DENSITY])
+    v, fall, before = (np.zeros(2) for _ in range(3))
+    grown = moved = 0.0
+    quotients = []
+    for _ in range(80):
+        m.cycle(1)
+        dt = float(m.h.cr[g.TDEL])
+        force = 2 * KN * np.maximum(-fall, 0.0) - masses * G
+        growing, moving = -float((v * (force - before)).sum()) / dt, float((masses * v * v).sum())
+        grown, moved = 0.93 * grown + growing, 0.93 * moved + moving
+        w = math.sqrt(max(grown / moved, 0.0)) if moved else 0.0
+        quotients.append(growing / moving / w**2 if w else 1.0)
+        alpha = min(max(2 * 0.6 * w, 1e-3 / dt), 1 / dt)
+        assert float(m.h.cr[g.ALPHA]) == pytest.approx(alpha, rel=1e-6)
+        before = force
+        v = (v * (1 - alpha * dt / 2) + force / masses * dt) / (1 + alpha * dt / 2)
+        fall += v * dt
+    speeds = [float(block(m, x, y)["KYD"]) for x, y in ((0.5, 1.5), (8.5, 0.5))]
+    assert speeds == pytest.approx(v.tolist(), rel=1e-6)
+    assert max(quotients) > 1.2  # of a cycle by itself
+    assert min(quotients) < 0.9
+
+
 @pytest.mark.parametrize("way", [*WAYS, {}], ids=lambda way: next(iter(way), "static"))
 def test_a_column_comes_to_its_exact_overlaps(way: dict[str, Any]) -> None:
     """Level k carries k W on two contacts; what is out of balance may shift an overlap by as much."""

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "1ca3ee872a0d3439a98bfe28c42a9baf76b79c578b2ade5c230ab7d36fda682d"
+DIGEST = "0d90ff0604c322cb28ebd1c521c70e997b6dd58818f3fe9b459a0c1786789534"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -331,6 +331,6 @@ ESTOR = 8  # kinetic energy and strain energy when the last CYCLE ended
 EPOT = 9  # potential of gravity then, against that at ENERGY ON
 EREF = 10  # potential of gravity against the origin that counts as 0
 WREST = 11  # energy taken by LOCAL, COMBINED and KINETIC damping since ENERGY ON
-EMOVES = 12  # kinetic energy in the cycle before (KINETIC)
+EMOVES = 12  # kinetic energy in the cycle before (KINETIC), or of cycles before, fading (ADAPTIVE)
 WDRIVE = 13  # work that the boundary conditions have put in so far, not less what they have taken
 NCOMD = 14

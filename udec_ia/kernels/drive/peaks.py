@@ -5,6 +5,9 @@ balance (Cundall 1976). ADAPTIVE is mass damping that is critical for what moves
 inertial masses and F' the forces of the cycle before, the frequency of the motion is that of Rayleigh,
 
     w w = - sum v (F - F')/dt / sum m v v          ALPHA = 2 f w          (Underwood 1983)
+
+Both sums are taken over the cycles before, too, which fade: what slides and sticks by turns would else be
+damped as if it swung quickly, whenever little else moves.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
 
 LOWEST, HIGHEST = 1e-3, 1.0  # ALPHA times the time-step
+FADING = 0.93  # of what the sums were in the cycle before: some fourteen cycles count
 
 
 @kernel
@@ -115,12 +119,18 @@ def yielding_all(h: Memory) -> float:
 
 @kernel
 def adapt(h: Memory) -> None:
-    """ALPHA and what follows from it, from what moves how fast, and by how much forces have grown."""
-    dt, energy = np.float64(h.cr[g.TDEL]), energy_of_motion(h)
-    grown = yielding_all(h)
+    """ALPHA and what follows from it, from what moves how fast, and by how much forces have grown.
+
+    EMOVES is half of the second sum. The first one is not kept: it is that times the w w which ALPHA has.
+    """
+    dt, f = np.float64(h.cr[g.TDEL]), np.float64(h.cr[g.RESTF])
+    before, grown = FADING * h.cd[g.EMOVES], yielding_all(h)
+    h.cd[g.EMOVES] = before + energy_of_motion(h)
     alpha = LOWEST / dt
-    if energy > 0 and grown < 0:
-        alpha = max(2.0 * np.float64(h.cr[g.RESTF]) * np.sqrt(-grown / (2.0 * energy * dt)), alpha)
+    if h.cd[g.EMOVES] > 0 and f > 0:
+        w = np.float64(h.cr[g.ALPHA]) / (2.0 * f)
+        square = (w * w * before - grown / (2.0 * dt)) / h.cd[g.EMOVES]
+        alpha = max(2.0 * f * np.sqrt(max(square, 0.0)), alpha)
     alpha = min(alpha, HIGHEST / dt)
     h.cr[g.ALPHA] = h.cr[g.ALPB] = alpha
     half = alpha * dt * 0.5

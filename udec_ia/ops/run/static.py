@@ -17,7 +17,7 @@ from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.settings import set_fraction, set_relaxation
 
-DAMPED = 0.7  # of critical
+DAMPED = 0.8  # of critical
 SHARE = 0.9  # of the safe time-step
 STATIC = (
     f"STATIC: ADAPTIVE damping {DAMPED:g}, {SHARE:g} of the safe time-step with scaled masses, "
