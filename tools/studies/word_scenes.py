@@ -161,8 +161,9 @@ def parting(wide: Run, narrow: Run) -> list[tuple[float, float]]:
 
 
 def times(models: dict[str, Model]) -> dict[str, float]:
-    """Seconds that a cycle takes in each scheme, as medians of turns."""
+    """Seconds that a cycle takes in each scheme, as medians of turns, each from the same state on."""
     slices: dict[str, int] = {}
+    begin = {name: m.array.copy() for name, m in models.items()}
     for name, m in models.items():
         m.cycle(20)
         start = process_time()
@@ -171,6 +172,8 @@ def times(models: dict[str, Model]) -> dict[str, float]:
     found: dict[str, list[float]] = {name: [] for name in models}
     for _ in range(TURNS):
         for name, m in models.items():
+            m.take_up(begin[name].copy(), [])
+            m.cycle(20)
             start = process_time()
             m.cycle(slices[name])
             found[name].append((process_time() - start) / slices[name])
