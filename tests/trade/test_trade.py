@@ -15,9 +15,11 @@ import pytest
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.study.many import RUNS, run_all
+from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.blame import Blame
 from udec_ia.trade.digits import measure
-from udec_ia.trade.judge import Row
+from udec_ia.trade.judge import Row, recommended
+from udec_ia.trade.levers import Numbers, Setting
 from udec_ia.trade.noise import Noisy
 from udec_ia.trade.parting import parting
 from udec_ia.trade.report import changes, half_step, sentences, shown
@@ -74,6 +76,26 @@ def test_the_cheapest_within_the_tolerance_is_recommended(fall: Price) -> None:
     told = " ".join(sentences(fall))
     assert "line 5: FRAC 0.1 -> FRACTION" in told
     assert "power 1.00 of the step" in told
+
+
+@pytest.mark.parametrize(
+    ("narrow", "wide", "taken"),
+    [
+        (0.010, 0.029, "i32r64"),  # by less than a process can tell
+        (1.00, 1.20, "i32r64"),
+        (1.00, 1.30, "i32r32"),
+        (1.00, math.inf, "i32r32"),  # too wrong with 64 bits
+        (1.30, 1.00, "i32r64"),
+    ],
+)
+def test_short_reals_are_recommended_where_they_save_time(narrow: float, wide: float, taken: str) -> None:
+    rows = [
+        Row(Setting(build), Numbers(), cost, Result("", {}, ENDED), cost, {"way": 0.0 if cost < 9 else 1.0})
+        for build, cost in (("i32r32", narrow), ("i32r64", wide))
+    ]
+    best = recommended(rows, {"way": 0.0}, 1e-3)
+    assert best is not None
+    assert best.setting.build == taken
 
 
 def test_the_lines_to_change_make_the_recommended_run(fall: Price, tmp_path: Path) -> None:

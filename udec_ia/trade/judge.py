@@ -12,6 +12,7 @@ from udec_ia.trade.levers import Numbers, Setting
 from udec_ia.trade.limit import Limit
 
 SPREAD = 0.5  # of the tolerance: what the error of a reference may be
+SCATTER = 0.2, 0.02  # share, and seconds, by which two times have to differ before one is the shorter
 
 
 @dataclass
@@ -81,9 +82,17 @@ def within(row: Row, margins: Mapping[str, float], tolerance: float) -> bool:
 
 
 def recommended(rows: Sequence[Row], margins: Mapping[str, float], tolerance: float) -> Row | None:
-    """The cheapest setting within the tolerance; of equals the one that needs less memory."""
+    """The cheapest setting within the tolerance; of equals the one that needs less memory.
+
+    With 32-bit reals only where they are faster by more than times scatter: they lose more in another deck.
+    """
     fit = [row for row in rows if within(row, margins, tolerance)]
-    return min(fit, key=lambda row: (row.cost, row.memory), default=None)
+    wide = [row for row in fit if scheme(row.setting.build).real_bits == 64]
+    best, safe = (min(some, key=lambda row: (row.cost, row.memory), default=None) for some in (fit, wide))
+    if best is None or safe is None:
+        return best
+    share, seconds = SCATTER
+    return best if safe.cost - best.cost > max(share * safe.cost, seconds) else safe
 
 
 def pareto(rows: Sequence[Row]) -> list[Row]:
