@@ -11,8 +11,10 @@ import pytest
 from kinds import every_kind
 from mechanics import G, block, box, model, on_base
 from naive.stiffness import Scene
+from safe_steps.scenes import draw
 
 from udec_ia import Model, UdecError
+from udec_ia.kernels.energy.stored import kinetic
 from udec_ia.layout import offsets as g
 
 KN, DENSITY = 1e8, 1000.0
@@ -104,6 +106,56 @@ def test_adaptive_damping_looks_at_all_that_moves_and_back_over_the_cycles_befor
     assert speeds == pytest.approx(v.tolist(), rel=1e-6)
     assert max(quotients) > 1.2  # of a cycle by itself
     assert min(quotients) < 0.9
+
+
+def rotated(tensor: Any, angle: float) -> Any:
+    """A tensor in the plane, turned anticlockwise."""
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    return turn @ np.asarray(tensor) @ turn.T
+
+
+def strain_rates(angle: float, **damping: Any) -> Any:
+    """Of a flat block that floats freely and is shaken at first, in its own axes, which are at `angle`."""
+    c, s = math.cos(angle), math.sin(angle)
+    outline = [(c * x - s * y, s * x + c * y) for x, y in box(0, 4, 0, 1)]
+    m = model(*outline, d=0.05, gravity=(0.0, 0.0))
+    m.property(1, bulk=2e7, g=1e7)
+    m.change(-9, 9, -9, 9, type="sdef")
+    m.damping(**damping)
+    m.cycle(0)
+    (ext,) = m.table("sdef")["address"].tolist()
+    names = g.KED11, g.KED12, g.KED21, g.KED22
+    for name, rate in zip(names, rotated([[1e-3, 4e-4], [4e-4, -7e-4]], angle).ravel(), strict=True):
+        m.rset(float(rate), ext, name[m.array.scheme.ratio >> 1])
+    m.cycle(25)
+    (ext,) = m.table("sdef")
+    return rotated([[ext["KED11"], ext["KED12"]], [ext["KED21"], ext["KED22"]]], -angle)
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: next(iter(way)))
+def test_strains_are_damped_along_the_axes_of_the_block(way: dict[str, Any]) -> None:
+    """However the block lies in x and y."""
+    straight = strain_rates(0.0, **way)
+    assert np.abs(straight).max() > 1e-6
+    for angle in (0.5, 1.2, math.pi / 2, 2.8):
+        np.testing.assert_allclose(strain_rates(angle, **way), straight, atol=1e-9)
+
+
+@pytest.mark.parametrize("way", [{"local": 0.8}, {"combined": 0.8}], ids=["local", "combined"])
+def test_a_slanted_block_that_strains_stays_stable_near_the_bound(way: dict[str, Any]) -> None:
+    """Shaken, at 0.95 of the safe step: this scene blew up where strains were damped along x and y."""
+    m = draw("deformable", 100026).model
+    m.fraction(0.95, safe=True)
+    m.damping(**way)
+    m.cycle(1)
+    rng, speed = np.random.default_rng(1), g.KXD[m.array.scheme.ratio >> 1]
+    for row in m.table("block"):
+        if row["KBFIX"] == 0:
+            v = float(rng.uniform(-1, 1)) * 1e-8 * float(row["KBRO"]) / float(m.h.cr[g.TDEL])
+            m.rset(v, int(row["address"]), speed)
+    first = float(kinetic(m.h, True))
+    m.cycle(2000)
+    assert float(kinetic(m.h, True)) < 0.5 * first
 
 
 @pytest.mark.parametrize("way", [*WAYS, {}], ids=lambda way: next(iter(way), "static"))

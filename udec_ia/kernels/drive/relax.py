@@ -21,6 +21,8 @@ depend on the way. The factors s stand in relaxations (links.relaxations); ops/r
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
@@ -28,6 +30,7 @@ from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.fdef import next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain, straining_force
+from udec_ia.kernels.geometry.tensor import first_axis, turned
 from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
 
@@ -40,6 +43,19 @@ def sign(h: Memory, v: float) -> float:
     return real(h, -1.0) if v < 0 else real(h, 0.0)
 
 
+@inlined
+def damped(h: Memory, f: float, v: float, before: float) -> float:
+    """What is left of the force `f` on a degree of freedom of velocity `v`; before: f of the last cycle."""
+    part = h.cr[g.RESTF] * abs(f)
+    if h.ci[g.LREST] == g.LOCAL:
+        return f - part * sign(h, v)
+    if h.ci[g.LREST] == g.COMBINED:
+        return f - part * (sign(h, v) - sign(h, f - before)) * real(h, 0.5)
+    if h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] == 0:
+        return f * real(h, 0.5)
+    return f
+
+
 @kernel
 def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: float) -> float:
     """What stands for the force `f` on a degree of freedom of velocity `v`.
@@ -47,17 +63,12 @@ def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: floa
     ir: its relaxation, 0 if there is none; before, scale: fields there, of the force of the cycle before and
     of the factor.
     """
-    part, damped = h.cr[g.RESTF] * abs(f), f
-    if h.ci[g.LREST] == g.LOCAL:
-        damped = f - part * sign(h, v)
-    elif h.ci[g.LREST] == g.COMBINED:
-        damped = f - part * (sign(h, v) - sign(h, f - getr(h, ir, before))) * real(h, 0.5)
+    last = f
+    if h.ci[g.LREST] == g.COMBINED:
+        last = getr(h, ir, before)
         putr(h, ir, before, f)
-    elif h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] == 0:
-        damped = f * real(h, 0.5)
-    if h.ci[g.LSCALE] != 0:
-        return damped * getr(h, ir, scale)
-    return damped
+    left = damped(h, f, v, last)
+    return left * getr(h, ir, scale) if h.ci[g.LSCALE] != 0 else left
 
 
 @kernel
@@ -98,13 +109,44 @@ def relax_body(h: Memory, ib: int, ir: int) -> None:
 
 
 @kernel
+def forces_before(h: Memory, ir: int, force: Any) -> Any:
+    """What strained in the last cycle, which COMBINED finds in the relaxation `ir`; `force` replaces it."""
+    if h.ci[g.LREST] != g.COMBINED:
+        return force
+    last = getr(h, ir, g.KRXS11), getr(h, ir, g.KRXS12), getr(h, ir, g.KRXS22)
+    putr(h, ir, g.KRXS11, force[0])
+    putr(h, ir, g.KRXS12, force[1])
+    putr(h, ir, g.KRXS22, force[2])
+    return last
+
+
+@kernel
+def relaxed_strain(h: Memory, ie: int, ir: int, force: Any, rate: Any) -> tuple[float, float, float]:
+    """What stands for the `force` that strains extension `ie` at the `rate`.
+
+    Its degrees of freedom are the strains along the axes of the Euler tensor: along others the inertia of one
+    strain goes with another, and to damp each by itself could make the step unstable that is safe.
+    """
+    c, s = first_axis(h, getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22))
+    last = forces_before(h, ir, force)
+    b11, b12, b22 = turned(last[0], last[1], last[2], c, -s)
+    f11, f12, f22 = turned(force[0], force[1], force[2], c, -s)
+    e11, e12, e22 = turned(rate[0], rate[1], rate[2], c, -s)
+    f11, f12, f22 = damped(h, f11, e11, b11), damped(h, f12, e12, b12), damped(h, f22, e22, b22)
+    f11, f12, f22 = turned(f11, f12, f22, c, s)
+    if h.ci[g.LSCALE] == 0:
+        return f11, f12, f22
+    scale = getr(h, ir, g.KRXE)
+    return f11 * scale, f12 * scale, f22 * scale
+
+
+@kernel
 def relax_strain(h: Memory, ie: int, ir: int) -> None:
     """What strains extension `ie`; what damping takes goes to WREST."""
     f11, f12, f22 = straining_force(h, ie)
     e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
-    l11 = f11 - relaxed(h, ir, g.KRXS11, g.KRXE, f11, e11)
-    l12 = f12 - relaxed(h, ir, g.KRXS12, g.KRXE, f12, e12)
-    l22 = f22 - relaxed(h, ir, g.KRXS22, g.KRXE, f22, e22)
+    r11, r12, r22 = relaxed_strain(h, ie, ir, (f11, f12, f22), (e11, e12, e22))
+    l11, l12, l22 = f11 - r11, f12 - r12, f22 - r22
     putr(h, ie, g.KSA11, getr(h, ie, g.KSA11) - l11)
     putr(h, ie, g.KSA12, getr(h, ie, g.KSA12) - l12)
     putr(h, ie, g.KSA21, getr(h, ie, g.KSA21) - l12)

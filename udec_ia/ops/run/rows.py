@@ -23,10 +23,10 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.geometry.tensor import ROUND
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
-ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
 ADD_CONTACTS = Sparing(add_contacts, 200)  # in 0.1 s
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
