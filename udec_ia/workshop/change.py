@@ -69,12 +69,13 @@ def _change(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
 
 def _convert(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.words import scheme
-    from udec_ia.inspect.change import convert
+    from udec_ia.inspect.change import prove, rewrite
     from udec_ia.inspect.look import Listing
 
     state = _read(args)
-    made = convert(state.array, scheme(args.build))
-    state = state._replace(array=made.array)  # the former one is not needed any more, and takes memory
+    fresh = rewrite(state.array, scheme(args.build))
+    state = state._replace(array=fresh.array)  # the former one is not needed any more, and takes memory
+    made = prove(fresh)
     return _write(args, state, made.array, _convert_line(args), Listing(made.said), made.broken)
 
 

@@ -13,8 +13,7 @@ from typing import NamedTuple
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import Scheme
 from udec_ia.inspect.change.faults import too_coarse
-from udec_ia.inspect.change.movable import junk_words
-from udec_ia.inspect.change.rewrite import rewrite
+from udec_ia.inspect.change.rewrite import Rewritten, rewrite
 from udec_ia.inspect.change.settle import settle
 from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.translate.fit import Fit
@@ -35,24 +34,32 @@ def convert(array: MainArray, to: Scheme) -> Converted:
     Raises Unsound if there are groups that cannot be told apart, UdecError 1 if the addresses of `to` end
     before the groups do, and 28 if its integers or reals cannot hold all numbers.
     """
-    made = rewrite(array, to)
-    before, after = (int(one.h.ci[g.MFREE]) - 1 for one in (array, made.array))
-    junk = junk_words(array)
-    said = [f"{array.scheme.name} to {to.name}: {before} words, {junk} of them junk, are now {after} words"]
-    if to.real_bits == array.scheme.real_bits:
-        return Converted(made.array, said, [])
-    narrower = to.real_bits < array.scheme.real_bits
-    broken = check(made.array) if narrower else []
+    return prove(rewrite(array, to))
+
+
+def prove(made: Rewritten) -> Converted:
+    """What was made, settled in its reals, and what they have made unsound.
+
+    The state that it was made of is not needed any more, and may have been given up: it takes memory.
+    """
+    array, old, junk = made.array, made.old, made.junk
+    after = int(array.h.ci[g.MFREE]) - 1
+    name = array.scheme.name
+    said = [f"{old.name} to {name}: {made.before} words, {junk} of them junk, are now {after} words"]
+    if array.scheme.real_bits == old.real_bits:
+        return Converted(array, said, [])
+    narrower = array.scheme.real_bits < old.real_bits
+    broken = check(array) if narrower else []
     if broken or not narrower:
-        change = settle(made.array)
+        change = settle(array)
         said.append(
             f"circles and contacts are found anew from the corners, and differ by up to {change:.2g} m"
         )
-        broken = check(made.array)
+        broken = check(array)
     if narrower:
         said.insert(1, _rounding(made.fit))
-        broken += too_coarse(made.array)
-    return Converted(made.array, said, broken)
+        broken += too_coarse(array)
+    return Converted(array, said, broken)
 
 
 def _rounding(made: Fit) -> str:

@@ -23,7 +23,7 @@ from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.interpreting import interpreted
 from udec_ia.heap.slack import give_back
 from udec_ia.heap.words import Scheme
-from udec_ia.inspect.change.movable import movable, name_at
+from udec_ia.inspect.change.movable import junk_words, movable, name_at
 from udec_ia.inspect.translate import Translation, words_of
 from udec_ia.inspect.translate.fit import Fit
 from udec_ia.kernels.geometry.tolerances import tolset
@@ -34,10 +34,16 @@ TABLE = read_table()
 
 
 class Rewritten(NamedTuple):
-    """A state in other words, and what that has cost its reals."""
+    """A state in other words, and what that has cost its reals.
+
+    old, before, junk: the scheme that it was in, words that were in use, and how many of them were junk.
+    """
 
     array: MainArray
     fit: Fit
+    old: Scheme
+    before: int
+    junk: int
 
 
 def rewrite(array: MainArray, to: Scheme) -> Rewritten:
@@ -61,7 +67,7 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     if to.real_bits != array.scheme.real_bits:
         with interpreted():  # it is a few numbers: numba need not be loaded for them
             tolset(fresh.h, fresh.h.cr[g.DTOL])
-    return Rewritten(fresh, fit)
+    return Rewritten(fresh, fit, array.scheme, int(array.h.ci[g.MFREE]) - 1, junk_words(array))
 
 
 def _check_addresses(found: dict[str, Any], to: Scheme) -> None:
