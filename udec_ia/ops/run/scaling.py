@@ -7,7 +7,9 @@ weight stays that of the true mass. So the state of rest is the same if it does 
 and time on the way has no meaning. What nothing holds keeps its mass.
 
 A contact that is made on the way makes a row stiffer. Each block and each grid-point at a corner has room for
-one contact more; when contacts have been made, masses are scaled anew, every hundred cycles (MSCALE).
+one contact more; when contacts have been made, masses are scaled anew, every hundred cycles (MSCALE). What
+has lost its contacts gets its true mass back then; a velocity that it took up as something much lighter would
+be energy from nowhere, so it begins from rest.
 """
 
 from __future__ import annotations
@@ -16,8 +18,9 @@ import math
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, getr, integers, putr, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.peaks import halt_block
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
@@ -30,6 +33,7 @@ SHARE = (
     4  # what a contact adds to a row over its stiffness: on both blocks, along and across, and by its lever
 )
 RESCALE = 100  # cycles
+HEAVIER = 4  # inertial mass over that of before, from which on a block begins from rest
 
 
 def relaxations_due(array: MainArray) -> bool:
@@ -67,7 +71,17 @@ def scale_anew(array: MainArray) -> None:
     h = array.h
     if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
         step = undamped(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
+        relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
+        before = _factors(h, relaxations)
         _put_factors(array, Rows(h, even=True), step)
+        slowed = (before > HEAVIER * _factors(h, relaxations)).any(axis=1)
+        for ib in np.unique(integers(h, relaxations, g.KRXB)[slowed]).tolist():
+            halt_block(h, ib)
+
+
+def _factors(h: Memory, relaxations: Array) -> Array:
+    """Mass over inertial mass along, in rotation and in strain, shape (n, 3)."""
+    return np.stack([np.asarray(getr(h, relaxations, k), float) for k in (g.KRXM, g.KRXI, g.KRXE)], axis=1)
 
 
 @OVERFLOWS
@@ -98,7 +112,7 @@ def scaled(array: MainArray, rows: Rows) -> Rows:
     relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
     blocks, points = (integers(h, relaxations, k) for k in (g.KRXB, g.KRXG))
     at = rows.row(np.where(points > 0, points, blocks))
-    m, i, e = (np.asarray(getr(h, relaxations, k), float) for k in (g.KRXM, g.KRXI, g.KRXE))
+    m, i, e = _factors(h, relaxations).T
     rows.mass[at] /= np.stack([m, m, np.where(i > 0, i, 1.0), *[np.where(e > 0, e, 1.0)] * 3], axis=1)
     return rows
 

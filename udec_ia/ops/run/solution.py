@@ -15,7 +15,7 @@ MAX, MEAN = "max", "mean"  # what SOLVE judges by: the greatest unbalanced force
 
 def criterion_of(word: str) -> str:
     """MAX or MEAN, in any case of letters. Error 10 for anything else."""
-    if word.lower() not in (MAX, MEAN):
+    if not isinstance(word, str) or word.lower() not in (MAX, MEAN):
         raise UdecError(10, f"SOLVE ... {word}", "MEAN or MAX", parameter="criterion")
     return word.lower()
 

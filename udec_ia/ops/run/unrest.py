@@ -36,6 +36,7 @@ FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
 ENOUGH = 8  # looks, without which nothing is said of what goes on
 ONE_WAY, STEADY = 0.3, 0.5  # share and steady from which on blocks move on
 FASTER, SLOWER = 1.15, 0.87  # growth of what collapses, and of what settles
+FAR = 0.1  # of the rounding length: what moves less and does not slip has not lost its hold
 FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
 SLIPPED = 0.002  # of the strain energy: work of friction from which on the way is said to matter. Slip of a
 # hundredth of the elastic shear takes a fiftieth of the energy of shear, which may be a tenth of all
@@ -132,7 +133,7 @@ class Unrest:
         """One of STATES and a sentence; two empty ones if there is nothing to be said."""
         motion = self.motion(array.h)
         if reached:
-            said = self._still(array.h, motion) if motion else ""
+            said = driven(array.h) or (self._still(array.h, motion) if motion else "")
             if said:
                 return "still moves", said
             said = self._slipped(array.h)
@@ -157,6 +158,10 @@ class Unrest:
     def _moves_on(self, h: Memory, motion: Motion) -> tuple[str, str]:
         moved = self._named(h, motion)
         slipping = at_strength(h)
+        if self._falls(h, motion):
+            return "collapse", f"{moved}, and nothing holds what moves most; a support would"
+        if not len(slipping) and motion.by.max() < FAR * h.cr[g.DTOL]:
+            return "settles", f"it settles: {moved}, and no joint slips; take more cycles (LIMIT)"
         slip = (
             f", and joints slip at their strength in {counted(len(slipping), 'contact')}, "
             f"as in {place_of(h, int(slipping[0]))}"
@@ -178,25 +183,36 @@ class Unrest:
             "support is lacking, and damping alone holds the speed down"
         )
 
+    def _falls(self, h: Memory, motion: Motion) -> bool:
+        """True if no contact bears what moves most."""
+        ib = int(self._blocks[int(motion.by.argmax())])
+        contacts = _closed(h)[0]
+        return not any((integers(h, contacts, k) == ib).any() for k in (g.KB1, g.KB2))
+
     def _swings(self, array: MainArray, motion: Motion, wanted: float) -> tuple[str, str]:
         h = array.h
         force, digit = digit_force(array)
         if force > wanted * float(carried(h, soft_in(h))) and motion.by.max() < 100 * digit:
+            wider = "reals of 64 bits or " if array.scheme.real_bits < 64 else ""
             return "last digits", (
                 f"the last digit of coordinates, {digit:.2g} m, is a force of {force:.3g} N/m in stiff "
-                "joints: the precision allows no smaller ratio; take reals of 64 bits or a nearer origin"
+                f"joints: the precision allows no smaller ratio; take {wider}a nearer origin"
             )
         if motion.fall < FALLS:
             tenth = motion.cycles * math.log(10) / -math.log(max(motion.fall, 1e-9))
             return "settles", (
                 f"it is on its way to rest: the kinetic energy falls to a tenth in about "
-                f"{round(tenth, -1):.0f} cycles; take more of them (LIMIT), or SOLVE {wanted:g} STATIC"
+                f"{round(tenth, -1):.0f} cycles; take more of them (LIMIT){self._static(h, wanted)}"
             )
         damping = "; ".join(what_damps(h)) or "nothing damps"
         return "swings", (
             f"it swings about its place, and does not lose energy: {damping}; DAMPING LOCAL 0.8 damps at any "
             f"frequency, and so does SOLVE {wanted:g} STATIC"
         )
+
+    def _static(self, h: Memory, wanted: float) -> str:
+        """A quicker way, unless this is it."""
+        return "" if h.ci[g.LSCALE] else f", or SOLVE {wanted:g} STATIC"
 
     def _named(self, h: Memory, motion: Motion) -> str:
         """How many blocks move, which do most, and how far they came in the last quarter."""
@@ -247,6 +263,22 @@ def _closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
         contacts = contacts[integers(h, contacts, g.KCC) == 1]
     fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
     return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
+
+
+def driven(h: Memory) -> str:
+    """What is said at rest if a velocity that BOUNDARY gives goes on moving something."""
+    blocks, speeds = addresses(h, int(h.ci[g.IBPNT]), g.KB), []
+    fix = integers(h, blocks, g.KBFIX)
+    for flag, k in ((g.GIVEN_X, g.KXD), (g.GIVEN_Y, g.KYD)):
+        speeds.append(np.where((fix & flag != 0) & (fix != g.FIXED), np.abs(getr(h, blocks, k)), 0.0))
+    speed = np.max(speeds, axis=0)
+    at = int(speed.argmax()) if len(blocks) else 0
+    if not len(blocks) or not speed[at] > 0:
+        return ""
+    return (
+        f"and yet BOUNDARY moves block@{blocks[at]} at {speed[at]:.3g} m/s: what is at rest now will not "
+        "stay so; BOUNDARY ... XVEL=0 YVEL=0 stops it"
+    )
 
 
 def overlap(h: Memory) -> float:

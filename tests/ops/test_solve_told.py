@@ -1,0 +1,83 @@
+"""What SOLVE says of its end is true: of what settles, falls or is driven, with scaled masses, too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from udec_ia import Model, UdecError
+
+
+def stack(out: Path, n: int, width: float, height: float, *, kn: float, d: float) -> Model:
+    """`n` blocks on each other on a fixed base."""
+    m = Model(out=out)
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2000, kn=kn, ks=kn / 2, friction=1.5, bulk=1e9, g=6e8)
+    m.round(d)
+    m.block(0, -height, 0, n * height, width, n * height, width, -height)
+    for k in range(n):
+        m.split(-1, k * height, width + 1, k * height)
+    m.fix(0, width, -height, 0)
+    m.gravity(0, -10)
+    return m
+
+
+def test_what_flies_off_gets_its_mass_back_and_no_energy(tmp_path: Path) -> None:
+    """A light block on soft joints was held by few of its masses: with all of them it begins from rest."""
+    m = stack(tmp_path, 3, 2.0, 4.0, kn=1e10, d=0.4)
+    m.property(2, density=60000, kn=1e8, ks=5e7, friction=1.5)
+    m.gravity(3, -10)
+    m.change(0, 2, 0, 4, material=2)
+    solution = m.solve(1e-4, limit=4000, static=True)
+    assert not solution
+    assert solution.state == "collapse"
+
+
+def test_a_soft_stack_with_stiff_joints_settles_and_is_not_said_to_creep(tmp_path: Path) -> None:
+    m = stack(tmp_path, 3, 1.0, 1.0, kn=1e9, d=0.1)
+    m.property(2, density=50, kn=1e14, ks=1e14, friction=1.5, bulk=1e9, g=6e8)
+    m.change(0, 1, 1, 2, material=2)
+    m.change(0, 1, 0, 3, type="fdef")
+    for y in range(3):
+        m.generate(0, 1, y, y + 1, "automatic", edge=0.8)
+    first = m.solve(1e-5, limit=3000, static=True)
+    assert not first
+    assert first.state == "settles"
+    assert "no joint slips; take more cycles" in first.why
+    assert "STATIC" not in first.why
+    assert m.solve(1e-5, limit=60000, static=True)
+
+
+def test_a_block_that_falls_by_itself_does_not_settle(tmp_path: Path) -> None:
+    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
+    m.delete(0, 1, 0, 1)
+    m.fraction(0.01)
+    m.damping(1.0, 1.0, "mass")
+    solution = m.solve(1e-5, limit=400)
+    assert solution.state == "collapse"
+    assert "nothing holds what moves most" in solution.why
+
+
+def test_rest_under_a_velocity_that_is_given_is_told_at_once(tmp_path: Path) -> None:
+    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
+    m.boundary(-0.1, 1.1, 1.4, 2.1, yvel=-0.001)
+    solution = m.solve(5e-3, static=True)
+    assert solution
+    assert solution.cycles < 160
+    assert solution.state == "still moves"
+    assert "BOUNDARY moves block@" in solution.why
+    m.boundary(-0.1, 1.1, 1.4, 2.1, yvel=0.0)
+    assert m.solve(5e-3, static=True).why == ""
+
+
+def test_who_runs_statically_in_long_reals_is_not_told_to(tmp_path: Path) -> None:
+    m = stack(tmp_path, 3, 1.0, 1.0, kn=1e8, d=0.1)
+    why = m.solve(0.0, limit=400, static=True).why
+    assert "STATIC" not in why
+    assert "64 bits" not in why
+
+
+def test_a_criterion_is_a_word(tmp_path: Path) -> None:
+    with pytest.raises(UdecError, match="MEAN or MAX"):
+        stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1).solve(1e-3, criterion=None)  # type: ignore[arg-type]
