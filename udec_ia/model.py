@@ -129,7 +129,7 @@ class Model(Files, Blocks, Numbers, Looks):
         try:
             with statically(self.array):
                 return self._to_rest(
-                    ratio, limit, criterion, lambda n: self.log_call(Model.solve, (ratio, n), named)
+                    ratio, limit, criterion, lambda n: self.log_part(Model.solve, (ratio, n), named)
                 )
         finally:
             if self.undo.before is not begun:  # cycles are to stay, and with them what stood before
@@ -191,7 +191,7 @@ class Model(Files, Blocks, Numbers, Looks):
                 self._runaway,
             )
         except BaseException:
-            ended = ended or (lambda n: self.log_call(Model.cycle, (n,), {}))
+            ended = ended or (lambda n: self.log_part(Model.cycle, (n,), {}))
             ended(int(self.array.h.ci[MCTOT]) - before)  # they stay
             finish(self.array, watch)
             with suppress(UdecError):  # of two errors the first one counts

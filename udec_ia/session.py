@@ -86,6 +86,10 @@ class Session:
         if self.logs_calls:
             self._log.add(method, args, named)
 
+    def log_part(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """Log what stays of a run that has ended before its time, which no line of a deck says."""
+        self._log.add(method, args, named)
+
     def log_lines(self, lines: Sequence[str | Step]) -> None:
         """Log what a deck says."""
         self._log.add_lines(lines)

@@ -14,9 +14,10 @@ from debug_decks import PILE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from udec_ia import Model, UdecError
+from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.debug import Console, debug
+from udec_ia.layout import offsets as g
 
 
 def talk(out: Path, *lines: str, deck: str = PILE) -> str:
@@ -90,10 +91,11 @@ def test_within_a_cycle(tmp_path: Path) -> None:
 def test_an_error_is_stopped_at(tmp_path: Path) -> None:
     deck = PILE.replace("KN=8E6", "KN=1E4").replace("STOP\n", "")
     said = io.StringIO()
-    with pytest.raises(UdecError) as caught:
-        debug(Model(out=tmp_path), deck, said, ["c", "rs 2", "print MCTOT", "check", "c", "c"])
-    assert caught.value.number == 15
+    lines = ["c", "rs 2", "print MCTOT", "check", "c", "c", "rs", "print TIME"]
+    debug(Model(out=tmp_path), deck, said, lines)
     assert "error 15" in said.getvalue()
+    assert "the deck has ended in an error: go back, or quit" in said.getvalue()
+    assert said.getvalue().splitlines()[-1].startswith("TIME = ")
     assert re.search(r"MCTOT = \d+", said.getvalue())
 
 
@@ -185,3 +187,19 @@ def test_ctrl_c_stops_the_run_and_not_the_debugger(tmp_path: Path) -> None:
     assert "interrupted" in out
     assert re.search(r"MCTOT = \d+", out)
     assert process.returncode == 0
+
+
+def test_a_model_goes_on_after_it_was_debugged(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.debug(PILE.replace("STOP\n", ""), script=["goto 5", "continue", "continue"])
+    before = int(m.h.ci[g.MCTOT])
+    m.cycle(3)
+    m.run("CYCLE 2")
+    assert int(m.h.ci[g.MCTOT]) == before + 5
+
+
+def test_elements_are_counted_from_one(tmp_path: Path) -> None:
+    said = talk(tmp_path, "goto 12", "print block@1.KX(0)", "print AKN(0)", f"print block@{10**25}.KX")
+    assert "KX has 1 element" in said
+    assert "AKN has 50 elements" in said
+    assert f"there is no block at {10**25}" in said

@@ -118,6 +118,24 @@ def test_contacts_made_and_broken(both: Any) -> None:
     assert len(found) > 2
 
 
+def test_a_contact_that_takes_over_an_address_is_another_one(tmp_path: Path) -> None:
+    """In cycle 5967 of the collapse one is broken, and the next one is made where it was."""
+    text = (Path(__file__).parents[2] / "examples" / "collapse.dat").read_text()
+    lines = [line for line in text.splitlines() if not line.strip().upper().startswith("PLOT")]
+    debugger = Debugger(Model(out=tmp_path), io.StringIO(), lambda told: None)
+    debugger.run(list(statements(lines, "collapse")))
+    timeline = debugger.timeline
+    before, after = timeline.event_of(5966), timeline.event_of(5967)
+    counts = [timeline.at(event).h.ci[[g.NMADE, g.NBROKE]] for event in (before, after)]
+    assert (counts[1] - counts[0]).tolist() == [1, 1]
+    for what, told in (("made", "made: contact@"), ("broken", "broken: contact@"), ("recoded", "")):
+        probe = Contacts(what)
+        probe.begin(timeline.at(before))
+        said = probe.hit(timeline.at(after))
+        assert said.startswith(told)
+        assert bool(said) == bool(told)
+
+
 def test_copies_keep_to_the_budget(tmp_path: Path) -> None:
     """What can be reached is as it was, and what cannot is said."""
     whole = debugged("i32r64", tmp_path)

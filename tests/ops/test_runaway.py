@@ -9,6 +9,7 @@ import logging
 import math
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,17 @@ def test_a_deck_that_runs_away_is_warned_of_and_stopped(
     assert "error 37: more energy than was put in" in said.err
     assert re.search(r"block@\d+ leads with", said.err)
     assert (tmp_path / "rescue.h5").exists()
+
+
+def test_the_cycles_that_stay_of_a_run_of_a_deck_are_in_the_deck_of_the_model(tmp_path: Path) -> None:
+    m = stack(0.5, tmp_path)
+    with pytest.raises(UdecError, match="more energy than was put in"):
+        m.run("CYCLE 20000\n")
+    assert m.deck().splitlines()[-1] == f"CYCLE {int(m.h.ci[g.MCTOT])}"
+    again = Model(out=tmp_path)
+    with suppress(UdecError):  # the same, after its last cycle
+        again.run(m.deck())
+    assert again.array.h.ia.tobytes() == m.array.h.ia.tobytes()
 
 
 def test_python_is_warned_once_and_hears_of_the_group(

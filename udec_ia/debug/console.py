@@ -240,8 +240,8 @@ class Console(Looks):
     def _is_over(self) -> bool:
         if self.debugger.ended:
             self.debugger.goal = self.debugger.goal_cycle = self.debugger.goal_line = None
-            self.say("the deck has ended: go back, or quit")
-        return self.debugger.ended
+            self.say(f"{self.debugger.ended}: go back, or quit")
+        return bool(self.debugger.ended)
 
     def _here(self) -> None:
         self.say(self.debugger.place())

@@ -56,7 +56,7 @@ def place(atlas: Atlas, name: str) -> Place:
     known = {one.name: one for one in TABLE.group(kind).fields}
     if field.upper() not in known:
         raise ValueError(f"{field} is not a field of a {kind}: there are {', '.join(known)}")
-    if k >= known[field.upper()].count:
+    if not 0 <= k < known[field.upper()].count:
         raise ValueError(f"{field.upper()} has {counted(known[field.upper()].count, 'element')}")
     return of_word(atlas, f"{kind}@{address}", atlas.word(atlas.span(int(address)), known[field.upper()], k))
 
@@ -97,7 +97,7 @@ def _common(name: str, k: int) -> Place:
         raise ValueError(
             f"{name} is not a variable of the common block; a field needs its group, as in block@88.KXD"
         )
-    if k >= field.count:
+    if not 0 <= k < field.count:
         raise ValueError(f"{name} has {counted(field.count, 'element')}")
     text = f"{name}({k + 1})" if field.count > 1 else name
     return Place(text, PARTS[field.type], getattr(g, name) + k, field.unit.strip("-"), field.target)

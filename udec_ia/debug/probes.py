@@ -7,7 +7,7 @@ since the state that it saw last, or nothing.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -82,12 +82,13 @@ class Contacts:
     def __init__(self, what: str) -> None:
         self.what = what
         self.text = f"break {what}"
-        self._codes: dict[int, int] = {}
+        self._codes: dict[Contact, int] = {}
         self._counts: list[int] = []
+        self._cycle = 0
 
     def begin(self, array: MainArray) -> None:
         """See Probe."""
-        self._codes = _codes(array)
+        self._codes, self._cycle = _codes(array), int(array.h.ci[g.MCTOT])
         self._counts = array.h.ci[GROUPS_MADE].tolist()
 
     def hit(self, array: MainArray) -> str:
@@ -95,29 +96,41 @@ class Contacts:
         counts = array.h.ci[GROUPS_MADE].tolist()
         if self.what != "recoded" and counts == self._counts:
             return ""
-        before, now = self._codes, _codes(array)
+        before, now, cycle = self._codes, _codes(array), int(array.h.ci[g.MCTOT])
         self._codes, self._counts = now, counts
+        if cycle == self._cycle:  # a command, which may hand a contact on to another block
+            there = {one.address: one for one in now}
+            before = {there.get(one.address, one): code for one, code in before.items()}
+        self._cycle = cycle
         if self.what == "made":
-            found = [f"contact@{ic}" for ic in now if ic not in before]
+            found = [f"contact@{one.address}" for one in now if one not in before]
         elif self.what == "broken":
-            found = [f"contact@{ic}" for ic in before if ic not in now]
+            found = [f"contact@{one.address}" for one in before if one not in now]
         else:
             found = [
-                f"contact@{ic} from code {before[ic]} to {code}"
-                for ic, code in now.items()
-                if before.get(ic, code) != code
+                f"contact@{one.address} from code {before[one]} to {code}"
+                for one, code in now.items()
+                if before.get(one, code) != code
             ]
         return f"{self.what}: {', '.join(found)}" if found else ""
 
 
-def _codes(array: MainArray) -> dict[int, int]:
-    """Code of each contact that is not virtual, by its address."""
+class Contact(NamedTuple):
+    """What a contact is known by: one that is given back may leave its address to another within a cycle."""
+
+    address: int
+    blocks: frozenset[int]
+
+
+def _codes(array: MainArray) -> dict[Contact, int]:
+    """Code of each contact that is not virtual."""
     try:
         rows = table(array, "contact")
         rows = rows[rows["KCCOD"] != g.VIRTUAL]
     except Unsound:
         return {}
-    return dict(zip(rows["address"].tolist(), rows["KCCOD"].tolist(), strict=True))
+    columns = (rows[name].tolist() for name in ("address", "KB1", "KB2", "KCCOD"))
+    return {Contact(iad, frozenset((one, two))): code for iad, one, two, code in zip(*columns, strict=True)}
 
 
 class Where:
@@ -150,25 +163,36 @@ class Born:
         self.kind, self.address = kind, address
         self.text = f"born {kind}@{address}"
         self._counts: list[int] = []
-        self._there = False
+        self._there: frozenset[int] | None = None
+        self._cycle = 0
 
     def begin(self, array: MainArray) -> None:
         """See Probe."""
-        self._counts = array.h.ci[GROUPS_MADE].tolist()
-        self._there = self._is_there(array)
+        self._counts, self._cycle = array.h.ci[GROUPS_MADE].tolist(), int(array.h.ci[g.MCTOT])
+        self._there = self._found(array)
 
     def hit(self, array: MainArray) -> str:
         """See Probe."""
         counts = array.h.ci[GROUPS_MADE].tolist()
+        ran, self._cycle = int(array.h.ci[g.MCTOT]) != self._cycle, int(array.h.ci[g.MCTOT])
         if counts == self._counts:
             return ""
-        before, self._there, self._counts = self._there, self._is_there(array), counts
+        before, self._there, self._counts = self._there, self._found(array), counts
         if before == self._there:
             return ""
-        return f"{self.kind}@{self.address} {'is made' if self._there else 'is given back'}"
+        if before is not None and self._there is not None:  # a command may hand a contact on
+            return f"{self.kind}@{self.address} is given back, and another is made there" if ran else ""
+        return f"{self.kind}@{self.address} {'is given back' if self._there is None else 'is made'}"
 
-    def _is_there(self, array: MainArray) -> bool:
+    def _found(self, array: MainArray) -> frozenset[int] | None:
+        """The blocks of the contact that is there, no blocks for a group of another kind; None for none."""
         try:
-            return bool(np.any(addresses(array, self.kind) == self.address))
+            if not np.any(addresses(array, self.kind) == self.address):
+                return None
+            if self.kind != "contact":
+                return frozenset()
+            rows = table(array, self.kind)
+            (row,) = rows[rows["address"] == self.address]
+            return frozenset((int(row["KB1"]), int(row["KB2"])))
         except Unsound:
-            return False
+            return None

@@ -75,13 +75,13 @@ class Debugger:
         self._array: tuple[int, MainArray] | None = None
         self._numbered = 0
         self._piece = FIRST_PIECE
-        self.ended = False
+        self.ended = ""  # how, in words, once it has
 
     # ---- running
 
     def run(self, statements: Sequence[Statement]) -> None:
         """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
-        self.model.around = self._around
+        around, self.model.around = self.model.around, self._around
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
         self._before = list(self.model.deck_log)
@@ -94,17 +94,17 @@ class Debugger:
                 except Resume as back:
                     number = self._resume(back.event, back.command)
         finally:
-            del self.model.around
+            self.model.around = around
 
     def _obey_all(self, number: int) -> None:
         """The commands from `number` on."""
-        self.ended = False
+        self.ended = ""
         for k, (_, statement) in enumerate(self._commands[number:], number):
             self._obey(statement, k)
             if self.monitor.ended:
                 break
-        self.ended = True
-        self.stop(["the deck has ended"])
+        self.ended = "the deck has ended"
+        self.stop([self.ended])
 
     def _resume(self, event: int, command: str) -> int:
         """Make `event` the present, and let `command`, "" for none, be next; the number of what is next."""
@@ -160,6 +160,7 @@ class Debugger:
             self.monitor.obey(statement)
         except UdecError as error:
             timeline.end(self.model.array)
+            self.ended = "the deck has ended in an error"
             self.stop([str(error)])
             raise
         timeline.end(self.model.array)

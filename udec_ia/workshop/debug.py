@@ -39,7 +39,7 @@ def _debug(args: argparse.Namespace) -> int:
     except ValueError as error:
         print(f"udec debug: {error}", file=sys.stderr)
         return MISUSE
-    script = None if args.commands is None else args.commands.read_text().splitlines()
+    script = None if args.commands is None else args.commands.read_text("utf-8-sig", "replace").splitlines()
     model = Model(build=args.build, out=args.out, constitutive=args.constitutive, name=args.deck.stem)
     text = args.deck.read_text(encoding="utf-8-sig", errors="replace")
     debug(model, text, sys.stdout, script, str(args.deck), values)

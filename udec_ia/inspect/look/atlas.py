@@ -189,7 +189,7 @@ class Atlas:
 
     def holds(self, target: str, address: int) -> bool:
         """The same for one address."""
-        return bool(self.holding(target, np.array([address]))[0])
+        return 0 < address < self.free and bool(self.holding(target, np.array([address]))[0])
 
     @cached_property
     def held(self) -> dict[int, int]:
