@@ -145,6 +145,7 @@ def test_completion(tmp_path: Path) -> None:
         found["names"] = console.completenames("re")
         found["groups"] = console.completedefault("block@", "print block@", 6, 12)
         found["fields"] = console.completedefault("kx", "print block@1.kx", 14, 16)
+        found["after @"] = console.completedefault("1.KX", "print block@1.KX", 12, 16)  # as readline cuts it
 
     console = Console(Model(out=tmp_path), io.StringIO())
     console.debugger.stopped = ask  # type: ignore[assignment]
@@ -154,6 +155,7 @@ def test_completion(tmp_path: Path) -> None:
     assert found["names"] == ["resume", "reverse-continue", "reverse-step"]
     assert "block@1" in found["groups"]
     assert "KXD" in found["fields"]
+    assert found["after @"] == ["1.KX", "1.KXD"]
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -340,17 +340,18 @@ class Console(Looks):
 
     def completedefault(self, text: str, line: str, begin: int, end: int) -> list[str]:
         """Groups by name, and their fields after a dot."""
-        atlas = self.debugger.atlas
-        if "." in (word := line[:end].split()[-1]):
-            kind = word.partition("@")[0]
+        groups = self.debugger.atlas.groups
+        word = (line[:end].split(" ") or [""])[-1]
+        head, dot, begun = word.rpartition(".")
+        if dot:
+            kind = head.partition("@")[0]
             fields = [one.name for group in TABLE.groups if group.name == kind for one in group.fields]
-            return [name for name in fields if name.startswith(text.upper())]
-        return [
-            f"{kind}@{iad}"
-            for kind in atlas.groups
-            for iad in atlas.groups[kind].tolist()
-            if f"{kind}@{iad}".startswith(text)
-        ]
+            names = [f"{head}.{name}" for name in fields]
+            whole = f"{head}.{begun.upper()}"
+        else:
+            names, whole = [f"{kind}@{iad}" for kind in groups for iad in groups[kind].tolist()], word
+        known = len(word) - len(text)  # what stands before a character such as @ is not asked for
+        return [name[known:] for name in names if name.startswith(whole)]
 
 
 def _count(text: str) -> int:

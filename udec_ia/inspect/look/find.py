@@ -71,7 +71,12 @@ def find_value(atlas: Atlas, value: float, tolerance: float = TOLERANCE, limit: 
 
 
 def find_pointers(atlas: Atlas, address: int, limit: int = LIMIT) -> Listing:
-    """All pointers whose value is `address`, whatever is there, if anything. limit: rows."""
+    """All pointers whose value is `address`, whatever is there, if anything. limit: rows.
+
+    ValueError for what no word can hold.
+    """
+    if abs(address) >= 2**63:
+        raise ValueError(f"{address} is more than an integer of 64 bits holds")
     found = list(pointing(atlas, address))
     many = sum(len(one.at) for one in found)
     (there,) = leads_to(atlas, "any", np.array([address], np.int64))
