@@ -13,7 +13,7 @@ import pytest
 from debug_decks import PILE
 
 from udec_ia import Model
-from udec_ia.debug.answers import born, why, wrote
+from udec_ia.debug.answers import born, why, wrote, wrote_within
 from udec_ia.debug.places import named, place
 from udec_ia.debug.session import Debugger
 from udec_ia.debug.tracing import Trace
@@ -52,6 +52,20 @@ def test_a_trace_leads_from_one_state_to_the_next(debugger: Debugger, trace: Tra
     assert np.array_equal(used(trace.state), used(after))
     trace.go(len(trace.writes) // 2)
     assert np.array_equal(used(trace.state), middle)
+
+
+def test_within_a_cycle_its_own_writes_come_first(debugger: Debugger, trace: Trace) -> None:
+    event = debugger.timeline.event_of(89)
+    done = len(trace.writes) // 2
+    trace.go(done)
+    last = trace.accesses[trace.writes[done - 1]]
+    last_place = named(Atlas(trace.state.h), last.part, last.at)
+    lines = list(wrote_within(debugger.timeline, event, trace, last_place))
+    assert lines
+    assert all(line.startswith(f"{last_place.name}: ") for line in lines)
+    assert last.place in lines[-1]
+    trace.go(0)
+    assert list(wrote_within(debugger.timeline, event, trace, last_place)) == []
 
 
 def test_passes_and_groups_come_in_their_order(trace: Trace) -> None:

@@ -70,6 +70,17 @@ def wrote(timeline: Timeline, event: int, place: Place) -> Iterator[str]:
             yield f"  {_written(one)} in {one.place}, {work_of(timeline, now, one)}"
 
 
+def wrote_within(timeline: Timeline, event: int, trace: Trace, place: Place) -> Iterator[str]:
+    """Lines on who has given a number its value in the cycle after `event`, up to where `trace` stands."""
+    done = trace.writes[: trace.done]
+    last = done[-1] if done else -1
+    for k in trace.writes_to(trace.state.h, place.part, place.at):
+        if k <= last:
+            one = trace.accesses[k]
+            work = work_of(timeline, event + 1, one)
+            yield f"{place.name}: {_written(one)} in {one.place}, {work}, within this cycle"
+
+
 def born(timeline: Timeline, event: int, address: int) -> Iterator[str]:
     """Lines on how the group at an address came to be, and what stood there before."""
     atlas = Atlas(timeline.at(event).h)

@@ -328,8 +328,10 @@ class Console(Looks):
         )
 
     def _of_the_past(self, answer: Any, text: str) -> None:
-        word = place(self.debugger.atlas, text)
-        self.tell(answer(self.debugger.timeline, self.debugger.event, word))
+        word, timeline, event = place(self.debugger.atlas, text), self.debugger.timeline, self.debugger.event
+        trace = self.debugger.trace
+        here = [] if trace is None else [*answers.wrote_within(timeline, event, trace, word)]
+        self.tell(iter(here) if here else answer(timeline, event, word))
 
     # ---- completion
 

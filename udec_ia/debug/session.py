@@ -295,8 +295,12 @@ class Debugger:
         self.show(max(self.event - events, self.timeline.earliest))
 
     def back_to(self, probes: Sequence[Probe]) -> str:
-        """Look at the last event before this one at which a probe stops: what happened, "" if nothing."""
-        hits = [last_hit(self.timeline, self.event, probe, before=True) for probe in probes]
+        """Look at the last event before this one at which a probe stops: what happened, "" if nothing.
+
+        From within a cycle that is the event that it follows, if a probe stops there.
+        """
+        before = self.trace is None
+        hits = [last_hit(self.timeline, self.event, probe, before) for probe in probes]
         self._probes_at_now()
         event, told = max(hits, default=(0, ""))
         if told:
