@@ -141,6 +141,11 @@ def poll() -> None:
         _waiting.former[number](number, sys._getframe())
 
 
+def dealt_with(error: BaseException) -> None:
+    """If a signal has raised `error`, that is all: it is not handed on again."""
+    _waiting.ended(error)
+
+
 @contextmanager
 def passing() -> Iterator[None]:
     """Within, signals do not wait, whatever is held around."""

@@ -20,7 +20,7 @@ from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
 from udec_ia.heap.array import MainArray
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.signals import Terminated, hold, passing, poll, terminate
+from udec_ia.signals import Terminated, dealt_with, hold, passing, poll, terminate
 from udec_ia.transaction import Undo
 
 ROOT = Path(__file__).parents[2]
@@ -314,3 +314,22 @@ def test_a_rescue_file_that_cannot_be_read_again_is_not_named(
         run_deck(Model(out=tmp_path), "START\nBLOK\n", out)
     assert caught.value.saved is None
     assert "the state could not be saved: error 29: " in out.getvalue()
+
+
+@pytest.mark.parametrize("is_dealt_with", [True, False])
+def test_an_interrupt_is_handed_on_unless_it_was_dealt_with(is_dealt_with: bool) -> None:
+    """As where a debugger asks within a command: Ctrl-C ends a line that is typed, and not the command."""
+
+    def ask() -> None:
+        with hold(), passing():
+            try:
+                signal.raise_signal(signal.SIGINT)
+            except KeyboardInterrupt as error:
+                if is_dealt_with:
+                    dealt_with(error)
+
+    if is_dealt_with:
+        ask()
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            ask()

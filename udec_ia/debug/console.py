@@ -24,7 +24,7 @@ from udec_ia.errors import UdecError
 from udec_ia.inspect.change import patch
 from udec_ia.inspect.look.atlas import TABLE
 from udec_ia.layout import offsets as g
-from udec_ia.signals import hold, passing
+from udec_ia.signals import dealt_with, hold, passing
 
 INSIDE = ("pass", "group", "write")
 LISTED = 5  # lines of the deck before and after
@@ -81,7 +81,8 @@ class Console(Looks):
             try:
                 self.cmdloop()
                 return
-            except KeyboardInterrupt:
+            except KeyboardInterrupt as error:
+                dealt_with(error)  # it has ended the line that was typed, and no more
                 self.say("")
             finally:
                 self.asking = False

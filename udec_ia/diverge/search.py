@@ -45,8 +45,8 @@ def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
         if now[0].cycle != now[1].cycle:
             raise UdecError(
                 26,
-                f"after {now[0].line} the first run has {counted(now[0].cycle, 'cycle')}, "
-                f"after {now[1].line} the second has {now[1].cycle}",
+                f"{_at(now[0].line)} the first run has {counted(now[0].cycle, 'cycle')}, "
+                f"{_at(now[1].line)} the second has {now[1].cycle}",
                 "only runs with the same CYCLEs, and SOLVEs that end after as many cycles, can be compared",
             )
         cycle = now[0].cycle
@@ -57,6 +57,11 @@ def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
             return _within((one, two), before, now, judge)
         before = now
     return cycle
+
+
+def _at(line: str) -> str:
+    """When a step was, in words."""
+    return f"after {line}" if line else "at its beginning"
 
 
 def _within(
