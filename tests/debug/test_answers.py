@@ -13,7 +13,7 @@ import pytest
 from debug_decks import PILE
 
 from udec_ia import Model
-from udec_ia.debug.answers import born, why, wrote, wrote_within
+from udec_ia.debug.answers import RENUMBERED, born, why, wrote, wrote_within
 from udec_ia.debug.places import named, place
 from udec_ia.debug.session import Debugger
 from udec_ia.debug.tracing import Trace
@@ -197,3 +197,18 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
 def test_names_that_mean_nothing(name: str, says: str, debugger: Debugger) -> None:
     with pytest.raises((ValueError, IndexError), match=says):
         place(debugger.atlas, name)
+
+
+def test_where_groups_got_other_addresses_the_search_is_over(tmp_path: Path) -> None:
+    """In a large model, when its first run is prepared."""
+    n = 24
+    cuts = [line for k in range(1, n) for line in (f"SPLIT -1,{k} {n + 1},{k}", f"SPLIT {k},-1 {k},{n + 1}")]
+    outline = f"BLOCK 0,0 0,{n} {n},{n} {n},0"
+    deck = ["START", "PROP MAT=1 DENS=2000 KN=1E8 KS=1E8", outline, *cuts, "GRAVITY 0 -10", "CYCLE 3"]
+    debugger = Debugger(Model(out=tmp_path), io.StringIO(), lambda told: None)
+    debugger.run(list(statements(deck, "wall")))
+    timeline, atlas = debugger.timeline, debugger.atlas
+    iad = int(atlas.groups["block"][-1])
+    assert next(iter(born(timeline, timeline.now, iad))) == RENUMBERED
+    assert next(iter(wrote(timeline, timeline.now, place(atlas, f"block@{iad}.KMAT")))) == RENUMBERED
+    assert "KYD: " in next(iter(wrote(timeline, timeline.now, place(atlas, f"block@{iad}.KYD"))))

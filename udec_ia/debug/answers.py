@@ -15,20 +15,26 @@ from udec_ia.debug.tracing import Access, Trace
 from udec_ia.heap.accessors import Memory
 from udec_ia.inspect.look.atlas import KINDS, Atlas
 from udec_ia.inspect.look.names import called
+from udec_ia.layout import offsets as g
 
 MANY = 12  # origins of a value that are told
+RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
 
 
 def last_hit(timeline: Timeline, event: int, probe: Probe, before: bool = False) -> tuple[int, str]:
     """The last event at which `probe` says that something has happened, and what; 0 and "" if there is none.
 
-    Up to `event`, or only before it.
+    Up to `event`, or only before it. Where all groups have got other addresses, the search is over.
     """
     found = 0, ""
     for a, b in timeline.backwards(event):
-        probe.begin(timeline.at(a))
+        first = timeline.at(a)
+        head = int(first.h.ci[g.IBPNT])
+        probe.begin(first)
         for now, array in timeline.through(a, b):
             what = probe.hit(array)
+            if head != (head := int(array.h.ci[g.IBPNT])) and _prepares(timeline, now):
+                what = RENUMBERED
             if what and not (before and now >= event):
                 found = now, what
         if found[0]:
@@ -47,6 +53,12 @@ def where(timeline: Timeline, event: int) -> str:
     if event == stretch.first + 1:
         return f"prepared, before cycle {cycle + 1} of {place}"
     return f"after cycle {cycle} of {place}"
+
+
+def _prepares(timeline: Timeline, event: int) -> bool:
+    """True if the event is what prepares a run, which in a large model puts groups where they will stay."""
+    stretch, _ = timeline.place(event)
+    return stretch is not None and stretch.runs and event == stretch.first + 1
 
 
 def in_cycle(timeline: Timeline, event: int) -> bool:
@@ -90,6 +102,9 @@ def born(timeline: Timeline, event: int, address: int) -> Iterator[str]:
     now, what = last_hit(timeline, event, Born(span.kind, span.first))
     if not what:
         yield f"{span.name} has been there since the {_first(timeline)}"
+        return
+    if what == RENUMBERED:
+        yield from (what, where(timeline, now))
         return
     yield f"{what} {where(timeline, now)}"
     before = Atlas(timeline.at(now - 1).h)
