@@ -205,3 +205,10 @@ def test_elements_are_counted_from_one(tmp_path: Path) -> None:
     assert "KX has 1 element" in said
     assert "AKN has 50 elements" in said
     assert f"there is no block at {10**25}" in said
+
+
+def test_help_knows_names_as_they_are_typed(tmp_path: Path) -> None:
+    said = talk(tmp_path, "help rs", "help reverse-step", "step \u00b2")
+    assert said.count("reverse-step") >= 2
+    assert "No help" not in said
+    assert "\u00b2 is not a number" in said

@@ -297,6 +297,10 @@ class Console(Looks):
 
     # ---- looking
 
+    def do_help(self, arg: str) -> None:
+        """help [COMMAND]: the commands, or what one of them does; short names do, too."""
+        super().do_help(ALIASES.get(arg, arg.replace("-", "_")))
+
     def do_where(self, _: str) -> None:
         """where: the place that is shown."""
         self._here()
@@ -361,7 +365,7 @@ def _count(text: str) -> int:
     """A number that was typed; 1 if nothing was."""
     if not text.strip():
         return 1
-    if not text.strip().isdigit():
+    if not text.strip().isdecimal():
         raise ValueError(f"{text.strip()} is not a number: give an integer, 0 or more")
     return int(text)
 

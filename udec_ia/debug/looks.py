@@ -56,7 +56,7 @@ class Looks(cmd.Cmd):
         self.stdout.writelines(f"{line}\n" for line in (map(str, found) if found else ("sound",)))
 
     def _look(self, name: str, text: str) -> None:
-        given: list[Any] = [int(word) if word.isdigit() else word for word in text.split()]
+        given: list[Any] = [int(word) if word.isdecimal() else word for word in text.split()]
         try:
             listing = getattr(look, name)(self.debugger.atlas, *given)
         except TypeError:

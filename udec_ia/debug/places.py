@@ -38,7 +38,7 @@ class Place(NamedTuple):
 
 def place(atlas: Atlas, name: str) -> Place:
     """The number called `name`. Raises ValueError if there is none of that name."""
-    if name.isdigit():
+    if name.isdecimal():
         return at_address(atlas, int(name))
     found = FORM.fullmatch(name)
     if found is None:
