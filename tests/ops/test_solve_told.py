@@ -81,3 +81,15 @@ def test_who_runs_statically_in_long_reals_is_not_told_to(tmp_path: Path) -> Non
 def test_a_criterion_is_a_word(tmp_path: Path) -> None:
     with pytest.raises(UdecError, match="MEAN or MAX"):
         stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1).solve(1e-3, criterion=None)  # type: ignore[arg-type]
+
+
+def test_where_all_is_fixed_rest_is_no_news(tmp_path: Path) -> None:
+    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
+    m.fix(0, 1, -1, 2)
+    assert "all blocks are fixed" in m.solve(1e-3).why
+
+
+def test_the_word_that_was_typed_is_the_one_in_the_error(tmp_path: Path) -> None:
+    with pytest.raises(UdecError) as caught:
+        stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1).run("FRACTION 2 SCALED\n")
+    assert "FRACTION f SCALED" in f"{caught.value} {caught.value.advice}"

@@ -116,7 +116,7 @@ def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = 
         raise UdecError(
             28,
             f"{f:g} of the safe bound is not safe",
-            "f in FRACTION f SAFE must not exceed 1",
+            f"f in FRACTION f {'SCALED' if scaled else 'SAFE'} must not exceed 1",
             parameter="f",
         )
     if scaled and array.h.ci[g.LENER]:

@@ -132,6 +132,8 @@ class Unrest:
     def explain(self, array: MainArray, reached: bool, wanted: float, chatter: Chatter) -> tuple[str, str]:
         """One of STATES and a sentence; two empty ones if there is nothing to be said."""
         motion = self.motion(array.h)
+        if reached and (integers(array.h, self._blocks, g.KBFIX) == g.FIXED).all():
+            return "", "all blocks are fixed, and nothing can move: FREE some"
         if reached:
             said = driven(array.h) or (self._still(array.h, motion) if motion else "")
             if said:
