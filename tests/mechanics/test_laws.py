@@ -411,3 +411,12 @@ def test_a_law_that_cannot_be_used_ends_a_run(tmp_path: Path, capsys: pytest.Cap
     law.write_text(JOINT + "    return fn\n")
     assert main(["run", "no.dat", "--constitutive", str(law)]) == 1
     assert f"{law}:1:1: error 34: constitutive law cannot be used: clj2 returns" in capsys.readouterr().err
+
+
+def test_a_law_that_comes_with_the_program_is_compiled_once_in_a_process(tmp_path: Path) -> None:
+    one, two = (read_laws("mohr-coulomb") for _ in range(2))
+    assert one
+    assert all(two[name] is law for name, law in one.items())
+    mine = tmp_path / "mohr_coulomb.py"
+    mine.write_text("def cl2(s11, s12, s22, de11, de12, de22, m):\n    return 0.0, 0.0, 0.0\n")
+    assert read_laws(mine)["cl2"] is not read_laws(mine)["cl2"]  # what it depends on is not known

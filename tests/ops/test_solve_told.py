@@ -71,6 +71,16 @@ def test_rest_under_a_velocity_that_is_given_is_told_at_once(tmp_path: Path) -> 
     assert m.solve(5e-3, static=True).why == ""
 
 
+def test_a_velocity_of_grid_points_is_told_too(tmp_path: Path) -> None:
+    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
+    m.change(0, 1, 1, 2, type="fdef")
+    m.generate(0, 1, 1, 2, "automatic", edge=0.8)
+    m.boundary(-0.1, 1.1, 1.9, 2.1, yvel=-0.0001)
+    solution = m.solve(5e-2, static=True)
+    assert solution
+    assert "BOUNDARY moves grid-point@" in solution.why
+
+
 def test_who_runs_statically_in_long_reals_is_not_told_to(tmp_path: Path) -> None:
     m = stack(tmp_path, 3, 1.0, 1.0, kn=1e8, d=0.1)
     why = m.solve(0.0, limit=400, static=True).why

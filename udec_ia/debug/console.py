@@ -115,6 +115,10 @@ class Console(Looks):
         begun = [name for name in known if name.startswith(head)] if head and head not in known else []
         return f"{begun[0] if len(begun) == 1 else head} {rest}".strip()
 
+    def do_help(self, arg: str) -> None:
+        """help [COMMAND]: the commands, or what one of them does; short names do, too."""
+        super().do_help(ALIASES.get(arg, arg.replace("-", "_")))
+
     def onecmd(self, line: str) -> bool:
         """Obey one line; what is wrong with it is told."""
         try:
@@ -297,10 +301,6 @@ class Console(Looks):
 
     # ---- looking
 
-    def do_help(self, arg: str) -> None:
-        """help [COMMAND]: the commands, or what one of them does; short names do, too."""
-        super().do_help(ALIASES.get(arg, arg.replace("-", "_")))
-
     def do_where(self, _: str) -> None:
         """where: the place that is shown."""
         self._here()
@@ -348,7 +348,7 @@ class Console(Looks):
     def completedefault(self, text: str, line: str, begin: int, end: int) -> list[str]:
         """Groups by name, and their fields after a dot."""
         groups = self.debugger.atlas.groups
-        word = (line[:end].split(" ") or [""])[-1]
+        word = line[:end].split(" ")[-1]
         head, dot, begun = word.rpartition(".")
         if dot:
             kind = head.partition("@")[0]

@@ -31,6 +31,7 @@ from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
 from udec_ia.ops.run.damped import what_damps
 from udec_ia.ops.run.remarks import digit_force
+from udec_ia.ops.run.timestep import kind_of
 
 FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
 ENOUGH = 8  # looks, without which nothing is said of what goes on
@@ -160,9 +161,10 @@ class Unrest:
     def _moves_on(self, h: Memory, motion: Motion) -> tuple[str, str]:
         moved = self._named(h, motion)
         slipping = at_strength(h)
-        if self._falls(h, motion):
+        far = motion.by.max() >= FAR * h.cr[g.DTOL]
+        if (far or motion.growth > FASTER) and self._falls(h, motion):
             return "collapse", f"{moved}, and nothing holds what moves most; a support would"
-        if not len(slipping) and motion.by.max() < FAR * h.cr[g.DTOL]:
+        if not len(slipping) and not far:
             return "settles", f"it settles: {moved}, and no joint slips; take more cycles (LIMIT)"
         slip = (
             f", and joints slip at their strength in {counted(len(slipping), 'contact')}, "
@@ -208,8 +210,8 @@ class Unrest:
             )
         damping = "; ".join(what_damps(h)) or "nothing damps"
         return "swings", (
-            f"it swings about its place, and does not lose energy: {damping}; DAMPING LOCAL 0.8 damps at any "
-            f"frequency, and so does SOLVE {wanted:g} STATIC"
+            f"it swings about its place, and does not lose energy: {damping}; take DAMPING LOCAL 0.8, which "
+            f"damps at any frequency{self._static(h, wanted)}"
         )
 
     def _static(self, h: Memory, wanted: float) -> str:
@@ -269,17 +271,23 @@ def _closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
 
 def driven(h: Memory) -> str:
     """What is said at rest if a velocity that BOUNDARY gives goes on moving something."""
-    blocks, speeds = addresses(h, int(h.ci[g.IBPNT]), g.KB), []
-    fix = integers(h, blocks, g.KBFIX)
-    for flag, k in ((g.GIVEN_X, g.KXD), (g.GIVEN_Y, g.KYD)):
-        speeds.append(np.where((fix & flag != 0) & (fix != g.FIXED), np.abs(getr(h, blocks, k)), 0.0))
-    speed = np.max(speeds, axis=0)
-    at = int(speed.argmax()) if len(blocks) else 0
-    if not len(blocks) or not speed[at] > 0:
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    if not len(bounds):
+        return ""
+    blocks, points, given = (integers(h, bounds, k) for k in (g.KUB, g.KUG, g.KUFIX))
+    of_point = points > 0
+    some: Any = np.where(of_point, points, 1)
+    x, y = (
+        np.where(of_point, getr(h, some, kg), getr(h, blocks, k)) * (given & flag != 0)
+        for flag, k, kg in ((g.ALONG_X, g.KXD, g.KXDG), (g.ALONG_Y, g.KYD, g.KYDG))
+    )
+    speed = np.where(integers(h, blocks, g.KBFIX) != g.FIXED, np.hypot(x, y), 0.0)
+    k = int(speed.argmax())
+    if not speed[k] > 0:
         return ""
     return (
-        f"and yet BOUNDARY moves block@{blocks[at]} at {speed[at]:.3g} m/s: what is at rest now will not "
-        "stay so; BOUNDARY ... XVEL=0 YVEL=0 stops it"
+        f"and yet BOUNDARY moves {kind_of(h, int(np.where(of_point, points, blocks)[k]))} at {speed[k]:.3g} "
+        "m/s: what is at rest now will not stay so; BOUNDARY ... XVEL=0 YVEL=0 stops it"
     )
 
 
