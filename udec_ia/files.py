@@ -80,8 +80,8 @@ def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: J
         raise UdecError(31, f"{path} is {NO_FILES.get(kind, 'no file')}", LEAVE)
     if not (there.st_mode & 0o222 and os.access(target, os.W_OK)):
         raise UdecError(31, f"{path} is read-only", "use another name, or make it writable")
-    with target.open("rb") as file:
-        reason = judge(file.read(FRONT), there.st_size)
+    with target.open("rb") as file:  # another may have come to stand under the name since
+        reason = judge(file.read(FRONT), os.fstat(file.fileno()).st_size)
     if reason:
         raise UdecError(31, f"{path} {reason}, and stays as it is", LEAVE)
 

@@ -56,12 +56,12 @@ def cache_folder() -> Path:
 class Kernel:
     """A kernel: compiled when it is first called, or run as Python where kernels are (interpreting.py).
 
-    inline, apart: as `inlined` and `apart` say.
+    inline, apart, lent: as `inlined`, `apart` and `over_arrays` say.
     """
 
-    def __init__(self, function: Callable[..., Any], inline: bool, apart: bool) -> None:
+    def __init__(self, function: Callable[..., Any], inline: bool, apart: bool, lent: bool) -> None:
         update_wrapper(self, function)
-        self.py_func, self.inline, self.apart = function, inline, apart
+        self.py_func, self.inline, self.apart, self.lent = function, inline, apart, lent
 
     def __call__(self, *args: Any) -> Any:
         if mode.python:
@@ -85,13 +85,14 @@ class Kernel:
 
         layer = Path(self.py_func.__code__.co_filename).parent.name  # two may have a file of the same name
         folder = cache_folder() / layer
+        flags = {"error_model": "numpy", "forceinline": self.inline, "_nrt": not self.lent}
         kept, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
         try:
             if wanted():
-                return plain_kernel(self.py_func, folder, error_model="numpy", forceinline=self.inline)
+                return plain_kernel(self.py_func, folder, **flags)
             from udec_ia.heap.linking import Forms
 
-            return Forms(self.py_func, folder, self.apart, error_model="numpy", forceinline=self.inline)
+            return Forms(self.py_func, folder, self.apart, **flags)
         finally:
             config.CACHE_DIR = kept
 
@@ -101,12 +102,12 @@ class Kernel:
         return getattr(self.made, "whole", self.made)
 
 
-def kernel(function: F, inline: bool = False, apart: bool = False) -> F:
+def kernel(function: F, inline: bool = False, apart: bool = False, lent: bool = False) -> F:
     """Have `function` compiled on first use, for the word scheme of the arrays it is called with."""
     if CHECKED:
         own, number = named(function)
-        return cast(F, Guarded(own if DISABLED else Kernel(own, inline, apart), own, number))
-    return function if DISABLED else cast(F, Kernel(function, inline, apart))
+        return cast(F, Guarded(own if DISABLED else Kernel(own, inline, apart, lent), own, number))
+    return function if DISABLED else cast(F, Kernel(function, inline, apart, lent))
 
 
 def inlined(function: F) -> F:
@@ -117,6 +118,14 @@ def inlined(function: F) -> F:
 def apart(function: F) -> F:
     """A kernel that is not taken in by others, which call it where it is: see heap/apart.py."""
     return kernel(function, apart=True)
+
+
+def over_arrays(function: F) -> F:
+    """A kernel over arrays that its caller keeps: it makes none, and nobody counts who else has one.
+
+    To count takes ten times as long as to look at a corner, where arrays come by the dozen.
+    """
+    return kernel(function, lent=True)
 
 
 has_numba_side(__name__)

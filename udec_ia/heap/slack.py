@@ -14,13 +14,13 @@ from contextlib import suppress
 from functools import cache
 from typing import Any
 
-TRIM_THRESHOLD, MMAP_THRESHOLD = -1, -3  # numbers of malloc.h
+TRIM_THRESHOLD, MMAP_MAX = -1, -4  # numbers of malloc.h
 ARRAY_LIMIT, KEPT_LIMIT = 2**25, 2**30  # bytes of one array that is kept, and of all together
 
 
 def keep_freed() -> None:
     """From now on keep what is freed until `give_back`: for a process that does nothing but one long look."""
-    for what, size in ((MMAP_THRESHOLD, ARRAY_LIMIT), (TRIM_THRESHOLD, KEPT_LIMIT)):
+    for what, size in ((MMAP_MAX, 0), (TRIM_THRESHOLD, KEPT_LIMIT)):
         _routine("mallopt")(what, size)
 
 

@@ -1,7 +1,7 @@
 """The lists around blocks: clockwise through corners and contacts, and back from corner to corner.
 
-Most of them close in a few steps: these are walked all at once. What does not close so is walked by itself,
-and told. A block whose lists do not close still has the corners that they lead to.
+Those that close are walked all at once. What does not close is walked by itself, and told. A block whose
+lists do not close still has the corners that they lead to.
 """
 
 from __future__ import annotations
@@ -10,10 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
+from udec_ia.kernels.audit.lists import closed_lists
 from udec_ia.layout import offsets as g
 
-SHORT = 64  # items of a list that is walked together with others
+CLOSED_LISTS = Sparing(closed_lists, 200_000)  # places where a group could begin: in 0.1 s
 
 
 class Boundaries(NamedTuple):
@@ -51,13 +53,16 @@ class _Walker:
 
     def closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, list[int]]:
         """Row of the block and item, for the clockwise lists that close; and the blocks of the others."""
-        rows, items, closed = self._short_rings(blocks)
+        row, item, closed = self._closed(blocks)
+        if closed.all():
+            return row, item, []
+        rows, items = [row], [item]
         broken: list[int] = []
         for k in np.flatnonzero(~closed).tolist():
             ring, closes = self._ring(int(blocks[k]))
             self._left -= len(ring)
             if closes:
-                rows.append(np.full(len(ring), k, rows[0].dtype))
+                rows.append(np.full(len(ring), k, row.dtype))
                 items.append(np.array(ring, np.int64))
             else:
                 broken.append(int(blocks[k]))
@@ -80,39 +85,14 @@ class _Walker:
             at, owner = at[once], owner[once]
         return at, owner
 
-    def _short_rings(self, blocks: Numbers) -> tuple[list[Numbers], list[Numbers], Numbers]:
-        """Rows of blocks and items of the lists that close in a few steps, and which blocks these are.
-
-        All are walked at a time; the items of a block stand in the order of its list. What does not close is
-        left to `_ring`.
-        """
-        ia, (last_corner, last_contact, along, one, two, over_one, over_two) = self.heap.h.ia, self._steps
-        live = np.arange(len(blocks), dtype=INDEX)
-        first = here = self.heap.read(blocks, KP)
-        closed = np.zeros(len(blocks), bool)
-        rows, items = [np.empty(0, INDEX)], [np.empty(0, np.int64)]
-        for k in range(SHORT if last_corner > 0 else 0):
-            at = np.where((here > 0) & (here <= last_corner) & ((here - 1) % self.heap.ratio == 0), here, 0)
-            head = np.where(at > 0, ia[at - 1], 0)
-            contact = (head == g.MCON) & (at <= last_contact) & (k > 0)
-            at = np.where(contact, at, 1)
-            left = contact & (ia[at + one] == blocks[live])
-            right = contact & ~left & (ia[at + two] == blocks[live])
-            good = (head == g.MCOR) | left | right
-            step = np.select([left, right], [over_one, over_two], along)[good]
-            here, live = here[good], live[good]
-            rows.append(live)
-            items.append(here)
-            here = ia[here + step].astype(np.int64)
-            back = here == first[live]
-            closed[live[back]] = True
-            here, live = here[~back], live[~back]
-            if not len(live):
-                break
-        if not closed.all():
-            items = [item[closed[row]] for row, item in zip(rows, items, strict=True)]
-            rows = [row[closed[row]] for row in rows]
-        return rows, items, closed
+    def _closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """Rows of blocks and items of the lists that close, and which blocks these are."""
+        room = (self.heap.free - 1) // self.heap.ratio + 1
+        row, item, closed = np.empty(room, INDEX), np.empty(room, np.int64), np.zeros(len(blocks), bool)
+        last_corner, last_contact, *steps = self._steps
+        limits, kp = (last_corner, last_contact, self.heap.ratio), self.heap.offset[KP] - 1
+        found = CLOSED_LISTS(room, self.heap.h.ia, blocks, limits, (kp, *steps), row, item, closed)
+        return row[:found].copy(), item[:found].copy(), closed
 
     def _ring(self, block: int) -> tuple[list[int], bool]:
         """Clockwise list of `block` as far as it can be followed, and whether it closes."""

@@ -21,9 +21,13 @@ import numpy as np
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import SOFT, one_of
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.boundaries import Boundaries, boundaries
 from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
-from udec_ia.inspect.walk import HEADS, follow
+from udec_ia.inspect.walk import HEADS
+from udec_ia.kernels.audit.lists import chains
+
+CHAINS = Sparing(chains, 200_000)  # places where a group could begin: in 0.1 s
 
 
 class Pointers(NamedTuple):
@@ -42,6 +46,7 @@ class Lists(Reading):
     address[kind]: addresses of the groups in use, in list order, of the kinds followed so far. owner[kind]:
     for corners, grid-points and zones the block that each belongs to, for other groups without a list in the
     common block the group that points to them. boundaries: the lists around blocks, as corners are found.
+    kind_at: KIND_CODE of what begins at each real, 0 for nothing.
     """
 
     boundaries: Boundaries | None = None
@@ -50,7 +55,7 @@ class Lists(Reading):
         super().__init__(array)
         self.address: dict[str, Numbers] = {}
         self.owner: dict[str, Numbers] = {}
-        self._kind_at = np.zeros((self.free - 1) // self.ratio + 1, np.int8)  # KIND_CODE of what begins there
+        self.kind_at = np.zeros((self.free - 1) // self.ratio + 1, np.int8)
 
     def addresses(self, kind: str) -> Numbers:
         """Addresses of all groups of `kind` in use, in list order; corners and extensions block by block."""
@@ -68,23 +73,23 @@ class Lists(Reading):
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""
         self.address[kind] = at
-        self._kind_at[self.place(at)] = KIND_CODE[kind]
+        self.kind_at[self.place(at)] = KIND_CODE[kind]
 
     def _main_list(self, kind: str) -> Numbers:
         """Addresses along a main list: taken as they come, then tested all at once."""
         head = TABLE.group(kind).list_head
         assert head is not None
         (link,) = names(kind, "next")
-        step = self.offset[link] - 1
-        listed, end = follow(self.words, self.common(head), step, self.last(kind), self.ratio)
-        at = np.array(listed, np.int64)
+        at, _ = self._chains(kind, link, np.array([self.common(head)]))
+        ends = not len(at) or at[-1] != 0
+        at = at if ends else at[:-1]
         good = one_of(self.h.ia[at - 1], HEADS[kind])
-        if end == 0 and good.all():
-            return at
-        wrong = int(np.argmin(good)) if not good.all() else len(at)
+        wrong = len(at) if good.all() else int(np.argmin(good))
         again = _first_repeated(at[:wrong])
-        end = listed[again] if again < len(at) else end
+        if ends and again == len(at):
+            return at
         source = f"{link} of {kind}@{at[again - 1]}" if again else head
+        end = self.get(int(at[again - 1]), link) if again else self.common(head)
         if again < wrong:
             self.report(2, f"{source} leads back to {kind}@{end}: the {kind} list is a circle")
         else:
@@ -108,29 +113,31 @@ class Lists(Reading):
         """Addresses where `pointers` lead, and what their lists hold; owners. Where one breaks stands 0."""
         if not link:
             return pointers.values, pointers.owner
+        at, many = self._chains(kind, link, pointers.values)
+        return at, np.repeat(pointers.owner, many)
+
+    def _chains(self, kind: str, link: str, firsts: Numbers) -> tuple[Numbers, Numbers]:
+        """Addresses along the lists of `kind` that begin at `firsts`, and how many each list has.
+
+        Where one breaks stands 0. A circle is walked until it has more groups than there can be.
+        """
+        at, many = np.empty(len(self.kind_at) + 1, np.int64), np.zeros(len(firsts), np.int64)
         step, last = self.offset[link] - 1, self.last(kind)
-        found: list[int] = []
-        many: list[int] = []
-        for first in pointers.values.tolist():
-            listed, end = follow(self.words, first, step, last, self.ratio)
-            found += [*listed, 0] if end else listed
-            many.append(len(listed) + (end != 0))
-            if len(found) > last:  # a circle
-                break
-        return np.array(found, np.int64), np.repeat(pointers.owner[: len(many)], many)
+        found = CHAINS(len(at), self.h.ia, firsts, step, last, self.ratio, at, many)
+        return at[:found].copy(), many
 
     def _stand(self, kind: str, at: Numbers) -> bool:
         """True if groups of `kind` can stand at all addresses `at`: there, and no group of another kind."""
         if not ((at >= 1) & (at <= self.last(kind)) & ((at - 1) % self.ratio == 0)).all():
             return False
         coded = kind not in HEADS or one_of(self.h.ia[at - 1], HEADS[kind]).all()
-        return bool(coded and not self._kind_at[self.place(at)].any())
+        return bool(coded and not self.kind_at[self.place(at)].any())
 
     def _hung_with_care(
         self, kind: str, link: str | None, pointers: list[Pointers]
     ) -> tuple[Numbers, Numbers]:
         """The same, and what breaks is told."""
-        last, ratio, words, known = self.last(kind), self.ratio, self.words, self._kind_at
+        last, ratio, words, known = self.last(kind), self.ratio, self.words, self.kind_at
         codes, step = HEADS.get(kind, ()), self.offset[link] - 1 if link else 0
         found: dict[int, int] = {}
         for one in pointers:

@@ -36,20 +36,6 @@ class Unsound(UdecError):
         super().__init__(20, relation)
 
 
-def follow(words: Any, first: int, step: int, last: int, ratio: int) -> tuple[list[int], int]:
-    """Addresses from `first` on, in a hurry, and the one that ends them: 0 at the end of a sound list.
-
-    words: IA() as a memoryview; the link is the word `step` after an address. Whoever asks tests whether what
-    stands there are groups of the kind; a circle ends when there are more of them than words up to `last`.
-    """
-    found: list[int] = []
-    iad = first
-    while 0 < iad <= last and not (iad - 1) % ratio and len(found) <= last:
-        found.append(iad)
-        iad = words[iad + step]
-    return found, iad
-
-
 def kind_of(h: Memory, iad: int) -> str | None:
     """Kind of the group at `iad` by its head code; None if the code is none of the known ones."""
     end = min(int(h.ci[g.MFREE]) - 1, len(h.ia))

@@ -8,6 +8,7 @@ A file that was written with another field table is read by the names of that ta
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -119,7 +120,7 @@ def opened(path: Path) -> Iterator[Contents]:
     if not path.is_file():
         raise RefusedError("is not a file", OTHER_FILE)
     with path.open("rb") as stream:
-        data, version = read_sealed(stream, path.stat().st_size)
+        data, version = read_sealed(stream, os.fstat(stream.fileno()).st_size)
     with contents(data) as file:
         if file.attribute("", "format") != b"udec_ia restart":
             raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)

@@ -11,7 +11,6 @@ Between two passes of a cycle (JPHASE) contacts are yet to follow their blocks: 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -32,7 +31,7 @@ def settle(array: MainArray) -> float:
         if o is None or not o.d > 0:
             return 0.0
         h, rows = array.h, state.rows("block", o.block)
-        centre, radius = circles(o)
+        centre, radius, _ = circles(o)
         arc = (o.r != 0) & (radius != 0)  # a corner with a radius keeps one, and one without it none
         centre[~arc], radius[~arc] = np.where(o.r == 0, o.p.T, o.c.T).T[~arc], o.r[~arc]
         centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
@@ -41,7 +40,7 @@ def settle(array: MainArray) -> float:
             _put(h, o.block, [(g.KBRO, reaches(o, centroid))]),
         ]
         if state.common("JPHASE") == g.AT_BLOCKS:
-            touch = touches(state, replace(o, c=centre, r=radius))
+            touch = touches(state, o._replace(c=centre, r=radius))
             contacts = state.address["contact"][touch.row]
             new = (touch.overlap, *touch.point.T)
             changes.append(_put(h, contacts, zip((g.KCN, g.KXC, g.KYC), new, strict=True)))

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.census import one_of
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.heap.slack import give_back
 from udec_ia.inspect.check.rings import lay_out
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
+from udec_ia.kernels.audit.lists import STRETCH, kinds_at, rows_of
 from udec_ia.layout import offsets as g
 
-STRETCH = 256  # places in which groups are counted by a byte
+ROWS_OF, KINDS_AT = Sparing(rows_of, 50_000), Sparing(kinds_at, 50_000)  # addresses, in 0.1 s
 
 LOST = "are in no group"  # what is said of words that no list leads to
 
@@ -43,7 +44,7 @@ class State(Lists):
         super().__init__(array)
         self.found: list[Violation] = []
         self._columns: dict[str, Numbers] = {}
-        self._nth_at = np.zeros(len(self._kind_at), np.uint8)  # among those of its kind in the stretch
+        self._nth_at = np.zeros(len(self.kind_at), np.uint8)  # among those of its kind in the stretch
         self._before: dict[str, Numbers] = {}  # by kind: groups that begin before each stretch
         self._row: dict[str, Numbers] = {}  # by kind: row of the groups in the order of their addresses
         for kind in LISTED:
@@ -84,31 +85,21 @@ class State(Lists):
 
     def leave_lists(self) -> None:
         """Keep no list either, nor where groups begin: what comes now looks at none."""
-        del self.rings, self._kind_at, self._nth_at, self._before, self._row
+        del self.rings, self.kind_at, self._nth_at, self._before, self._row
         self.forget()
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
-        if not len(addresses):
-            return np.empty(addresses.shape, INDEX)
-        place = self._places(addresses)
-        there = self._kind_at.take(place) == KIND_CODE[kind]
-        if not there.any():
-            return np.full(addresses.shape, -1, INDEX)
-        nth = self._before[kind].take(place // STRETCH) + self._nth_at.take(place)
-        return np.where(there, self._row[kind].take(nth, mode="clip"), INDEX(-1))
+        at, found = addresses.ravel(), np.empty(addresses.size, INDEX)
+        before, row, code = self._before[kind], self._row[kind], KIND_CODE[kind]
+        ROWS_OF(len(at), at, code, self.kind_at, self._nth_at, before, row, self._shift, found)
+        return found.reshape(addresses.shape)
 
     def holds(self, kinds: Sequence[str], addresses: Numbers) -> Numbers:
         """True for each address at which a group in use of one of the `kinds` begins."""
-        codes = [KIND_CODE[kind] for kind in kinds]
-        return np.asarray(one_of(self._kind_at.take(self._places(addresses)), codes))
-
-    def _places(self, addresses: Numbers) -> Numbers:
-        """Where in `_kind_at` each address stands; the last place, which is of no group, for nonsense."""
-        before, last = addresses - 1, len(self._kind_at) - 1
-        place = before >> self._shift
-        astray = (before < 0) | (place > last) | (before & (self.ratio - 1) != 0)
-        return np.where(astray, last, place)
+        found, codes = np.empty(len(addresses), bool), np.array([KIND_CODE[kind] for kind in kinds], np.int8)
+        KINDS_AT(len(found), addresses, codes, self.kind_at, self._shift, found)
+        return found
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""
@@ -116,7 +107,7 @@ class State(Lists):
         place = self.place(at)
         order = np.argsort(place, kind="stable")
         in_order = place[order]
-        before = np.searchsorted(in_order, np.arange(0, len(self._kind_at), STRETCH)).astype(INDEX)
+        before = np.searchsorted(in_order, np.arange(0, len(self.kind_at), STRETCH)).astype(INDEX)
         self._nth_at[in_order] = np.arange(len(at)) - before[in_order // STRETCH]
         self._before[kind], self._row[kind] = before, order.astype(INDEX)
 

@@ -33,11 +33,12 @@ from udec_ia.inspect.check.members import check_members, check_zone_areas
 from udec_ia.inspect.check.memory import check_memory
 from udec_ia.inspect.check.numbers import check_numbers
 from udec_ia.inspect.check.outer import check_outer
-from udec_ia.inspect.check.outlines import Outlines, check_outlines, outlines
+from udec_ia.inspect.check.outlines import check_outlines, outlines
 from udec_ia.inspect.check.pieces import check_pieces
 from udec_ia.inspect.check.place import check_places
 from udec_ia.inspect.check.pointers import check_pointers
 from udec_ia.inspect.check.touches import check_contacts, touches
+from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.layout import offsets as g
 
 

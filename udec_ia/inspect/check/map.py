@@ -15,11 +15,15 @@ from collections import Counter
 import numpy as np
 
 from udec_ia.counting import counted
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.rings import corner_before
 from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
+from udec_ia.kernels.audit.faces import cycles, passages, pieces
 from udec_ia.layout import offsets as g
 
+PASSAGES, CYCLES = Sparing(passages, 50_000), Sparing(cycles, 100_000)  # items, passages: in 0.1 s
+PIECES = Sparing(pieces, 20_000)  # contacts, in 0.1 s
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]
@@ -133,38 +137,16 @@ def _passages(state: State) -> Numbers:
     rings = state.rings
     nowhere = 2 * len(state.address["contact"])
     following = np.full(nowhere + 1, nowhere)
-    index = np.flatnonzero(rings.contact)
-    if len(index):
-        owner = rings.owner[index]
-        number = np.arange(len(index))
-        new = np.concatenate(([True], owner[1:] != owner[:-1]))
-        first = number[new][np.cumsum(new) - 1]  # the first contact of the same block
-        ends = np.concatenate((new[1:], [True]))
-        after = index[np.where(ends, first, np.minimum(number + 1, len(index) - 1))]
-        known = (rings.row[index] >= 0) & (rings.row[after] >= 0)
-        index, after = index[known], after[known]
-        following[2 * rings.row[index] + rings.side[index]] = 2 * rings.row[after] + 1 - rings.side[after]
+    PASSAGES(len(rings.item), rings.lists, rings.contact, rings.row, rings.side, following)
     return following
-
-
-def cycles(following: Numbers) -> Numbers:
-    """For each place of a permutation the least one in its cycle; -1 if it leads to the last place.
-
-    In each round the least of twice as many steps is known.
-    """
-    smallest, ahead = np.arange(len(following)), following
-    smallest[-1] = -1
-    while True:
-        lower = np.minimum(smallest, smallest[ahead])
-        if (lower == smallest).all():
-            return np.asarray(smallest[:-1])
-        smallest, ahead = lower, ahead[ahead]
 
 
 def _check_loops(state: State) -> None:
     """Invariant 4: each closed loop is labelled by one domain all around, each domain has one loop."""
     following = _passages(state)
-    of_loop = cycles(following)
+    of_loop = np.empty_like(following)
+    CYCLES(len(following), following, of_loop)
+    of_loop = of_loop[:-1]
     stands = state.rings.at.T.ravel() >= 0
     closed = stands & (of_loop >= 0)
     whole = len(state.rings.block) == len(state.address["block"]) and bool((closed == stands).all())
@@ -245,39 +227,10 @@ def _check_counts(state: State) -> None:
 
 
 def _check_connected(state: State) -> None:
-    """Invariant 5: from any block every other one is reached over contacts, real or virtual.
-
-    Each block takes the least row that it hears of from its neighbours, and from the block of that row.
-    """
+    """Invariant 5: from any block every other one is reached over contacts, real or virtual."""
     blocks = state.address["block"]
     one, two = (state.rows("block", state.column("contact", name)) for name in HOSTS)
-    known = (one >= 0) & (two >= 0)
-    one, two = one[known], two[known]
-    smallest = np.arange(len(blocks))
-    while True:
-        lower = smallest.copy()
-        heard = np.minimum(smallest[one], smallest[two])
-        for hearer in (one, two, smallest[one], smallest[two]):
-            np.minimum.at(lower, hearer, heard)
-        lower = lower[lower]
-        if (lower == smallest).all():
-            break
-        smallest = lower
+    smallest = np.empty(len(blocks), INDEX)
+    PIECES(len(one), one, two, smallest)
     for block in blocks[smallest != 0]:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
-
-
-def neighbours(state: State, skipped: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Block, row of a contact and of the next, for contacts with no corner between them.
-
-    skipped: rows of contacts that are left out.
-    """
-    rings = state.rings
-    out_of = np.zeros(len(state.address["contact"]) + 1, bool)
-    out_of[skipped] = out_of[-1] = True  # and for row -1
-    out = rings.contact & out_of[np.where(rings.contact, rings.row, -1)]
-    index = np.flatnonzero(~out).astype(INDEX)
-    real, owner = rings.contact[index], rings.owner[index]
-    close = np.flatnonzero(real[:-1] & real[1:] & (owner[:-1] == owner[1:]))
-    one, two = index[close], index[close + 1]
-    return rings.block[rings.owner[one]], rings.row[one], rings.row[two]

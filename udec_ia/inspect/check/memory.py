@@ -9,9 +9,15 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import iget
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.inspect.check.groups import LOST, State
-from udec_ia.inspect.reading import TABLE, Numbers
+from udec_ia.inspect.check.told import told
+from udec_ia.inspect.reading import KIND_CODE, TABLE, Numbers
+from udec_ia.kernels.audit.lists import gaps
+
+JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
+GAPS = Sparing(gaps, 1_000_000)  # places where a group could begin, in 0.1 s
 
 
 def check_memory(state: State) -> None:
@@ -78,26 +84,28 @@ def _junk_size(state: State, iad: int, sizes: set[int], source: str, junk: dict[
 
 
 def _check_tiling(state: State, junk: dict[int, int]) -> None:
-    kinds = [*state.address, "junk"]
-    used = [*state.address.values(), np.fromiter(junk, np.int64)]
-    start = np.concatenate(used)
-    kind = np.repeat(np.arange(len(kinds)), [len(at) for at in used])
-    layouts = [np.full(len(at), state.layout[name].size) for name, at in state.address.items()]
-    end = start + np.concatenate([*layouts, np.fromiter(junk.values(), np.int64)])
-    order = np.lexsort((kind, start))
-    start, end, kind = start[order], end[order], kind[order]
-    before = np.concatenate(([1], end))
-    after = np.concatenate((start, [state.free]))
-    for i in np.flatnonzero(before != after):
-        left = f"{kinds[kind[i - 1]]}@{start[i - 1]}" if i else "the start of the heap"
-        right = f"{kinds[kind[i]]}@{start[i]}" if i < len(start) else "MFREE"
-        if before[i] < after[i]:
-            state.report(
-                1,
-                f"words {before[i]} to {after[i] - 1} between {left} and {right} {LOST}",
-            )
+    names = {code: kind for kind, code in KIND_CODE.items()} | {JUNK: "junk"}
+    sizes = np.array([0, *(state.layout[kind].size for kind in KIND_CODE), 0])
+    at = np.fromiter(junk, np.int64)
+    place = state.place(at)
+    taken = state.kind_at[place]
+    state.kind_at[place[taken == 0]] = JUNK
+    for iad, code in zip(at[taken > 0].tolist(), taken[taken > 0].tolist(), strict=True):
+        last = iad + sizes[code] - 1
+        state.report(1, f"{names[code]}@{iad} ends at word {last}, but junk@{iad} starts at {iad}")
+
+    def name(iad: int) -> str:
+        return f"{names[int(state.kind_at[(iad - 1) // state.ratio])]}@{iad}"
+
+    to_size, places = JSIZE[0] - 1, len(state.kind_at)
+    rows = told(GAPS, places, 3, state.h.ia, state.kind_at, sizes, to_size, state.ratio, state.free)
+    for before, end, start in rows.astype(int).tolist():
+        left = name(before) if before else "the start of the heap"
+        right = name(start) if start != state.free else "MFREE"
+        if end < start:
+            state.report(1, f"words {end} to {start - 1} between {left} and {right} {LOST}")
         else:
-            state.report(1, f"{left} ends at word {before[i] - 1}, but {right} starts at {after[i]}")
+            state.report(1, f"{left} ends at word {end - 1}, but {right} starts at {start}")
 
 
 def _check_nothing_points_to_junk(state: State, junk: dict[int, int]) -> None:

@@ -16,10 +16,14 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.errors import DISORDERED
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.inspect.reading import INDEX
+from udec_ia.inspect.reading import Numbers
+from udec_ia.kernels.audit.faces import areas
 from udec_ia.layout import offsets as g
+
+AREAS = Sparing(areas, 20_000)  # items, in 0.1 s
 
 
 def check_outer(state: State) -> None:
@@ -31,49 +35,25 @@ def check_outer(state: State) -> None:
         return
     if not len(rings.item) or (rings.row < 0).any():
         return
-    x, y = (_along(state, *names) for names in (("KXP", "KXC"), ("KYP", "KYC")))
-    x -= x.mean()
-    y -= y.mean()
-    twice = x * y[rings.after] - y * x[rings.after]
-    del x, y
-    domain = _exposed_to(state)
-    if (domain < 0).any() or not np.isfinite(twice).all():
+    x, y = (_coordinate(state, *names) for names in (("KXP", "KXC"), ("KYP", "KYC")))
+    virtual = state.column("contact", "KCCOD") == g.VIRTUAL
+    named = np.array([state.rows("domain", state.column("contact", side)) for side in SIDES])
+    twice = np.zeros(len(domains))
+    of_lists = rings.lists, rings.contact, rings.row, rings.side
+    if not AREAS(len(rings.item), *of_lists, virtual, named, x, y, twice):
         return
-    area = np.bincount(domain, twice, minlength=len(domains)) / 2
-    outer, lowest = state.common("IODPNT"), int(area.argmin())
+    outer, lowest = state.common("IODPNT"), int(twice.argmin())
     if outer != domains[lowest]:
         state.report(
             4, f"IODPNT, the outer domain, is {outer}, but domain@{domains[lowest]} lies around all blocks"
         )
 
 
-def _along(state: State, corner: str, contact: str) -> np.ndarray:
-    """A coordinate of each item of the lists; of a virtual contact that of the item before it."""
+def _coordinate(state: State, corner: str, contact: str) -> Numbers:
+    """A coordinate of each item of the lists, field `corner` or `contact`, from the mean of the corners."""
     rings = state.rings
     place = np.empty(len(rings.item))
-    place[~rings.contact] = state.read(rings.item[~rings.contact], corner)
+    of_corners = state.read(rings.item[~rings.contact], corner)
+    place[~rings.contact] = of_corners
     place[rings.contact] = state.read(rings.item[rings.contact], contact)
-    real = np.arange(len(rings.item), dtype=INDEX)
-    row = rings.row[rings.contact]
-    real[np.flatnonzero(rings.contact)[state.column("contact", "KCCOD")[row] == g.VIRTUAL]] = 0
-    return place[np.maximum.accumulate(real)]  # a list begins with a corner
-
-
-def _exposed_to(state: State) -> np.ndarray:
-    """Row of the domain on the piece of the outline after each item: that before the next contact."""
-    rings = state.rings
-    index = np.flatnonzero(rings.contact).astype(INDEX)
-    named = [state.rows("domain", state.column("contact", side)) for side in SIDES]
-    domain = np.full(len(rings.item), -1, INDEX)
-    if not len(index):
-        return domain
-    number = np.cumsum(rings.contact, dtype=INDEX)
-    following = index[np.minimum(number, len(index) - 1)]
-    before = number[rings.first] - rings.contact[rings.first]
-    first = index[np.minimum(before, len(index) - 1)][rings.owner]
-    inside = (number < len(index)) & (rings.owner[following] == rings.owner)
-    following = np.where(inside, following, first)
-    known = rings.owner[following] == rings.owner
-    row, side = rings.row[following], rings.side[following]
-    domain[known] = np.where(side == 0, named[0][row], named[1][row])[known]
-    return domain
+    return place - of_corners.mean()

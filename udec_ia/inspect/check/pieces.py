@@ -12,11 +12,15 @@ from collections import defaultdict
 
 import numpy as np
 
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.inspect.check.outlines import Outlines, cross
+from udec_ia.inspect.check.outlines import cross
 from udec_ia.inspect.reading import Numbers
+from udec_ia.kernels.audit.outlines import Outlines, rounded
 from udec_ia.layout import offsets as g
+
+ROUNDED = Sparing(rounded, 1000)  # corners, in 0.1 s
 
 
 def check_pieces(state: State, o: Outlines) -> None:
@@ -34,7 +38,7 @@ def check_pieces(state: State, o: Outlines) -> None:
         for k, loop in enumerate(loops):
             wall = _polygon(state, o, corner, loop)
             own = o.first[hosts[k]] + np.arange(o.count[hosts[k]])
-            outline = _area(wall) < _area(o.rounded(own).reshape(-1, 2)) / 2  # round a block, clockwise
+            outline = _area(wall) < _area(_rounded(o, own).reshape(-1, 2)) / 2  # round a block, clockwise
             wrong = _turns(wall, middle) != (0 if outline else 1)
             wrong[k] = False
             for i in np.flatnonzero(wrong):
@@ -81,12 +85,19 @@ def _loops(state: State, virtual: Numbers) -> dict[int, list[list[int]]]:
 def _polygon(state: State, o: Outlines, corner: Numbers, loop: list[int]) -> Numbers:
     """The loop as a polygon through its contacts and through the ends and middles of its arcs."""
     index = np.array(loop)
-    points = o.rounded(corner[index])  # a contact stands there three times
+    points = _rounded(o, corner[index])  # a contact stands there three times
     contact = state.rings.contact[index]
     row = state.rings.row[index[contact]]
     for k, name in enumerate(("KXC", "KYC")):
         points[contact, :, k] = state.column("contact", name)[row][:, None]
     return np.asarray(points.reshape(-1, 2))
+
+
+def _rounded(o: Outlines, corners: Numbers) -> Numbers:
+    """Start, middle and end of the arcs of `corners` (n x 3 x 2)."""
+    points = np.empty((len(corners), 3, 2))
+    ROUNDED(len(corners), o, corners, points)
+    return points
 
 
 def _area(polygon: Numbers) -> float:

@@ -12,13 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.map import neighbours
-from udec_ia.inspect.check.outlines import Outlines, cross, dot, length
-from udec_ia.inspect.check.touches import TOGETHER, Touches
+from udec_ia.inspect.check.told import told
+from udec_ia.inspect.check.touches import Touches
 from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
-from udec_ia.kernels.geometry.contact_geometry import BLUNT
+from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g
+
+STANDING = Sparing(standing, 2000)  # contacts, in 0.1 s
+DISORDERED = Sparing(disordered, 50_000)  # items, in 0.1 s
 
 
 @dataclass(frozen=True)
@@ -44,41 +48,15 @@ def place(o: Outlines, touch: Touches, side: int) -> Place:
     """The places of all contacts on side 0 (block KB1) or 1 (KB2).
 
     On an edge it is what touches it, the other circle or an end of a blunt arc, that must stand between the
-    roundings. Of two arcs each
-    must face the other's centre. An arc on an edge may face another way: its block has been tilted. Two edges
-    that meet in a point without a radius part the ground between them at their bisector.
+    roundings. Of two arcs each must face the other's centre. An arc on an edge may face another way: its
+    block has been tilted. Two edges that meet in a point without a radius part the ground between them at
+    their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
-    on_edge = touch.code == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
-    two_arcs = touch.code == g.CORNER_CORNER
-    touching = o.deepest(other, -o.normal(k), on_edge)
-    from_start = dot(touching - o.p.take(o.before[k], 0), o.t.take(k, 0))
-    to_other = o.c.take(other, 0) - o.c.take(k, 0)
-    under = np.where(o.r[o.before[k]] == 0, -_past(o, o.before[k], other), o.start[k] - from_start)
-    over = np.where(o.r[k] == 0, _past(o, k, other), from_start - o.end[k])
-    far = two_arcs & (o.r[other] > BLUNT * o.d)
-    facing = np.where(two_arcs[:, None], to_other, -o.normal(other))
-    turn = np.maximum(o.turn[k], 0.0)
-    normal = o.normal(k)
-    angle = np.arctan2(-cross(normal, facing), dot(normal, facing))
-    angle += 2 * np.pi * (angle < turn / 2 - np.pi)  # facing away, nearer to the end
-    arc = o.end[k] + o.r[k] * np.clip(angle, 0.0, turn)
-    return Place(
-        corner=k,
-        on_edge=on_edge,
-        under=np.select([on_edge, two_arcs], [under, -dot(to_other, o.t.take(k, 0))], -np.inf),
-        over=np.select([on_edge, two_arcs], [over, dot(to_other, o.t.take(o.after[k], 0))], -np.inf),
-        lever=np.where(far, np.maximum(o.r[k], o.d) / length(to_other), 1.0),
-        along=np.where(on_edge, np.clip(from_start, o.start[k], np.maximum(o.end[k], o.start[k])), arc),
-    )
-
-
-def _past(o: Outlines, k: Numbers, other: Numbers) -> Numbers:
-    """How far what touches there of corners `other` has passed the bisectors at corners k, clockwise."""
-    mean = (o.t.take(k, 0) + o.t.take(o.after[k], 0)) / 2
-    inward = np.stack([mean[:, 1], -mean[:, 0]], axis=1)
-    touching = o.deepest(other, inward, np.ones(len(k), bool))
-    return dot(touching - o.p.take(k, 0), mean)
+    edge = g.EDGE_CORNER if side == 0 else g.CORNER_EDGE
+    places = np.empty((len(k), 4))
+    STANDING(len(k), o, touch.code, k, other, edge, places)
+    return Place(k, touch.code == edge, *places.T)
 
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:
@@ -87,13 +65,9 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
         return
     along = []
     for side in (0, 1):
-        positions = []
-        for first in range(0, len(touch.row), TOGETHER):
-            part = touch.part(first, first + TOGETHER)
-            here = place(o, part, side)
-            _check_segment(state, o, part, here, side)
-            positions.append(here.along)
-        along.append(np.concatenate(positions))
+        here = place(o, touch, side)
+        _check_segment(state, o, touch, here, side)
+        along.append(here.along.copy())  # the rest takes room
     state.forget()
     _check_order(state, touch, along)
 
@@ -102,8 +76,9 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
     force = state.column("contact", "KCFN")[touch.row]
+    arc = (o.r[here.corner] > 0) | o.pointed[here.corner]
     idle = (touch.overlap <= 0) & (force == 0)
-    for k in np.flatnonzero(~o.arc[here.corner] & ~here.on_edge & ((touch.code == g.CORNER_CORNER) | idle)):
+    for k in np.flatnonzero(~arc & ~here.on_edge & ((touch.code == g.CORNER_CORNER) | idle)):
         state.report(
             7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
         )
@@ -144,35 +119,21 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
     an open contact would be given up.
     """
-    virtual = np.flatnonzero(state.column("contact", "KCCOD") == g.VIRTUAL)
-    block, before, after = neighbours(state, virtual)
-    index = np.full(len(state.address["contact"]), -1, INDEX)
+    rings, contacts = state.rings, state.address["contact"][touch.row]
+    index = np.where(state.column("contact", "KCCOD") == g.VIRTUAL, INDEX(PASSED_OVER), INDEX(-1))
     index[touch.row] = np.arange(len(touch.row))
     hosts = [state.column("contact", name)[touch.row] for name in HOSTS]
-    for first in range(0, len(block), TOGETHER):
-        part = slice(first, first + TOGETHER)
-        one, two = index[before[part]], index[after[part]]
-        known = (one >= 0) & (two >= 0)
-        _check_behind(state, touch, along, hosts, (block[part][known], one[known], two[known]))
-
-
-def _check_behind(
-    state: State, touch: Touches, along: list[Numbers], hosts: list[Numbers], pairs: tuple[Numbers, ...]
-) -> None:
-    """The second of each pair of contacts is not behind the first. pairs: block, and both by their index."""
-    block, one, two = pairs
-    here, other = (
-        [np.where(hosts[0][k] == block, of[0][k], of[1][k]) for k in (one, two)]
-        for of in (along, hosts[::-1])
-    )
-    wedge = (touch.overlap[one] > 0) & (touch.overlap[two] > 0) & (other[0] != other[1])
-    slack = state.tolerance("FTOL") + state.tolerance("HTOL") + touch.slack[one] + touch.slack[two]
-    slack += np.where(wedge, state.tolerance("ETOL"), 0.0)
-    behind = here[0] - here[1]
-    contacts = state.address["contact"][touch.row]
-    for k in np.flatnonzero(behind > slack):
-        state.report(
-            3,
-            f"contact@{contacts[one[k]]} stands before contact@{contacts[two[k]]} in the list of "
-            f"block@{block[k]}, but lies {behind[k]} behind it",
-        )
+    near = state.tolerance("FTOL") + state.tolerance("HTOL")
+    slack = touch.slack + near / 2
+    of_lists = rings.lists, rings.contact, rings.row, rings.side
+    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack)
+    for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):
+        block = rings.block[owner]
+        others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}
+        wedge = touch.overlap[one] > 0 and touch.overlap[two] > 0 and len(others) > 1
+        if behind > slack[one] + slack[two] + (state.tolerance("ETOL") if wedge else 0.0):
+            state.report(
+                3,
+                f"contact@{contacts[one]} stands before contact@{contacts[two]} in the list of "
+                f"block@{block}, but lies {behind} behind it",
+            )

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
-from udec_ia.inspect.check.outlines import Outlines, dot, length
 from udec_ia.inspect.reading import INDEX, Numbers
+from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.standing import touching
 from udec_ia.layout import offsets as g
 
-TOGETHER = 20_000  # contacts that are looked at together
+TOUCHING = Sparing(touching, 2000)  # contacts, in 0.1 s
 
 
-@dataclass(frozen=True)
-class Touches:
+class Touches(NamedTuple):
     """The contacts that can be compared with the outlines; arrays with one element for each.
 
     row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
@@ -32,14 +33,6 @@ class Touches:
     point: Numbers
     slack: Numbers
 
-    def part(self, first: int, last: int) -> Touches:
-        """Those from the first to before the last."""
-        return Touches(*(column[first:last] for column in self.columns()))
-
-    def columns(self) -> list[Numbers]:
-        """All arrays."""
-        return [getattr(self, field.name) for field in fields(self)]
-
 
 def touches(state: State, o: Outlines) -> Touches:
     """The real contacts whose code and corners are sound, with the overlap that the outlines give."""
@@ -48,27 +41,12 @@ def touches(state: State, o: Outlines) -> Touches:
     code = state.column("contact", "KCCOD")
     ends = [index[state.rows("corner", state.column("contact", name))] for name in AHEAD]
     comparable = (code >= g.CORNER_CORNER) & (code < g.VIRTUAL) & (ends[0] >= 0) & (ends[1] >= 0)
-    at = np.flatnonzero(comparable)
-    made = []
-    for first in range(0, max(len(at), 1), TOGETHER):
-        part = at[first : first + TOGETHER]
-        made.append(_touches(o, part, code[part], ends[0][part], ends[1][part]))
-    return Touches(*(np.concatenate(column) for column in zip(*map(Touches.columns, made), strict=True)))
-
-
-def _touches(o: Outlines, at: Numbers, code: Numbers, i: Numbers, j: Numbers) -> Touches:
-    """Those of the rows `at`, with these codes, at corners i and j."""
-    between = o.c.take(j, 0) - o.c.take(i, 0)
-    distance = length(between)
-    two_arcs = code == g.CORNER_CORNER
-    arc, edge = np.where(code == g.EDGE_CORNER, (j, i), (i, j))
-    inward = np.where(
-        two_arcs[:, None], between / distance[:, None], -o.normal(edge)
-    )  # away from the arc's block
-    deepest = o.deepest(arc, inward, ~two_arcs)
-    overlap = np.where(two_arcs, o.r[i] + o.r[j] - distance, dot(deepest - o.p.take(edge, 0), inward))
-    point = deepest - (overlap / 2)[:, None] * inward
-    return Touches(at, code, i, j, overlap, point, 2 * np.maximum(o.slack[i], o.slack[j]))
+    row = np.flatnonzero(comparable)
+    i, j = (end[row] for end in ends)
+    code, overlap, point = code[row].astype(np.int8), np.empty(len(row)), np.empty((len(row), 2))
+    TOUCHING(len(row), o, code, i, j, overlap, point)
+    slack = 2 * np.maximum(o.slack[o.owner[i]], o.slack[o.owner[j]])
+    return Touches(row, code, i, j, overlap, point, slack)
 
 
 def check_contacts(state: State, o: Outlines, touch: Touches) -> None:

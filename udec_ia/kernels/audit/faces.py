@@ -1,0 +1,108 @@
+"""The map of a block system from the lists around its blocks: loops of domains, pieces, areas.
+
+`lists` has two columns, the first item of each list and how many there are. Of each item: whether it is a
+contact, its row among the contacts in use (-1 for none), and the side (0 or 1) of the block on it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from udec_ia.heap.jit import over_arrays
+
+UNKNOWN = -2  # of a place that no walk has come to
+
+
+@over_arrays
+def passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> None:
+    """The next passage around a domain for each that is known: see inspect/check/map.py."""
+    for r in range(len(lists)):
+        start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
+        first = last = -1
+        for k in range(start, end):
+            if contact[k]:
+                if last < 0:
+                    first = k
+                else:
+                    _join(row, side, last, k, following)
+                last = k
+        if last >= 0:
+            _join(row, side, last, first, following)
+
+
+@over_arrays
+def _join(row: Any, side: Any, one: int, two: int, following: Any) -> None:
+    """After contact `one` of a list comes contact `two`."""
+    if row[one] >= 0 and row[two] >= 0:
+        following[2 * row[one] + side[one]] = 2 * row[two] + 1 - side[two]
+
+
+@over_arrays
+def cycles(following: Any, smallest: Any) -> None:
+    """The least place in the cycle of each place; -1 for one that is in none, or leads to the last place."""
+    smallest[:] = UNKNOWN
+    smallest[-1] = -1
+    for start in range(len(following) - 1):
+        k = start
+        while smallest[k] == UNKNOWN:
+            smallest[k] = start
+            k = following[k]
+        if k == start or smallest[start] != start:
+            continue
+        k = start
+        while smallest[k] == start:
+            smallest[k] = -1
+            k = following[k]
+
+
+@over_arrays
+def pieces(one: Any, two: Any, smallest: Any) -> None:
+    """The least row in the piece of each block. one, two: rows of blocks that are joined; -1 for none."""
+    for k in range(len(smallest)):
+        smallest[k] = k
+    for k in range(len(one)):
+        if one[k] >= 0 and two[k] >= 0:
+            a, b = _root(smallest, one[k]), _root(smallest, two[k])
+            smallest[max(a, b)] = min(a, b)
+    for k in range(len(smallest)):
+        smallest[k] = _root(smallest, k)
+
+
+@over_arrays
+def _root(smallest: Any, k: int) -> int:
+    """The block of a piece that names itself. The way there is halved for whoever comes next."""
+    while smallest[k] != k:
+        smallest[k] = smallest[smallest[k]]
+        k = smallest[k]
+    return k
+
+
+@over_arrays
+def areas(
+    lists: Any, contact: Any, row: Any, side: Any, virtual: Any, domains: Any, x: Any, y: Any, twice: Any
+) -> bool:
+    """Add up twice the area of each domain; False if a piece of an outline belongs to none, or lies nowhere.
+
+    virtual, domains: by rows of contacts, whether it is virtual, and the rows of its two domains. x, y: of
+    each item; a virtual contact gets the place of the item before.
+    """
+    for r in range(len(lists)):
+        start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
+        following = -1  # contact
+        for k in range(end - 1, start - 1, -1):
+            following = k if contact[k] else following
+        for k in range(start + 1, end):
+            if contact[k] and virtual[row[k]]:
+                x[k], y[k] = x[k - 1], y[k - 1]
+        for k in range(end - 1, start - 1, -1):
+            if following < 0:
+                return False
+            domain = domains[side[following], row[following]]
+            after = k + 1 if k + 1 < end else start
+            moment = x[k] * y[after] - y[k] * x[after]
+            if domain < 0 or not math.isfinite(moment):
+                return False
+            twice[domain] += moment
+            following = k if contact[k] else following
+    return True

@@ -1,0 +1,162 @@
+"""Lists of a heap that nobody has vouched for: every address is tested before it is used, every walk ends.
+
+The words of IA() come as a bare array; a `step` is the place of a field in it, from the address of the group.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.heap.jit import over_arrays
+from udec_ia.layout import offsets as g
+
+TURNS = 4  # walks around blocks take as many steps together, for each place where a group could begin
+STRETCH = 256  # places in which groups are counted by a byte
+
+
+@over_arrays
+def chains(words: Any, firsts: Any, step: int, last: int, ratio: int, found: Any, many: Any) -> int:
+    """The number of addresses along the lists that begin at `firsts`, all together.
+
+    found: the addresses; a 0 where a list breaks, as it leads to where no group of the kind can be: beyond
+    `last`, or between reals. many: how many of them each list has. What has no room in `found` any more goes
+    in a circle, and ends it all.
+    """
+    n = 0
+    for k in range(len(firsts)):
+        start, iad = n, firsts[k]
+        while iad != 0 and n < len(found):
+            there = iad >= 1 and iad <= last and (iad - 1) % ratio == 0
+            found[n] = iad if there else 0
+            n += 1
+            iad = words[iad + step] if there else 0
+        many[k] = n - start
+    return n
+
+
+@over_arrays
+def closed_lists(words: Any, blocks: Any, limits: Any, steps: Any, rows: Any, items: Any, closed: Any) -> int:
+    """The number of items in the clockwise lists of `blocks` that close.
+
+    limits: the last address of a corner, that of a contact, and integers to a real; steps: to KP of a block,
+    KL of a corner, KB1, KB2, KL1 and KL2 of a contact. rows: of the block of each item; items: its address;
+    closed: True for a block whose list does.
+    """
+    last_corner, last_contact, ratio = limits
+    kp, along, one, two, over_one, over_two = steps
+    n, left = 0, TURNS * len(items)
+    for k in range(len(blocks)):
+        block, start = blocks[k], n
+        first = iad = words[block + kp]
+        mark, turns, since = 0, 1, 0  # an item that was passed, as long ago as the list was long then
+        while left > 0 and n < len(items) and iad >= 1 and iad <= last_corner and (iad - 1) % ratio == 0:
+            left -= 1
+            if words[iad - 1] == g.MCOR:
+                step = along
+            elif words[iad - 1] != g.MCON or iad > last_contact or n == start:
+                break
+            elif words[iad + one] == block:
+                step = over_one
+            elif words[iad + two] == block:
+                step = over_two
+            else:
+                break
+            rows[n], items[n] = k, iad
+            n += 1
+            iad = words[iad + step]
+            closed[k] = iad == first
+            if closed[k] or iad == mark:
+                break
+            since += 1
+            if since == turns:
+                mark, turns, since = iad, 2 * turns, 0
+        if not closed[k]:
+            n = start
+    return n
+
+
+@over_arrays
+def lay_out_lists(
+    words: Any,
+    to_host: int,
+    lists: Any,
+    items: Any,
+    row: Any,
+    neighbours: Any,
+    owner: Any,
+    side: Any,
+    at: Any,
+) -> None:
+    """What stands where in the clockwise lists that close, as inspect/check/rings.py has it.
+
+    to_host: to KB1 of a contact; lists: address of the block, first item and number of items, for each list;
+    items: addresses; row: among the groups in use; neighbours: item before, item after, corner at or after.
+    """
+    for r in range(len(lists)):
+        block, start, end = lists[r, 0], lists[r, 1], lists[r, 1] + lists[r, 2]
+        corner = start  # a list begins with one
+        for k in range(end - 1, start - 1, -1):
+            owner[k], side[k] = r, 0
+            if words[items[k] - 1] == g.MCON:
+                side[k] = words[items[k] + to_host] != block
+                if row[k] >= 0:
+                    at[side[k], row[k]] = k
+            else:
+                corner = k
+            neighbours[0, k] = k - 1 if k > start else end - 1
+            neighbours[1, k] = k + 1 if k + 1 < end else start
+            neighbours[2, k] = corner
+
+
+@over_arrays
+def rows_of(
+    addresses: Any, code: int, kind_at: Any, nth_at: Any, before: Any, row: Any, shift: int, found: Any
+) -> None:
+    """Row of each address among the groups of the kind `code`; -1 where there is none. See State.rows."""
+    for k in range(len(addresses)):
+        place = _place(addresses[k], len(kind_at), shift)
+        found[k] = -1
+        if place >= 0 and kind_at[place] == code:
+            found[k] = row[before[place // STRETCH] + nth_at[place]]
+
+
+@over_arrays
+def kinds_at(addresses: Any, codes: Any, kind_at: Any, shift: int, found: Any) -> None:
+    """True in `found` for each address at which a group of one of the kinds `codes` begins."""
+    for k in range(len(addresses)):
+        place = _place(addresses[k], len(kind_at), shift)
+        found[k] = False
+        for code in codes:
+            if place >= 0 and kind_at[place] == code:
+                found[k] = True
+
+
+@over_arrays
+def gaps(words: Any, kind_at: Any, sizes: Any, junk_size: int, ratio: int, free: int, found: Any) -> int:
+    """The number of groups that do not begin at the word after the group before.
+
+    kind_at: code of the kind of the group that begins at each real, 0 for none; sizes: of the kinds by code,
+    in words, 0 for junk, whose size stands `junk_size` words after its address. found: address of the group
+    before, 0 for none; the word after it; and where the next begins, or `free`: as many as there is room for.
+    """
+    n, before, end = 0, 0, 1
+    for place in range(len(kind_at) + 1):
+        last = place == len(kind_at)
+        if not last and kind_at[place] == 0:
+            continue
+        iad = free if last else place * ratio + 1
+        if iad != end:
+            if n < len(found):
+                found[n, 0], found[n, 1], found[n, 2] = before, end, iad
+            n += 1
+        if not last:
+            size = sizes[kind_at[place]]
+            before, end = iad, iad + (size if size else words[iad + junk_size])
+    return n
+
+
+@over_arrays
+def _place(iad: int, places: int, shift: int) -> int:
+    """The real that begins at an address, counted from 0; -1 where none does."""
+    place = (iad - 1) >> shift
+    return place if iad >= 1 and place < places and place << shift == iad - 1 else -1
