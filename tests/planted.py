@@ -19,9 +19,10 @@ import numpy as np
 from udec_ia import Model
 from udec_ia.heap.census import census
 from udec_ia.heap.checked import CHECKED
+from udec_ia.heap.entering import enter
 from udec_ia.heap.guarding import Astray
 from udec_ia.heap.interpreting import interpreted
-from udec_ia.heap.kinds import enter, shadow
+from udec_ia.heap.kinds import shadow
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 

@@ -276,7 +276,7 @@ SCRIPT = """
 from udec_ia.layout import offsets as g
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.jit import cache_folder
+from udec_ia.heap.kernel import cache_folder
 from udec_ia.heap.memory import find
 from udec_ia.heap.probe import probe
 from udec_ia.heap.words import scheme

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap import accessors, apart, guarding, interpreting, jit
+from udec_ia.heap import accessors, apart, guarding, interpreting, jit, kernel
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import interpreted, observe
@@ -29,7 +29,7 @@ from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.watch import run_unwatched
 
 UNDER = tuple(  # no routines of the program
-    vars(module) for module in (accessors, apart, guarding, interpreting, jit)
+    vars(module) for module in (accessors, apart, guarding, interpreting, jit, kernel)
 )
 MEMORY_LIMIT = 1_000  # times that a cycle may stop for memory
 ROOT = "run_cycles"

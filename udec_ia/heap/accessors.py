@@ -53,6 +53,8 @@ def gather(h: Memory, iads: Any, words: int, real: bool) -> Any:
 
     words: from the address of a group to a field, as the table lays it out for the scheme at hand.
     """
+    if words > 0 and not real:
+        return h.ia[words - 1 :].take(iads).astype(np.int64, copy=False)  # without an array of sums
     at = iads + (words - 1)
     return h.ra.take(at >> _which(h)) if real else h.ia.take(at).astype(np.int64, copy=False)
 

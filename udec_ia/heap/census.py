@@ -1,11 +1,10 @@
-"""Which groups a heap holds, found by following every pointer of the table from the list heads, in waves.
+"""Which groups a heap holds, found by following every pointer of the table from the list heads.
 
 A word of IA() has no type of its own, and only some kinds of group carry a head code. But the table says what
-each pointer leads to: so the kind of a group is known by the way that leads there. All pointers of all groups
-that were found last are followed at once, until they lead to nothing new; blocks lead to their neighbours, so
-there are about as many waves as blocks across the model. Nothing is trusted: a pointer that leads out of the
-heap, to an address where no group can stand or to another head code is not followed. So this tells what is
-there in a damaged heap, too; whether it is sound is for the checker to say.
+each pointer leads to: so the kind of a group is known by the way that leads there. The pointers of what was
+found are followed until they lead to nothing new (reach.py). Nothing is trusted: a pointer that leads out of
+the heap, to an address where no group can stand or to another head code is not followed. So this tells what
+is there in a damaged heap, too; whether it is sound is for the checker to say.
 
 The table may be that of another program, whose restart file is being read.
 """
@@ -13,12 +12,15 @@ The table may be that of another program, whose restart file is being read.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Any
 
 import numpy as np
 
+from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.reach import Shapes, reach, room_for
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Group, Table, lay_out, read_table
+from udec_ia.layout.table import Table, lay_out, read_table
 
 TABLE = read_table()
 SOFT = {  # kind of the extension of a group with this head code
@@ -29,14 +31,7 @@ CHOICES = {  # kinds that such a pointer can lead to
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
 }
-
-
-class Shape(NamedTuple):
-    """What groups of one kind look like in a word scheme: words, head codes, pointers with their targets."""
-
-    size: int
-    heads: tuple[int, ...]
-    pointers: list[tuple[int, str]]
+REACH = Sparing(reach, 20_000)  # places where a group can begin, in 0.1 s
 
 
 def census(h: Any) -> dict[str, Any]:
@@ -62,36 +57,14 @@ def reached(
 
     strict: it is over as soon as groups have more words together than there are, as they lie in each other.
     """
-    top = left = len(words) + 1
-    shapes = {group.name: _shape(table, group, ratio) for group in table.groups}
-    soft = {head.value: SOFT_NAMES[head.name] for head in table.heads if head.name in SOFT_NAMES}
-    places = (top - 2) // ratio + 1  # groups begin on reals: at these places, counted from 0
-    kind_at = np.zeros(places, np.int16)  # number of the kind of the group that begins there; 0 for none
-    last_at = np.empty(places, np.int32)
-    wave: dict[str, list[Any]] = {}
-    for kind, address in heads:
-        wave.setdefault(kind, []).append(np.array([address], np.int64))
-    while wave and not (strict and left < 0):
-        sure = [kind for kind in wave if shapes[kind].heads]  # first: a wrong pointer makes no other of them
-        turn = {kind: wave.pop(kind) for kind in sure or [*wave]}
-        for number, (kind, shape) in enumerate(shapes.items(), 1):
-            if kind not in turn or shape.size >= top:
-                continue
-            at = np.concatenate(turn[kind])
-            at = at[(at >= 1) & (at <= top - shape.size) & ((at - 1) % ratio == 0)]
-            at = at[kind_at[(at - 1) // ratio] == 0]
-            at = at[_once((at - 1) // ratio, last_at)]
-            if shape.heads:
-                at = at[one_of(words[at - 1], shape.heads)]
-            kind_at[(at - 1) // ratio] = number
-            left -= len(at) * shape.size
-            if not len(at) or (strict and left < 0):
-                continue
-            for offset, target in shape.pointers:
-                to = words[at + offset - 1].astype(np.int64)
-                for other, chosen in _by_kind(soft, words[at - 1], target, to):
-                    wave.setdefault(other, []).append(chosen)
-    return {kind: np.flatnonzero(kind_at == number) * ratio + 1 for number, kind in enumerate(shapes, 1)}
+    shapes, number = _our_shapes(ratio) if table is TABLE else _shapes(table, ratio)
+    ways = np.array([(number[kind], iad) for kind, iad in heads], np.int64).reshape(-1, 2)
+    places = (len(words) - 1) // ratio + 1  # groups begin on reals
+    found = room_for(places)
+    REACH(places, words, ratio, shapes, ways, strict, found)
+    place = np.flatnonzero(found.kind_at)
+    kinds = found.kind_at[place]
+    return {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}
 
 
 def one_of(values: Any, few: Sequence[int]) -> Any:
@@ -102,28 +75,35 @@ def one_of(values: Any, few: Sequence[int]) -> Any:
     return good
 
 
-def _once(places: Any, last_at: Any) -> Any:
-    """True for each of `places` that stands for its equals. last_at: room for a number at every place."""
-    rows = np.arange(len(places), dtype=last_at.dtype)
-    last_at[places] = rows
-    return last_at[places] == rows
+@cache
+def _our_shapes(ratio: int) -> tuple[Shapes, dict[str, int]]:
+    """Those of the table that the program has."""
+    return _shapes(TABLE, ratio)
 
 
-def _by_kind(soft: dict[int, str], codes: Any, target: str, to: Any) -> list[tuple[str, Any]]:
-    """What pointers lead `to`, by kind: of what extends a block, its own head code says which."""
-    if target == "soft":
-        return [(kind, to[(codes == code) & (to != 0)]) for code, kind in soft.items()]
-    to = to[to != 0]
-    return [(kind, to) for kind in CHOICES.get(target, (target,))]
+def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
+    """What groups look like, and the numbers of the kinds.
 
-
-def _shape(table: Table, group: Group, ratio: int) -> Shape:
-    """What groups of a kind look like. What may be of any kind is reached by its own lists, not from here."""
-    layout = lay_out(group, ratio)
-    pointers = [
-        (layout.offset[field.name] + i, str(field.target))
-        for field in group.fields
-        if field.target and field.target != "any"
-        for i in range(field.count)
-    ]
-    return Shape(layout.size, tuple(one.value for one in table.heads if one.group == group.name), pointers)
+    What may be of any kind is reached by its own lists. Of what extends a block the head code of the block
+    says what it is.
+    """
+    number = {group.name: k for k, group in enumerate(table.groups, 1)}
+    soft = [(number[SOFT_NAMES[head.name]], head.value) for head in table.heads if head.name in SOFT_NAMES]
+    sizes, pointers, first = [0], list[tuple[int, int, int]](), [0]
+    for group in table.groups:
+        layout = lay_out(group, ratio)
+        sizes.append(layout.size)
+        first.append(len(pointers))
+        for field in group.fields:
+            if field.target is None or field.target == "any":
+                continue
+            kinds = CHOICES.get(field.target, (field.target,))
+            leads = soft if field.target == "soft" else [(number[kind], 0) for kind in kinds]
+            word = layout.offset[field.name] + 1
+            pointers += [(k, *to) for k in range(word, word + field.count) for to in leads]
+    first.append(len(pointers))
+    codes = np.array([(head.value, number[head.group]) for head in table.heads], np.int64).reshape(-1, 2)
+    coded = np.zeros(len(sizes), bool)
+    coded[codes[:, 1]] = True
+    rows = np.array(pointers, np.int64).reshape(-1, 3)
+    return Shapes(np.array(sizes), codes, coded, rows, np.array(first)), number

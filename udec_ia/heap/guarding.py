@@ -28,7 +28,8 @@ from udec_ia.heap.checked import (
     WITH_HEAD,
     of_routine,
 )
-from udec_ia.heap.kinds import enter, leave, shadow
+from udec_ia.heap.entering import enter, leave
+from udec_ia.heap.kinds import shadow
 from udec_ia.heap.loading import has_numba_side
 from udec_ia.heap.views import Memory
 from udec_ia.layout import offsets as g

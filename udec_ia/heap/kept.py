@@ -5,7 +5,7 @@ schemes perhaps, may take the same number, and what one of them has compiled is 
 the other. Here a file is named by the types, and says for which types it is.
 
 numba also keeps apart what was compiled in different folders. Our cache is named by the sources themselves
-(jit.py), so two copies of the same sources share what is in it.
+(kernel.py), so two copies of the same sources share what is in it.
 """
 
 from __future__ import annotations

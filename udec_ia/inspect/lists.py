@@ -6,10 +6,8 @@ in which it stands. A word of IA() has no type of its own, so nothing else can t
 numbers. Every address is tested before it is used and every walk is bounded, whatever the words say.
 
 A list that breaks ends it in Unsound; the checker notes it and goes on with the rest (check/groups.py). What
-a damaged heap still holds, found by whatever pointer leads there, is for the census to say (heap/census.py).
-It cannot stand in for the lists: a group that its list has lost counts in a census, as long as anything
-points to it, and that is what the checker has to find; a table wants the order of its list, and needs no
-more of the heap than that list.
+a heap still holds, found by whatever pointer leads there, the census says (heap/census.py): what it knows
+and no list leads to has been lost, and that ends it in Unsound, too.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.census import SOFT, one_of
+from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.boundaries import Boundaries, boundaries
 from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
@@ -69,6 +67,15 @@ class Lists(Reading):
                 found, self.owner[kind] = self._hung(kind)
             self._enter(kind, found)
         return self.address[kind]
+
+    def tell_lost(self, *kinds: str) -> None:
+        """Report groups of these kinds that the census knows, but no list leads to."""
+        known = census(self.h)
+        for kind in kinds:
+            if len(known[kind]) > len(self.addresses(kind)):
+                lost = known[kind][~np.isin(known[kind], self.address[kind])]
+                more = f" and {len(lost) - 1} more are" if len(lost) > 1 else " is"
+                self.report(2, f"{kind}@{lost[0]}{more} in no list, but pointers lead there")
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""

@@ -19,13 +19,14 @@ def table(array: MainArray, kind: str) -> Any:
     blocks or domains, zones and grid-points block by block.
     Fields: `address`, then those of the field table by name and in its units, integers as int64, reals
     in the type of the word scheme; a triple is a field of three. Raises ValueError for an unknown kind
-    and Unsound if the lists are broken.
+    and Unsound if the lists are broken, or have lost groups that pointers lead to.
     """
     groups = {group.name: group for group in read_table().groups}
     if kind not in groups:
         raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(groups)}")
     lists, fields = Lists(array), groups[kind].fields
     at = lists.addresses(kind)
+    lists.tell_lost(kind)
     types: list[Any] = [("address", np.int64)]
     for field in fields:
         base = array.scheme.real_type if field.real else np.dtype(np.int64)

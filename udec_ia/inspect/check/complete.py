@@ -94,7 +94,7 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
 def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, contacts: Numbers) -> None:
     """A violation for each meeting of an arc with an edge or an arc that has no contact near it."""
     near, late = state.tolerance("DTOL") + state.tolerance("FTOL"), state.tolerance("ETOL")
-    rows = told(LONELY_MEETINGS, len(pairs), 6, o, pairs, contacts, joined.point, near, late)
+    rows = told(LONELY_MEETINGS, len(pairs), 6, o, pairs, contacts, joined.point, near, late, of=float)
     for (arc, other, what), (x, y, overlap) in zip(
         rows[:, :3].astype(int).tolist(), rows[:, 3:].tolist(), strict=True
     ):

@@ -11,12 +11,13 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.heap.slack import give_back
 from udec_ia.inspect.check.rings import lay_out
+from udec_ia.inspect.check.told import told
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
-from udec_ia.kernels.audit.lists import STRETCH, kinds_at, rows_of
+from udec_ia.kernels.audit.lists import STRETCH, astray, rows_of
 from udec_ia.layout import offsets as g
 
-ROWS_OF, KINDS_AT = Sparing(rows_of, 50_000), Sparing(kinds_at, 50_000)  # addresses, in 0.1 s
+ROWS_OF, ASTRAY = Sparing(rows_of, 50_000), Sparing(astray, 50_000)  # addresses, in 0.1 s
 
 LOST = "are in no group"  # what is said of words that no list leads to
 
@@ -95,11 +96,16 @@ class State(Lists):
         ROWS_OF(len(at), at, code, self.kind_at, self._nth_at, before, row, self._shift, found)
         return found.reshape(addresses.shape)
 
-    def holds(self, kinds: Sequence[str], addresses: Numbers) -> Numbers:
-        """True for each address at which a group in use of one of the `kinds` begins."""
-        found, codes = np.empty(len(addresses), bool), np.array([KIND_CODE[kind] for kind in kinds], np.int8)
-        KINDS_AT(len(found), addresses, codes, self.kind_at, self._shift, found)
-        return found
+    def pointers_astray(
+        self, kind: str, name: str, i: int, targets: Sequence[str], optional: bool
+    ) -> list[list[int]]:
+        """Row and value of each pointer of groups of `kind` that leads to none in use of the kinds `targets`.
+
+        optional: 0 is no such pointer.
+        """
+        groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
+        where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
+        return [*told(ASTRAY, len(groups), 2, *where).tolist()]
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""

@@ -38,6 +38,7 @@ from udec_ia.inspect.check.pieces import check_pieces
 from udec_ia.inspect.check.place import check_places
 from udec_ia.inspect.check.pointers import check_pointers
 from udec_ia.inspect.check.touches import check_contacts, touches
+from udec_ia.inspect.reading import KIND_CODE
 from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.layout import offsets as g
 
@@ -97,6 +98,8 @@ def _check_shapes(state: State) -> Outlines | None:
 def _check_links(state: State) -> None:
     check_common(state)
     check_pointers(state)
+    if state.found:  # else every pointer leads to a group that a list leads to
+        state.tell_lost(*KIND_CODE)
     check_memory(state)
     check_codes(state)
     check_histories(state)

@@ -99,7 +99,7 @@ def _check_tiling(state: State, junk: dict[int, int]) -> None:
 
     to_size, places = JSIZE[0] - 1, len(state.kind_at)
     rows = told(GAPS, places, 3, state.h.ia, state.kind_at, sizes, to_size, state.ratio, state.free)
-    for before, end, start in rows.astype(int).tolist():
+    for before, end, start in rows.tolist():
         left = name(before) if before else "the start of the heap"
         right = name(start) if start != state.free else "MFREE"
         if end < start:

@@ -19,11 +19,10 @@ from udec_ia.errors import DISORDERED
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.inspect.reading import Numbers
-from udec_ia.kernels.audit.faces import areas
+from udec_ia.kernels.audit.faces import areas, place_items
 from udec_ia.layout import offsets as g
 
-AREAS = Sparing(areas, 20_000)  # items, in 0.1 s
+AREAS, PLACE_ITEMS = Sparing(areas, 20_000), Sparing(place_items, 50_000)  # items, in 0.1 s
 
 
 def check_outer(state: State) -> None:
@@ -35,25 +34,20 @@ def check_outer(state: State) -> None:
         return
     if not len(rings.item) or (rings.row < 0).any():
         return
-    x, y = (_coordinate(state, *names) for names in (("KXP", "KXC"), ("KYP", "KYC")))
+    corners, contacts = (
+        np.column_stack([state.column(kind, name) for name in names])
+        for kind, names in (("corner", ("KXP", "KYP")), ("contact", ("KXC", "KYC")))
+    )
+    places = np.empty((len(rings.item), 2))
+    PLACE_ITEMS(len(places), rings.contact, rings.row, corners, contacts, *corners.mean(axis=0), places)
     virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     named = np.array([state.rows("domain", state.column("contact", side)) for side in SIDES])
     twice = np.zeros(len(domains))
     of_lists = rings.lists, rings.contact, rings.row, rings.side
-    if not AREAS(len(rings.item), *of_lists, virtual, named, x, y, twice):
+    if not AREAS(len(rings.item), *of_lists, virtual, named, places, twice):
         return
     outer, lowest = state.common("IODPNT"), int(twice.argmin())
     if outer != domains[lowest]:
         state.report(
             4, f"IODPNT, the outer domain, is {outer}, but domain@{domains[lowest]} lies around all blocks"
         )
-
-
-def _coordinate(state: State, corner: str, contact: str) -> Numbers:
-    """A coordinate of each item of the lists, field `corner` or `contact`, from the mean of the corners."""
-    rings = state.rings
-    place = np.empty(len(rings.item))
-    of_corners = state.read(rings.item[~rings.contact], corner)
-    place[~rings.contact] = of_corners
-    place[rings.contact] = state.read(rings.item[rings.contact], contact)
-    return place - of_corners.mean()

@@ -126,7 +126,7 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     near = state.tolerance("FTOL") + state.tolerance("HTOL")
     slack = touch.slack + near / 2
     of_lists = rings.lists, rings.contact, rings.row, rings.side
-    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack)
+    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
     for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):
         block = rings.block[owner]
         others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}

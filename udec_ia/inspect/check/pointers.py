@@ -19,13 +19,11 @@ def check_pointers(state: State) -> None:
                 continue
             targets = TARGETS[field.target]
             for i in range(field.count):
-                values = state.read(addresses, field.name, i)
-                good = (values == 0) & (field.allowed == OPTIONAL)
-                good |= state.holds(targets, values)
-                for row in np.flatnonzero(~good):
+                optional = field.allowed == OPTIONAL
+                for row, value in state.pointers_astray(kind, field.name, i, targets, optional):
                     state.report(
                         6 if field.role in ("backlink", "triple") else 2,
-                        f"{field.name} of {kind}@{addresses[row]} points to {values[row]}, "
+                        f"{field.name} of {kind}@{addresses[row]} points to {value}, "
                         f"which is no {' or '.join(targets)} in use",
                     )
     _check_block_extensions(state)

@@ -12,14 +12,14 @@ from udec_ia.inspect.reading import Numbers
 ROOM = 100  # rows that are expected
 
 
-def told(kernel: Sparing, groups: int, columns: int, *args: Any) -> Numbers:
+def told(kernel: Sparing, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
     """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
 
-    groups: how many it goes through.
+    groups: how many it goes through; of: int or float.
     """
     found = room = ROOM
     while found >= room:  # once more, if there are more than had room
         room = found + 1
-        rows = np.empty((room, columns))
+        rows = np.empty((room, columns), of)
         found = kernel(groups, *args, rows)
     return rows[:found]

@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
+from udec_ia.kernels.audit.lists import groups_along
 from udec_ia.layout import offsets as g
 
-MANY, SHORT = 50, 64  # so many lists are followed together, as long as they are as short as this
+GROUPS_ALONG = Sparing(groups_along, 200_000)  # words, in 0.1 s
 LOST = -1  # the number of a group that matches none, and of what is no group
 
 
@@ -67,44 +69,11 @@ class Side:
 
         A list ends where it leads to no group of the kind, or to one that was in a list before.
         """
-        number, step = KINDS.index(kind) + 1, self.word(kind, link).first - 1
-        if len(heads) > MANY:
-            rows, at, over = self._together(number, heads, step)
-            seen_at = np.zeros(len(self._number), bool)
-            seen_at[(at - 1) // self.atlas.ratio] = True
-            if over and np.count_nonzero(seen_at) == len(at):
-                return at[np.argsort(rows, kind="stable")], np.bincount(rows, minlength=len(heads))
-        words, starts = memoryview(self.h.ia), memoryview(self.atlas.starts)
-        free, seen = len(starts), bytearray(len(starts))
-        found, many = list[int](), list[int]()
-        for head in heads.tolist():
-            iad, before = head, len(found)
-            while 0 < iad < free and starts[iad] == number and not seen[iad]:
-                seen[iad] = 1
-                found.append(iad)
-                iad = words[iad + step]
-            many.append(len(found) - before)
-        return np.array(found, np.int64), np.array(many, np.int64)
-
-    def _together(self, number: int, heads: Any, step: int) -> tuple[Any, Any, bool]:
-        """The same of short lists, one step of all of them at a time; False if some are longer.
-
-        Rows of the heads, and addresses; a group that is in two lists comes twice.
-        """
-        starts, here, live = self.atlas.starts, heads, np.arange(len(heads), dtype=np.int32)
-        rows, found = list[Any](), list[Any]()
-        for k in range(SHORT):
-            good = (here > 0) & (here < len(starts))
-            good[good] = starts[here[good]] == number
-            if k:
-                good &= here != heads[live]
-            here, live = here[good], live[good]
-            rows.append(live)
-            found.append(here)
-            here = self.h.ia[here + step].astype(np.int64)
-            if not len(live):
-                break
-        return np.concatenate(rows), np.concatenate(found), not len(live)
+        starts, step = self.atlas.starts, self.word(kind, link).first - 1
+        found, many = np.empty(len(starts), np.int64), np.zeros(len(heads), np.int64)
+        seen, number = np.zeros(len(starts), bool), KINDS.index(kind) + 1
+        n = GROUPS_ALONG(len(starts), self.h.ia, starts, number, heads, step, seen, found, many)
+        return found[:n].copy(), many
 
     def listed(self, kind: str) -> Any:
         """All groups of a kind in the order of their main list; others after them, by address.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from udec_ia.heap.jit import over_arrays
+from udec_ia.heap.kernel import over_arrays
 
 UNKNOWN = -2  # of a place that no walk has come to
 
@@ -80,12 +80,12 @@ def _root(smallest: Any, k: int) -> int:
 
 @over_arrays
 def areas(
-    lists: Any, contact: Any, row: Any, side: Any, virtual: Any, domains: Any, x: Any, y: Any, twice: Any
+    lists: Any, contact: Any, row: Any, side: Any, virtual: Any, domains: Any, places: Any, twice: Any
 ) -> bool:
     """Add up twice the area of each domain; False if a piece of an outline belongs to none, or lies nowhere.
 
-    virtual, domains: by rows of contacts, whether it is virtual, and the rows of its two domains. x, y: of
-    each item; a virtual contact gets the place of the item before.
+    virtual, domains: by rows of contacts, whether it is virtual, and the rows of its two domains. places: of
+    each item (n x 2); a virtual contact gets that of the item before.
     """
     for r in range(len(lists)):
         start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
@@ -94,15 +94,23 @@ def areas(
             following = k if contact[k] else following
         for k in range(start + 1, end):
             if contact[k] and virtual[row[k]]:
-                x[k], y[k] = x[k - 1], y[k - 1]
+                places[k, 0], places[k, 1] = places[k - 1, 0], places[k - 1, 1]
         for k in range(end - 1, start - 1, -1):
             if following < 0:
                 return False
             domain = domains[side[following], row[following]]
             after = k + 1 if k + 1 < end else start
-            moment = x[k] * y[after] - y[k] * x[after]
+            moment = places[k, 0] * places[after, 1] - places[k, 1] * places[after, 0]
             if domain < 0 or not math.isfinite(moment):
                 return False
             twice[domain] += moment
             following = k if contact[k] else following
     return True
+
+
+@over_arrays
+def place_items(contact: Any, row: Any, corners: Any, contacts: Any, x: float, y: float, places: Any) -> None:
+    """The place of each item from (x, y). corners, contacts: their places, by row (n x 2)."""
+    for k in range(len(contact)):
+        of_kind = contacts if contact[k] else corners
+        places[k, 0], places[k, 1] = of_kind[row[k], 0] - x, of_kind[row[k], 1] - y

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.heap.jit import over_arrays
+from udec_ia.heap.kernel import over_arrays
 from udec_ia.layout import offsets as g
 
 TURNS = 4  # walks around blocks take as many steps together, for each place where a group could begin
@@ -31,6 +31,27 @@ def chains(words: Any, firsts: Any, step: int, last: int, ratio: int, found: Any
             n += 1
             iad = words[iad + step] if there else 0
         many[k] = n - start
+    return n
+
+
+@over_arrays
+def groups_along(
+    words: Any, starts: Any, kind: int, heads: Any, step: int, seen: Any, found: Any, many: Any
+) -> int:
+    """The number of groups of a kind along the lists that begin at `heads`, all together.
+
+    starts: by address, number of the kind that begins there. A list ends where it leads to none of the kind,
+    or to one that was `seen` before. found: the addresses; many: how many of them each list has.
+    """
+    n = 0
+    for k in range(len(heads)):
+        before, iad = n, heads[k]
+        while iad > 0 and iad < len(starts) and starts[iad] == kind and not seen[iad]:
+            seen[iad] = True
+            found[n] = iad
+            n += 1
+            iad = words[iad + step]
+        many[k] = n - before
     return n
 
 
@@ -121,14 +142,25 @@ def rows_of(
 
 
 @over_arrays
-def kinds_at(addresses: Any, codes: Any, kind_at: Any, shift: int, found: Any) -> None:
-    """True in `found` for each address at which a group of one of the kinds `codes` begins."""
-    for k in range(len(addresses)):
-        place = _place(addresses[k], len(kind_at), shift)
-        found[k] = False
+def astray(
+    words: Any, groups: Any, step: int, codes: Any, optional: bool, kind_at: Any, shift: int, found: Any
+) -> int:
+    """The number of groups whose pointer `step` words after their address leads to none of the kinds `codes`.
+
+    optional: it may be 0. found: rows among `groups` and what they hold, for as many as there is room for.
+    """
+    n = 0
+    for k in range(len(groups)):
+        iad = words[groups[k] + step]
+        place = _place(iad, len(kind_at), shift)
+        good = iad == 0 and optional
         for code in codes:
-            if place >= 0 and kind_at[place] == code:
-                found[k] = True
+            good = good or (place >= 0 and kind_at[place] == code)
+        if not good:
+            if n < len(found):
+                found[n, 0], found[n, 1] = k, iad
+            n += 1
+    return n
 
 
 @over_arrays

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from udec_ia.heap.jit import over_arrays
+from udec_ia.heap.kernel import over_arrays
 from udec_ia.kernels.audit.outlines import (
     Outlines,
     arc_at,
@@ -51,15 +51,19 @@ def lonely_meetings(
                 for j in range(o.first[two], o.first[two] + o.count[two]):
                     if not _near_edge(o, i, j, far):
                         continue
-                    for what in range(1 if turn else 2):  # two arcs once
+                    for what in range(2 if one < two else 1):  # two arcs once
                         if what == EDGE:
                             meets, x, y, depth = arc_in_edge(o, i, j)
                         else:
                             meets, x, y, depth = arc_in_arc(o, i, j)
                         if not meets:
                             continue
-                        reach = near + depth + (o.d if _is_late(o, i, j, x, y, depth, late) else 0.0)
-                        if _has_near(points, contacts[k, 0], contacts[k, 1], x, y, reach):
+                        first, many = contacts[k, 0], contacts[k, 1]
+                        if _has_near(points, first, many, x, y, near + depth):
+                            continue
+                        if _is_late(o, i, j, x, y, depth, late) and _has_near(
+                            points, first, many, x, y, near + depth + o.d
+                        ):
                             continue
                         if found < len(rows):
                             rows[found, 0], rows[found, 1], rows[found, 2] = i, j, what
@@ -194,9 +198,16 @@ def _stands_in(o: Outlines, inner: int, outer: int) -> bool:
         if _near_block(o, k, outer, o.d):
             arc = arc_at(o, k)
             for x, y in ((arc[0], arc[1]), (arc[2], arc[3]), (arc[4], arc[5])):
-                if in_rounded(o, outer, x, y):
+                if _in_box(o, inner, x, y) and _in_box(o, outer, x, y) and in_rounded(o, outer, x, y):
                     return True
     return False
+
+
+@over_arrays
+def _in_box(o: Outlines, block: int, x: float, y: float) -> bool:
+    """True for a place in the box around the corners of a block."""
+    along = x >= o.low[block, 0] and x <= o.high[block, 0]
+    return along and y >= o.low[block, 1] and y <= o.high[block, 1]
 
 
 @over_arrays

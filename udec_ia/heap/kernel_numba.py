@@ -1,4 +1,4 @@
-"""What a kernel is to the kernels that call it (jit.py)."""
+"""What a kernel is to the kernels that call it (kernel.py)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from numba import types
 from numba.extending import typeof_impl
 
-from udec_ia.heap.jit import Kernel
+from udec_ia.heap.kernel import Kernel
 
 
 @typeof_impl.register(Kernel)
