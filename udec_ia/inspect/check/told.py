@@ -20,6 +20,6 @@ def told(kernel: Sparing, groups: int, columns: int, *args: Any, of: type = int)
     found = room = ROOM
     while found >= room:  # once more, if there are more than had room
         room = found + 1
-        rows = np.empty((room, columns), of)
+        rows: Numbers = np.empty((room, columns), of)
         found = kernel(groups, *args, rows)
     return rows[:found]
