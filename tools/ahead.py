@@ -18,10 +18,8 @@ from time import monotonic
 
 ROOT = Path(__file__).parent.parent
 RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of tests/scenes.py, and of tests/soft_scenes.py
-OFTEN_USED = (
-    "i32r32",
-    "i32r64",
-)  # schemes in which the tests have joint laws and keep accounts of the energy
+OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and keep accounts of the energy
+OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
 
 
 def compile_for(build: str) -> str:
@@ -33,9 +31,17 @@ def compile_for(build: str) -> str:
     from mechanics import on_base
 
     from udec_ia import Model, UdecError
+    from udec_ia.heap.interpreting import Sparing
+    from udec_ia.inspect.check import check_links
 
+    Sparing.at_once = True
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]
     soft = [soft_scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in SOFT]
+    for model in rigid[-1], soft[-1]:
+        if build == OUTLINES_IN:
+            model.check()
+        elif build in OF_A_WIDTH:
+            check_links(model.array)
     if build in OFTEN_USED:
         model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)
         model.cycle(1)

@@ -4,11 +4,12 @@
     python tools/scale.py --blocks 1000000                with these
     python tools/scale.py check diff --blocks 100000      these commands alone
 
-Each command is a process of its own, as a user starts it, of modules that were compiled to bytecode
-before. Times are processor times of the whole process, the least of some turns. Memory is the most that the
-process has held, beyond what it holds with a model of a thousand blocks, with which it loads the same code,
-over the size of the files that it reads, or of the one that it writes, if that is larger. SAVE is a deck that reads the file and writes it, less one
-that reads it. The exit status is 1 if a limit is missed: MEMORY times the file, and of time LIMITS.
+Each command is a process of its own, as a user starts it, of modules that were compiled to bytecode before,
+and of kernels that were compiled. Times are processor times of the whole process, the least of some turns.
+Memory is the most that the process has held, beyond what it holds with a model of two thousand blocks, with
+which it loads the same code, over the size of the files that it reads, or of the one that it writes, if that
+is larger. SAVE is a deck that reads the file and writes it, less one that reads it. The exit status is 1 if a
+limit is missed: MEMORY times the file, and of time LIMITS.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 TOOL = os.path.abspath(__file__)
-SMALL = 1000  # blocks of a model that takes no time, but the compiled code that a large one takes
+SMALL = 2000  # blocks of a model that takes no time, but the compiled code that a large one takes
 TURNS = 3
 MEMORY = 3.0  # times the size of the file
 LIMITS = {"check": 2.0}  # s for 100,000 blocks, and ten times as much for ten times as many

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import Any
 
@@ -12,8 +13,10 @@ import soft_scenes
 from naive import census as naive
 
 from udec_ia import Model
+from udec_ia.heap.accessors import puti
 from udec_ia.heap.census import census
 from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 
 BUILDS = list(ALL_SCHEMES)
@@ -69,3 +72,18 @@ def test_an_array_without_heads_holds_nothing() -> None:
     assert not any(len(addresses) for addresses in census(m.array.h).values())
     m.array.h.ci[g.MFREE] = -7
     assert not any(len(addresses) for addresses in census(m.array.h).values())
+
+
+@pytest.mark.parametrize(("skipped", "said"), [(1, " is"), (3, " and 2 more are")])
+@pytest.mark.parametrize("build", BUILDS)
+def test_groups_that_a_list_has_lost_are_told(build: str, skipped: int, said: str) -> None:
+    """Of a list that passes over some groups; a table would lack them."""
+    m = played(build, scenes, 0)
+    contacts = m.table("contact")["address"].tolist()
+    lost = contacts[4 : 4 + skipped]
+    puti(m.array.h, contacts[3], g.KC, contacts[4 + skipped])
+    told = f"contact@{min(lost)}{said} in no list, but pointers lead there"
+    assert told in [violation.message for violation in m.check()]
+    with pytest.raises(Unsound, match=re.escape(told)):
+        m.table("contact")
+    assert len(m.table("block")) == m.array.h.ci[g.NBLK]

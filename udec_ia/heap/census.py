@@ -31,7 +31,7 @@ CHOICES = {  # kinds that such a pointer can lead to
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
 }
-REACH = Sparing(reach, 20_000)  # places where a group can begin, in 0.1 s
+REACH = Sparing(reach, 200_000)  # places where a group can begin, in 0.2 s
 
 
 def census(h: Any) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from udec_ia.inspect.reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, 
 from udec_ia.kernels.audit.lists import closed_lists
 from udec_ia.layout import offsets as g
 
-CLOSED_LISTS = Sparing(closed_lists, 200_000)  # places where a group could begin: in 0.1 s
+CLOSED_LISTS = Sparing(closed_lists, 1_000_000)  # places where a group could begin: in 0.1 s
 
 
 class Boundaries(NamedTuple):

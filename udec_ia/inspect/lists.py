@@ -25,7 +25,7 @@ from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, 
 from udec_ia.inspect.walk import HEADS
 from udec_ia.kernels.audit.lists import chains
 
-CHAINS = Sparing(chains, 200_000)  # places where a group could begin: in 0.1 s
+CHAINS = Sparing(chains, 2_000_000)  # places where a group could begin: in 0.1 s
 
 
 class Pointers(NamedTuple):

@@ -17,7 +17,7 @@ from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, na
 from udec_ia.kernels.audit.lists import STRETCH, astray, rows_of
 from udec_ia.layout import offsets as g
 
-ROWS_OF, ASTRAY = Sparing(rows_of, 50_000), Sparing(astray, 50_000)  # addresses, in 0.1 s
+ROWS_OF, ASTRAY = Sparing(rows_of, 100_000), Sparing(astray, 100_000)  # addresses, in 0.1 s
 
 LOST = "are in no group"  # what is said of words that no list leads to
 

@@ -22,8 +22,8 @@ from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.kernels.audit.faces import cycles, passages, pieces
 from udec_ia.layout import offsets as g
 
-PASSAGES, CYCLES = Sparing(passages, 50_000), Sparing(cycles, 100_000)  # items, passages: in 0.1 s
-PIECES = Sparing(pieces, 20_000)  # contacts, in 0.1 s
+PASSAGES, CYCLES = Sparing(passages, 150_000), Sparing(cycles, 300_000)  # items, passages: in 0.1 s
+PIECES = Sparing(pieces, 60_000)  # contacts, in 0.1 s
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]

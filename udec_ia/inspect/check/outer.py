@@ -22,7 +22,7 @@ from udec_ia.inspect.check.map import SIDES
 from udec_ia.kernels.audit.faces import areas, place_items
 from udec_ia.layout import offsets as g
 
-AREAS, PLACE_ITEMS = Sparing(areas, 20_000), Sparing(place_items, 50_000)  # items, in 0.1 s
+AREAS, PLACE_ITEMS = Sparing(areas, 100_000), Sparing(place_items, 200_000)  # items, in 0.1 s
 
 
 def check_outer(state: State) -> None:

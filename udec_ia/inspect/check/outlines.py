@@ -13,7 +13,7 @@ from udec_ia.inspect.reading import INDEX, Numbers
 from udec_ia.kernels.audit.outlines import Outlines, fill_circles, measure
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
-MEASURE, CIRCLES = Sparing(measure, 500), Sparing(fill_circles, 500)  # blocks, in 0.1 s
+MEASURE, CIRCLES = Sparing(measure, 7000), Sparing(fill_circles, 7000)  # blocks, in 0.1 s
 
 
 def dot(a: Numbers, b: Numbers) -> Numbers:

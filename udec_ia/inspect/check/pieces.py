@@ -20,7 +20,7 @@ from udec_ia.inspect.reading import Numbers
 from udec_ia.kernels.audit.outlines import Outlines, rounded
 from udec_ia.layout import offsets as g
 
-ROUNDED = Sparing(rounded, 1000)  # corners, in 0.1 s
+ROUNDED = Sparing(rounded, 20_000)  # corners, in 0.1 s
 
 
 def check_pieces(state: State, o: Outlines) -> None:

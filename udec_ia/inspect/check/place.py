@@ -21,8 +21,8 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g
 
-STANDING = Sparing(standing, 2000)  # contacts, in 0.1 s
-DISORDERED = Sparing(disordered, 50_000)  # items, in 0.1 s
+STANDING = Sparing(standing, 20_000)  # contacts, in 0.1 s
+DISORDERED = Sparing(disordered, 200_000)  # items, in 0.1 s
 
 
 @dataclass(frozen=True)

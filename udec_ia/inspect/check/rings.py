@@ -14,7 +14,7 @@ from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
 from udec_ia.kernels.audit.lists import lay_out_lists
 from udec_ia.layout import offsets as g
 
-LAY_OUT = Sparing(lay_out_lists, 20_000)  # items, in 0.1 s
+LAY_OUT = Sparing(lay_out_lists, 100_000)  # items, in 0.1 s
 
 
 @dataclass(frozen=True)

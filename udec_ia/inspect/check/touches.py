@@ -14,7 +14,7 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import touching
 from udec_ia.layout import offsets as g
 
-TOUCHING = Sparing(touching, 2000)  # contacts, in 0.1 s
+TOUCHING = Sparing(touching, 50_000)  # contacts, in 0.1 s
 
 
 class Touches(NamedTuple):

@@ -16,7 +16,7 @@ from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.kernels.audit.lists import groups_along
 from udec_ia.layout import offsets as g
 
-GROUPS_ALONG = Sparing(groups_along, 200_000)  # words, in 0.1 s
+GROUPS_ALONG = Sparing(groups_along, 1_000_000)  # words, in 0.1 s
 LOST = -1  # the number of a group that matches none, and of what is no group
 
 

@@ -1,0 +1,164 @@
+"""What the checker goes through: compiled, interpreted, and as slow obvious implementations have it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import Point, Polygon
+
+from udec_ia import Model
+from udec_ia.heap.interpreting import interpreted
+from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.outlines import outlines
+from udec_ia.kernels.audit import faces, lists
+from udec_ia.kernels.audit.outlines import in_polygon, in_rounded
+from udec_ia.layout import offsets as g
+
+RATIO, STEP, SIZE = 2, 1, 4
+WORDS = np.int32
+
+
+def both(kernel: Any, *args: Any) -> tuple[Any, list[Any]]:
+    """What a kernel returns, and its arguments afterwards; the same from both of its forms."""
+    forms = []
+    for python in (True, False):
+        given_args = [one.copy() if isinstance(one, np.ndarray) else one for one in args]
+        if python:
+            with interpreted():
+                result = kernel(*given_args)
+        else:
+            result = kernel(*given_args)
+        forms.append((result, given_args))
+    (one, first), (two, second) = forms
+    assert one == two
+    for a, b in zip(first, second, strict=True):
+        assert not isinstance(a, np.ndarray) or (a == b).all()
+    return one, second
+
+
+@given(st.lists(st.integers(-3, 44), min_size=44, max_size=44), st.lists(st.integers(-2, 46), max_size=4))
+def test_lists_are_followed_as_far_as_they_can_be(links: list[int], firsts: list[int]) -> None:
+    """Whatever the words say, and circles until there is no more room."""
+    words, last, room = np.array(links, WORDS), len(links) - SIZE + 1, 23
+    expected, lengths = list[int](), list[int]()
+    for iad in firsts:
+        before = len(expected)
+        while iad and len(expected) < room:
+            there = 1 <= iad <= last and iad % RATIO == 1
+            expected.append(iad if there else 0)
+            iad = links[iad + STEP] if there else 0
+        lengths.append(len(expected) - before)
+    n, after = both(
+        lists.chains,
+        words,
+        np.array(firsts, np.int64),
+        STEP,
+        last,
+        RATIO,
+        np.zeros(room, np.int64),
+        np.zeros(len(firsts), np.int64),
+    )
+    assert after[-2][:n].tolist() == expected
+    assert after[-1].tolist() == lengths
+
+
+@given(st.permutations(range(9)), st.sets(st.integers(0, 8)))
+def test_cycles_of_a_permutation(order: list[int], nowhere: set[int]) -> None:
+    """What leads nowhere, the last place, is in no cycle; nor is what leads there."""
+    following = np.array([9 if k in nowhere else to for k, to in enumerate(order)] + [9])
+    _, (_, smallest) = both(faces.cycles, following, np.zeros(10, np.int64))
+    for start in range(9):
+        walk, k = [start], int(following[start])
+        while k not in walk and k != 9:
+            walk.append(k)
+            k = int(following[k])
+        assert smallest[start] == (min(walk) if k == start else -1)
+
+
+@given(st.lists(st.tuples(st.integers(-1, 11), st.integers(-1, 11)), max_size=14))
+def test_pieces_hang_together(joined: list[tuple[int, int]]) -> None:
+    expected = list(range(12))
+    for _ in range(12):
+        for a, b in joined:
+            if a >= 0 and b >= 0:
+                expected[a] = expected[b] = min(expected[a], expected[b])
+    pairs = np.array(joined, np.int32).reshape(-1, 2)
+    _, after = both(faces.pieces, pairs[:, 0].copy(), pairs[:, 1].copy(), np.zeros(12, np.int32))
+    assert after[-1].tolist() == expected
+
+
+@given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 5)), max_size=12), st.integers(0, 3))
+def test_gaps_between_groups(laid: list[tuple[int, int]], rest: int) -> None:
+    """Of groups of two kinds, the second one junk, whose size stands in its word 1; they may overlap."""
+    sizes, free = np.array([0, SIZE, 0]), 1 + RATIO * (sum(gap + of // 2 + 2 for gap, of in laid) + rest)
+    kind_at, words = np.zeros((free - 1) // RATIO + 1, np.int8), np.zeros(free + SIZE, WORDS)
+    groups, place = list[tuple[int, int]](), 0
+    for gap, of in laid:
+        place += gap
+        iad = place * RATIO + 1
+        kind_at[place] = 1 if of % 2 else 2
+        words[iad + 1] = 2 * of
+        groups.append((iad, SIZE if of % 2 else 2 * of))
+        place += of // 2 + 1
+    before, end, expected = 0, 1, []
+    for iad, size in [*groups, (free, 0)]:
+        if iad != end:
+            expected.append([before, end, iad])
+        before, end = iad, iad + size
+    n, after = both(lists.gaps, words, kind_at, sizes, 1, RATIO, free, np.zeros((20, 3), np.int64))
+    assert after[-1][:n].tolist() == expected
+
+
+@settings(max_examples=30)
+@given(st.integers(3, 9), st.floats(0.5, 3.0), st.integers(0, 999))
+def test_what_lies_in_an_outline(corners: int, stretch: float, seed: int) -> None:
+    """Of a star-shaped block, by shapely, at places that are not near its edges."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.uniform(0, 2 * np.pi, corners))[::-1]
+    if (np.diff(np.append(angles, angles[0] - 2 * np.pi)) > -0.2).any():
+        return
+    ring = rng.uniform(2, 4, corners)[:, None] * np.column_stack((stretch * np.cos(angles), np.sin(angles)))
+    model = Model()
+    model.block(*ring.ravel())
+    model.round(0.05)
+    with np.errstate(all="ignore"):
+        o = outlines(State(model.array))
+    assert o is not None
+    polygon = Polygon(ring)
+    for x, y in rng.uniform(-5, 5, (40, 2)) * (stretch, 1):
+        if polygon.exterior.distance(Point(x, y)) > 0.06:  # more than a tip is long
+            inside = bool(polygon.contains(Point(x, y)))
+            for kernel in (in_polygon, in_rounded):
+                assert both(kernel, o, 0, float(x), float(y))[0] == inside
+
+
+@pytest.mark.parametrize(
+    ("along", "closes"),
+    [
+        ((11, 15, 19, 11), True),
+        ((11, 11), True),
+        ((11, 15, 19, 15), False),  # a circle beside the first corner
+        ((11, 15, 15), False),
+        ((11, 15, 18), False),  # between reals
+        ((11, 15, 35), False),  # no corner there
+        ((11, 15, 0), False),
+        ((11, 15, 999), False),
+        ((0,), False),
+    ],
+)
+def test_lists_around_blocks_close_or_are_left(along: tuple[int, ...], closes: bool) -> None:
+    """Corners of four words, whose second leads to the next; a block at 1 leads to the first of them."""
+    words = np.zeros(40, WORDS)
+    words[1 + STEP] = along[0]
+    for iad, to in pairwise(along):
+        words[iad - 1], words[iad + STEP] = g.MCOR, to
+    limits, steps = (36, 36, RATIO), (STEP, STEP, 2, 3, 2, 3)
+    room = np.zeros(18, np.int32), np.zeros(18, np.int64), np.zeros(1, bool)
+    n, after = both(lists.closed_lists, words, np.array([1]), limits, steps, *room)
+    assert after[-1].tolist() == [closes]
+    assert after[-2][:n].tolist() == (list(along[:-1]) if closes else [])
