@@ -18,7 +18,7 @@ import numpy as np
 from udec_ia.heap.accessors import Memory, getr, putr
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.outlines import circles, outlines, reaches
+from udec_ia.inspect.check.outlines import circles, extent, outlines
 from udec_ia.inspect.check.touches import touches
 from udec_ia.layout import offsets as g
 
@@ -31,13 +31,12 @@ def settle(array: MainArray) -> float:
         if o is None or not o.d > 0:
             return 0.0
         h, rows = array.h, state.rows("block", o.block)
-        centre, radius, _ = circles(o)
+        centre, radius = circles(o)
         arc = (o.r != 0) & (radius != 0)  # a corner with a radius keeps one, and one without it none
         centre[~arc], radius[~arc] = np.where(o.r == 0, o.p.T, o.c.T).T[~arc], o.r[~arc]
-        centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
         changes = [
             _put(h, o.corner, zip((g.KXCP, g.KYCP, g.KRAD), (*centre.T, radius), strict=True)),
-            _put(h, o.block, [(g.KBRO, reaches(o, centroid))]),
+            _put(h, o.block, [(g.KBRO, extent(state, o, rows)[1])]),
         ]
         if state.common("JPHASE") == g.AT_BLOCKS:
             touch = touches(state, o._replace(c=centre, r=radius))

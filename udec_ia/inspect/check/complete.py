@@ -25,7 +25,6 @@ import numpy as np
 
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.outlines import dot
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.check.touches import Touches
 from udec_ia.inspect.reading import HOSTS, Numbers
@@ -121,7 +120,8 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
     edge = np.concatenate((tip, o.after[tip]))
     start = o.p.take(o.before[edge], 0)
     from_start, to_end = (np.where(o.r[k] > 0, o.d, 0.0) for k in (o.before[edge], edge))
-    along = np.clip(dot(point - start, o.t.take(edge, 0)), from_start, o.z[edge] - to_end)
+    along = ((point - start) * o.t.take(edge, 0)).sum(axis=1)
+    along = np.clip(along, from_start, o.z[edge] - to_end)
     from_edge = point - start - along[:, None] * o.t.take(edge, 0)
     near_arc = np.hypot(*(point - o.c.take(tip, 0)).T) <= o.r[tip] + reach
     return bool(near_arc.any() or (np.hypot(*from_edge.T) <= reach).any())

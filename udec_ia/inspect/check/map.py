@@ -17,12 +17,14 @@ import numpy as np
 from udec_ia.counting import counted
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.rings import corner_before
+from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.kernels.audit.faces import cycles, passages, pieces
+from udec_ia.kernels.audit.lists import ill_linked
 from udec_ia.layout import offsets as g
 
 PASSAGES, CYCLES = Sparing(passages, 150_000), Sparing(cycles, 300_000)  # items, passages: in 0.1 s
+ILL_LINKED = Sparing(ill_linked, 50_000)  # items, in 0.1 s
 PIECES = Sparing(pieces, 60_000)  # contacts, in 0.1 s
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
@@ -44,50 +46,33 @@ def check_map(state: State) -> None:
 
 
 def _check_corners(state: State) -> None:
-    """Corners name their block, and the reverse list is the clockwise list read backwards."""
+    """Every block has at least three corners."""
     rings = state.rings
     corners = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(rings.item) else rings.count
     for k in np.flatnonzero(corners < 3):
         state.report(3, f"block@{rings.block[k]} has {counted(corners[k], 'corner')}")
-    index = np.flatnonzero(~rings.contact)
-    corner, block = rings.item[index], rings.block[rings.owner[index]]
-    host, previous, before = state.read(corner, KNB), state.read(corner, KR), rings.item[corner_before(rings)]
-    for k in np.flatnonzero(host != block):
-        state.report(
-            3,
-            f"{KNB} of corner@{corner[k]} is {host[k]}, "
-            f"but the corner stands in the list of block@{block[k]}",
-        )
-    for k in np.flatnonzero(previous != before):
-        state.report(
-            3,
-            f"{KR} of corner@{corner[k]} is {previous[k]}, but clockwise corner@{before[k]} precedes it",
-        )
 
 
 def _check_items(state: State) -> None:
-    """Links back mirror the list, and each contact knows the first corner after it."""
+    """Corners name their block and the one before; links back mirror the list; contacts know their corner."""
     rings = state.rings
-    kinds = [(~rings.contact, "corner", KLB, "")]
-    kinds += [(rings.contact & (rings.side == k), "contact", BACK[k], AHEAD[k]) for k in (0, 1)]
-    for those, kind, back, ahead in kinds:
-        index = np.flatnonzero(those)
-        item, block = rings.item[index], rings.block[rings.owner[index]]
-        if ahead:
-            noted, corner = state.read(item, ahead), rings.item[rings.corner[index]]
-            for k in np.flatnonzero(noted != corner):
-                state.report(
-                    3,
-                    f"{ahead} of {kind}@{item[k]} is {noted[k]}, "
-                    f"but the first corner after it on block@{block[k]} is {corner[k]}",
-                )
-        noted, before = state.read(item, back), rings.item[rings.before[index]]
-        for k in np.flatnonzero(noted != before):
-            state.report(
-                3,
-                f"{back} of {kind}@{item[k]} is {noted[k]}, "
-                f"but {state.link(int(block[k]), int(before[k]))} leads to it, on block@{block[k]}",
-            )
+    of_lists = np.column_stack((rings.block, rings.first, rings.count)), rings.item, rings.side
+    fields = (KNB, KR, KLB, *AHEAD, *BACK)
+    steps = tuple(state.offset[name] - 1 for name in fields)
+    for k, which, noted, wanted in told(
+        ILL_LINKED, len(rings.item), 4, state.h.ia, *of_lists, rings.before, rings.corner, steps
+    ).tolist():
+        item, block, name = rings.item[k], rings.block[rings.owner[k]], fields[which]
+        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {noted}"
+        if name == KNB:
+            why = f"the corner stands in the list of block@{block}"
+        elif name == KR:
+            why = f"clockwise corner@{wanted} precedes it"
+        elif name in AHEAD:
+            why = f"the first corner after it on block@{block} is {wanted}"
+        else:
+            why = f"{state.link(int(block), wanted)} leads to it, on block@{block}"
+        state.report(3, f"{what}, but {why}")
 
 
 def _check_contacts(state: State) -> None:
@@ -98,7 +83,7 @@ def _check_contacts(state: State) -> None:
         state.report(4, f"contact@{contacts[k]} names block@{one[k]} in {HOSTS[0]} and in {HOSTS[1]}")
     for name, block, at in zip(HOSTS, (one, two), rings.at, strict=True):
         out = np.flatnonzero((at < 0) & (one != two))
-        for k in out[np.isin(block[out], rings.block)]:
+        for k in out[np.isin(block[out], rings.block)] if len(out) else out:
             state.report(
                 4,
                 f"contact@{contacts[k]} names block@{block[k]} in {name}, but is not in the block's list",

@@ -32,14 +32,11 @@ def check_outer(state: State) -> None:
         return
     if len(rings.block) < len(state.address["block"]) or len(domains) < 2:
         return
-    if not len(rings.item) or (rings.row < 0).any():
+    if not len(rings.item) or (rings.row < 0).any() or (rings.at < 0).any():  # a block's part is missing
         return
-    corners, contacts = (
-        np.column_stack([state.column(kind, name) for name in names])
-        for kind, names in (("corner", ("KXP", "KYP")), ("contact", ("KXC", "KYC")))
-    )
-    places = np.empty((len(rings.item), 2))
-    PLACE_ITEMS(len(places), rings.contact, rings.row, corners, contacts, *corners.mean(axis=0), places)
+    places, fields = np.empty((len(rings.item), 2)), ("KXP", "KYP", "KXC", "KYC")
+    reals = tuple(state.offset[name] for name in fields)
+    PLACE_ITEMS(len(places), state.h.ra, rings.item, rings.contact, state.ratio, reals, places)
     virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     named = np.array([state.rows("domain", state.column("contact", side)) for side in SIDES])
     twice = np.zeros(len(domains))

@@ -9,26 +9,22 @@ import numpy as np
 
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
+from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import INDEX, Numbers
-from udec_ia.kernels.audit.outlines import Outlines, fill_circles, measure
+from udec_ia.kernels.audit.outlines import (
+    Outlines,
+    fill_blocks,
+    fill_circles,
+    measure,
+    short_edges,
+    wrong_circles,
+)
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
-MEASURE, CIRCLES = Sparing(measure, 7000), Sparing(fill_circles, 7000)  # blocks, in 0.1 s
-
-
-def dot(a: Numbers, b: Numbers) -> Numbers:
-    """Scalar products of two arrays of plane vectors."""
-    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
-
-
-def length(a: Numbers) -> Numbers:
-    """Lengths of plane vectors. Their squares are numbers: `outlines` sees to that."""
-    return np.asarray(np.sqrt(dot(a, a)))
-
-
-def cross(a: Numbers, b: Numbers) -> Numbers:
-    """Vector products of two arrays of plane vectors."""
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
+    Sparing(kernel, 7000)  # blocks, in 0.1 s
+    for kernel in (measure, fill_blocks, fill_circles, short_edges, wrong_circles)
+)
 
 
 def outlines(state: State) -> Outlines | None:
@@ -94,56 +90,44 @@ def check_outlines(state: State, o: Outlines) -> None:
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")
         return
-    from_first = o.p - o.p.take(o.first[o.owner], 0)
-    area = np.add.reduceat(cross(from_first, from_first[o.before]), o.first) / 2
-    for i in np.flatnonzero(~(area > 0)):
+    rows, blocks = state.rows("block", o.block), len(o.block)
+    area, far = extent(state, o, rows)
+    for b in np.flatnonzero(~(area > 0)):
         state.report(
-            7, f"the area inside the corners of block@{o.block[i]}, clockwise, is {area[i]}: not positive"
+            7, f"the area inside the corners of block@{o.block[b]}, clockwise, is {area[b]}: not positive"
         )
-    rows = state.rows("block", o.block)
-    roundings = 2.0 - o.pointed - o.pointed[o.before]
-    room, shortest = roundings * o.d, roundings * (o.d - state.tolerance("FTOL") / 2)
-    for i in np.flatnonzero(~(o.z >= shortest - 2 * o.slack[o.owner])):
+    for k, length, room in told(SHORT_EDGES, blocks, 3, o, state.tolerance("FTOL"), of=float).tolist():
+        i = int(k)
         state.report(
             7,
             f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
-            f"of block@{o.block[o.owner[i]]} is {o.z[i]} long, "
-            f"too short for its roundings, which take {room[i]}",
+            f"of block@{o.block[o.owner[i]]} is {length} long, "
+            f"too short for its roundings, which take {room}",
         )
-    _check_circles(state, o)
-    centroid = np.stack((state.column("block", "KX")[rows], state.column("block", "KY")[rows]), axis=1)
-    far = reaches(o, centroid)
-    noted = state.column("block", "KBRO")[rows]
-    for i in np.flatnonzero(np.abs(far - noted) > 2 * o.slack):
-        state.report(
-            7, f"KBRO of block@{o.block[i]} is {noted[i]}, but a corner is {far[i]} from the centroid"
-        )
-
-
-def circles(o: Outlines) -> tuple[Numbers, Numbers, Numbers]:
-    """Centre and radius of the circle that each corner's edges ask for; where it may as well have none."""
-    centre, radius, border = np.empty_like(o.p), np.empty_like(o.r), np.empty_like(o.pointed)
-    CIRCLES(len(o.block), o, centre, radius, border)
-    return centre, radius, border
-
-
-def reaches(o: Outlines, centroid: Numbers) -> Numbers:
-    """Distance of the farthest corner of each block from its centroid."""
-    return np.asarray(np.maximum.reduceat(length(o.p - centroid.take(o.owner, 0)), o.first))
-
-
-def _check_circles(state: State, o: Outlines) -> None:
-    """Centre and radius against those that the edges ask for.
-
-    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
-    (1 + (R/D)^2)/2 times as much.
-    """
-    centre, radius, border = circles(o)
-    slack = o.slack[o.owner] * (1 + (radius / o.d) ** 2)
-    wrong = (np.abs(o.r - radius) > slack) | (np.abs(o.c - centre).max(axis=1) > slack)
-    for i in np.flatnonzero(wrong & ~border):
+    for k, x, y, radius in told(WRONG_CIRCLES, blocks, 4, o, of=float).tolist():
+        i = int(k)
         state.report(
             7,
             f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}, "
-            f"KRAD {o.r[i]}, but its edges ask for {centre[i, 0]}, {centre[i, 1]}, {radius[i]}",
+            f"KRAD {o.r[i]}, but its edges ask for {x}, {y}, {radius}",
         )
+    noted = state.column("block", "KBRO")[rows]
+    for b in np.flatnonzero(np.abs(far - noted) > 2 * o.slack):
+        state.report(
+            7, f"KBRO of block@{o.block[b]} is {noted[b]}, but a corner is {far[b]} from the centroid"
+        )
+
+
+def extent(state: State, o: Outlines, rows: Numbers) -> tuple[Numbers, Numbers]:
+    """Area of each block, and distance of its farthest corner from the centroid. rows: of the blocks."""
+    area, far = np.empty(len(rows)), np.empty(len(rows))
+    centroid = np.column_stack([state.column("block", name)[rows] for name in ("KX", "KY")])
+    FILL_BLOCKS(len(rows), o, centroid, area, far)
+    return area, far
+
+
+def circles(o: Outlines) -> tuple[Numbers, Numbers]:
+    """Centre and radius of the circle that each corner's edges ask for."""
+    centre, radius = np.empty_like(o.p), np.empty_like(o.r)
+    FILL_CIRCLES(len(o.block), o, centre, radius)
+    return centre, radius

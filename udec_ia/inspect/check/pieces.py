@@ -15,7 +15,6 @@ import numpy as np
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.inspect.check.outlines import cross
 from udec_ia.inspect.reading import Numbers
 from udec_ia.kernels.audit.outlines import Outlines, rounded
 from udec_ia.layout import offsets as g
@@ -117,3 +116,8 @@ def _turns(polygon: Numbers, points: Numbers) -> Numbers:
         left = cross(a, b) > 0
         turns[i] = np.count_nonzero(up & left) - np.count_nonzero(down & ~left)
     return turns
+
+
+def cross(a: Numbers, b: Numbers) -> Numbers:
+    """Vector products of two arrays of plane vectors."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])

@@ -76,19 +76,16 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
     contacts = state.address["contact"][touch.row]
     block = state.column("contact", HOSTS[side])[touch.row]
     force = state.column("contact", "KCFN")[touch.row]
-    arc = (o.r[here.corner] > 0) | o.pointed[here.corner]
-    idle = (touch.overlap <= 0) & (force == 0)
-    for k in np.flatnonzero(~arc & ~here.on_edge & ((touch.code == g.CORNER_CORNER) | idle)):
-        state.report(
-            7, f"contact@{contacts[k]} stands on the arc of corner@{o.corner[here.corner[k]]}, which has none"
-        )
+    sharp = ~((o.r > 0) | o.pointed)
+    for k in np.flatnonzero(sharp[here.corner] & ~here.on_edge):
+        if touch.code[k] == g.CORNER_CORNER or (touch.overlap[k] <= 0 and force[k] == 0):
+            corner = o.corner[here.corner[k]]
+            state.report(7, f"contact@{contacts[k]} stands on the arc of corner@{corner}, which has none")
     slack = state.tolerance("GTOL") + touch.slack
-    for beyond, step, corner, what in (
-        (here.under, -1, o.before[here.corner], "before the start"),
-        (here.over, 1, here.corner, "after the end"),
-    ):
+    for beyond, step, what in ((here.under, -1, "before the start"), (here.over, 1, "after the end")):
         for k in np.flatnonzero(beyond > slack):
-            concave = here.on_edge[k] and o.r[corner[k]] < 0
+            corner = here.corner[k] if step > 0 else o.before[here.corner[k]]
+            concave = here.on_edge[k] and o.r[corner] < 0
             waits = concave or _waits(state, int(touch.row[k]), side, step)
             far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
             if beyond[k] > far and not (concave and force[k] != 0):

@@ -9,12 +9,13 @@ import numpy as np
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
+from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import INDEX, Numbers
 from udec_ia.kernels.audit.outlines import Outlines
-from udec_ia.kernels.audit.standing import touching
+from udec_ia.kernels.audit.standing import OVERLAP, PLACE, touching, unlike
 from udec_ia.layout import offsets as g
 
-TOUCHING = Sparing(touching, 50_000)  # contacts, in 0.1 s
+TOUCHING, UNLIKE = Sparing(touching, 50_000), Sparing(unlike, 100_000)  # contacts, in 0.1 s
 
 
 class Touches(NamedTuple):
@@ -52,22 +53,22 @@ def touches(state: State, o: Outlines) -> Touches:
 def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
     """Invariant 7: overlap and place of each contact are those of the outlines, the overlap within DTOL2."""
     contacts = state.address["contact"][touch.row]
-    noted = state.column("contact", "KCN")[touch.row]
-    for k in np.flatnonzero(np.abs(noted - touch.overlap) > touch.slack):
-        state.report(
-            7,
-            f"KCN of contact@{contacts[k]} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
-            f"corner@{o.corner[touch.j[k]]} the outlines overlap by {touch.overlap[k]}",
-        )
-    where = np.stack([state.column("contact", name)[touch.row] for name in ("KXC", "KYC")], axis=1)
-    for k in np.flatnonzero(np.abs(where - touch.point).max(axis=1, initial=0.0) > touch.slack):
-        state.report(
-            7,
-            f"KXC, KYC of contact@{contacts[k]} are {where[k, 0]}, {where[k, 1]}, but the outlines meet at "
-            f"{touch.point[k, 0]}, {touch.point[k, 1]}",
-        )
+    noted, x, y = (state.column("contact", name)[touch.row] for name in ("KCN", "KXC", "KYC"))
     limit = state.tolerance("DTOL2")
-    for k in np.flatnonzero(np.maximum(noted, touch.overlap) > limit + touch.slack):
-        state.report(
-            7, f"the overlap of contact@{contacts[k]} is {max(noted[k], touch.overlap[k])}, DTOL2 is {limit}"
-        )
+    by_outlines = touch.overlap, touch.point, touch.slack
+    for k, what in told(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
+        contact, overlap = contacts[k], touch.overlap[k]
+        if what == OVERLAP:
+            state.report(
+                7,
+                f"KCN of contact@{contact} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
+                f"corner@{o.corner[touch.j[k]]} the outlines overlap by {overlap}",
+            )
+        elif what == PLACE:
+            state.report(
+                7,
+                f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}, but the outlines meet at "
+                f"{touch.point[k, 0]}, {touch.point[k, 1]}",
+            )
+        else:
+            state.report(7, f"the overlap of contact@{contact} is {max(noted[k], overlap)}, DTOL2 is {limit}")

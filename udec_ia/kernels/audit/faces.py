@@ -109,8 +109,15 @@ def areas(
 
 
 @over_arrays
-def place_items(contact: Any, row: Any, corners: Any, contacts: Any, x: float, y: float, places: Any) -> None:
-    """The place of each item from (x, y). corners, contacts: their places, by row (n x 2)."""
-    for k in range(len(contact)):
-        of_kind = contacts if contact[k] else corners
-        places[k, 0], places[k, 1] = of_kind[row[k], 0] - x, of_kind[row[k], 1] - y
+def place_items(reals: Any, items: Any, contact: Any, ratio: int, offsets: Any, places: Any) -> None:
+    """The place of each item (n x 2), from that of the first, a corner.
+
+    offsets: of x and y among the reals, counted from 1, of a corner and of a contact.
+    """
+    for k in range(len(items)):
+        base, of_kind = (items[k] - 1) // ratio - 1, 2 if contact[k] else 0
+        for axis in range(2):
+            places[k, axis] = reals[base + offsets[of_kind + axis]]
+    x, y = places[0, 0], places[0, 1]
+    for k in range(len(items)):
+        places[k, 0], places[k, 1] = places[k, 0] - x, places[k, 1] - y

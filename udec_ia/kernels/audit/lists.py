@@ -130,6 +130,46 @@ def lay_out_lists(
 
 
 @over_arrays
+def ill_linked(
+    words: Any, lists: Any, items: Any, side: Any, before: Any, corner: Any, steps: Any, found: Any
+) -> int:
+    """The number of links in the lists that are not what the lists say.
+
+    lists, items, side: as above; before, corner: items by their places. steps: of a corner, to the block, the
+    corner before and the item before; of a contact, to the corner ahead and the item before, both for each
+    side. found: item, place in `steps`, what stands there and should, for as many as there is room for.
+    """
+    n = 0
+    for r in range(len(lists)):
+        start, end = lists[r, 1], lists[r, 1] + lists[r, 2]
+        last = 0  # corner
+        for k in range(start, end):
+            last = items[k] if words[items[k] - 1] == g.MCOR else last
+        for k in range(start, end):
+            iad = items[k]
+            if words[iad - 1] == g.MCOR:
+                n = _compare(words, iad, steps, 0, lists[r, 0], k, found, n)
+                n = _compare(words, iad, steps, 1, last, k, found, n)
+                n = _compare(words, iad, steps, 2, items[before[k]], k, found, n)
+                last = iad
+            else:
+                n = _compare(words, iad, steps, 3 + side[k], items[corner[k]], k, found, n)
+                n = _compare(words, iad, steps, 5 + side[k], items[before[k]], k, found, n)
+    return n
+
+
+@over_arrays
+def _compare(words: Any, iad: int, steps: Any, which: int, wanted: int, k: int, found: Any, n: int) -> int:
+    """One more than n, and a row in `found`, if another word stands there than the one that is wanted."""
+    there = words[iad + steps[which]]
+    if there == wanted:
+        return n
+    if n < len(found):
+        found[n, 0], found[n, 1], found[n, 2], found[n, 3] = k, which, there, wanted
+    return n + 1
+
+
+@over_arrays
 def rows_of(
     addresses: Any, code: int, kind_at: Any, nth_at: Any, before: Any, row: Any, shift: int, found: Any
 ) -> None:

@@ -100,24 +100,83 @@ def turn_at(o: Outlines, k: int) -> float:
 
 
 @over_arrays
-def fill_circles(o: Outlines, centre: Any, radius: Any, border: Any) -> None:
-    """Centre and radius of the circle that each corner's edges ask for: D tan(theta/2).
+def fill_blocks(o: Outlines, centroid: Any, area: Any, far: Any) -> None:
+    """Area within the corners of each block, and how far the farthest is from its centroid (n x 2)."""
+    for b in range(len(o.block)):
+        first, twice, square = o.first[b], 0.0, 0.0
+        for k in range(first, first + o.count[b]):
+            j = o.before[k]
+            x, y = o.p[k, 0] - o.p[first, 0], o.p[k, 1] - o.p[first, 1]
+            twice += x * (o.p[j, 1] - o.p[first, 1]) - y * (o.p[j, 0] - o.p[first, 0])
+            x, y = o.p[k, 0] - centroid[b, 0], o.p[k, 1] - centroid[b, 1]
+            square = max(square, x * x + y * y)
+        area[b], far[b] = twice / 2, math.sqrt(square)
 
-    A flat corner and a point of an edge have none: radius 0, and the corner itself. border: True where it is
-    a matter of rounding whether a corner is flat.
+
+@over_arrays
+def short_edges(o: Outlines, spare: float, found: Any) -> int:
+    """The number of edges that cannot hold the roundings at their ends, which may overlap by `spare`.
+
+    found: corner at the end, length, and what the roundings take, for as many as there is room for.
     """
+    n = 0
     for k in range(len(o.corner)):
-        angle = turn_at(o, k)
-        bend = abs(math.sin(angle))
-        flat = min(BULGE * o.d * (1 / o.z[k] + 1 / o.z[o.after[k]]), FLAT)  # sine of a turn that is none
-        if o.r[k] != 0:
-            flat *= KEPT
-        bent = bend >= flat and not o.pointed[k]
-        radius[k] = o.d / math.tan(angle / 2) if bent else 0.0
-        reach = o.d if radius[k] != 0 else 0.0
-        centre[k, 0] = o.p[k, 0] - reach * o.t[k, 0] + radius[k] * o.t[k, 1]
-        centre[k, 1] = o.p[k, 1] - reach * o.t[k, 1] - radius[k] * o.t[k, 0]
-        border[k] = abs(bend - flat) < o.slack[o.owner[k]] / o.d and not o.pointed[k]
+        ends = (0 if o.pointed[k] else 1) + (0 if o.pointed[o.before[k]] else 1)
+        if not o.z[k] >= ends * (o.d - spare / 2) - 2 * o.slack[o.owner[k]]:
+            if n < len(found):
+                found[n, 0], found[n, 1], found[n, 2] = k, o.z[k], ends * o.d
+            n += 1
+    return n
+
+
+@over_arrays
+def circle_at(o: Outlines, k: int) -> tuple[float, float, float]:
+    """Centre and radius of the circle that the edges of corner k ask for: D tan(theta/2).
+
+    A flat corner and a point of an edge have none: the corner itself, and radius 0.
+    """
+    angle = turn_at(o, k)
+    if o.pointed[k] or not abs(math.sin(angle)) >= _flat_at(o, k):
+        return o.p[k, 0], o.p[k, 1], 0.0
+    radius = o.d / math.tan(angle / 2)
+    x, y = o.p[k, 0] - o.d * o.t[k, 0], o.p[k, 1] - o.d * o.t[k, 1]
+    return x + radius * o.t[k, 1], y - radius * o.t[k, 0], radius
+
+
+@over_arrays
+def _flat_at(o: Outlines, k: int) -> float:
+    """Sine of the turn below which corner k is a point of a straight edge."""
+    flat = min(BULGE * o.d * (1 / o.z[k] + 1 / o.z[o.after[k]]), FLAT)
+    return flat * KEPT if o.r[k] != 0 else flat
+
+
+@over_arrays
+def fill_circles(o: Outlines, centre: Any, radius: Any) -> None:
+    """Centre and radius of all corners, as circle_at has them."""
+    for k in range(len(o.corner)):
+        centre[k, 0], centre[k, 1], radius[k] = circle_at(o, k)
+
+
+@over_arrays
+def wrong_circles(o: Outlines, found: Any) -> int:
+    """The number of corners whose circle is not the one that their edges ask for.
+
+    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
+    (1 + (R/D)^2)/2 times as much. Where it is a matter of rounding whether a corner is flat, either will do.
+    found: corner, centre and radius, for as many as there is room for.
+    """
+    n = 0
+    for k in range(len(o.corner)):
+        x, y, radius = circle_at(o, k)
+        rounding = o.slack[o.owner[k]]
+        slack = rounding * (1 + (radius / o.d) * (radius / o.d))
+        if abs(o.r[k] - radius) > slack or abs(o.c[k, 0] - x) > slack or abs(o.c[k, 1] - y) > slack:
+            bend = abs(math.sin(turn_at(o, k)))
+            if o.pointed[k] or not abs(bend - _flat_at(o, k)) < rounding / o.d:
+                if n < len(found):
+                    found[n, 0], found[n, 1], found[n, 2], found[n, 3] = k, x, y, radius
+                n += 1
+    return n
 
 
 @over_arrays

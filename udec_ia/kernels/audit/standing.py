@@ -10,7 +10,8 @@ from udec_ia.kernels.audit.outlines import Outlines, deepest, end_of, start_of, 
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 
-PASSED_OVER = -2
+PASSED_OVER = -2  # a contact that stands in nobody's way
+OVERLAP, PLACE, LIMIT = 0, 1, 2  # what is wrong with a contact
 
 
 @over_arrays
@@ -30,6 +31,30 @@ def touching(o: Outlines, code: Any, i: Any, j: Any, overlap: Any, point: Any) -
             u, v = deepest(o, arc, x, y, True)
             overlap[k] = (u - o.p[edge, 0]) * x + (v - o.p[edge, 1]) * y
         point[k, 0], point[k, 1] = u - overlap[k] / 2 * x, v - overlap[k] / 2 * y
+
+
+@over_arrays
+def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, limit: float, found: Any) -> int:
+    """The number of things that contacts have other than the outlines, and of overlaps beyond the limit.
+
+    noted, x, y: what the contacts have. found: contact, and OVERLAP, PLACE or LIMIT, for as many as there is
+    room for.
+    """
+    n = 0
+    for k in range(len(noted)):
+        away = max(abs(x[k] - point[k, 0]), abs(y[k] - point[k, 1]))
+        for what in (OVERLAP, PLACE, LIMIT):
+            if what == OVERLAP:
+                is_wrong = abs(noted[k] - overlap[k]) > slack[k]
+            elif what == PLACE:
+                is_wrong = away > slack[k]
+            else:
+                is_wrong = max(noted[k], overlap[k]) > limit + slack[k]
+            if is_wrong:
+                if n < len(found):
+                    found[n, 0], found[n, 1] = k, what
+                n += 1
+    return n
 
 
 @over_arrays
