@@ -2,12 +2,16 @@
 
 A terminal obeys what it is sent. A name out of a file can hold escape sequences, marks that turn the line
 round, or bytes that are no text, and it can be as long as it likes: all that is not plainly visible becomes
-an escape, as Python writes it, and the end of what is long is left out.
+an escape, as Python writes it, and the end of what is long is left out. What is said in words keeps to the
+width of a terminal.
 """
 
 from __future__ import annotations
 
+from textwrap import TextWrapper
+
 NAME = 100  # characters of a name that somebody else has chosen
+WIDTH, INDENT = 80, "    "  # columns of a line, and what is before what does not fit
 MESSAGE = 2000  # characters of a whole message, in which there may be paths of the user's own
 
 
@@ -17,3 +21,17 @@ def printable(text: str, limit: int = NAME) -> str:
     if cut.isprintable():
         return cut
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
+
+
+def folded(text: str) -> str:
+    """`text`, with lines that are no wider than a terminal, unless a word is."""
+    return "\n".join(_folded(line) for line in text.split("\n"))
+
+
+def _folded(line: str) -> str:
+    if len(line) <= WIDTH:
+        return line
+    bare = line.lstrip(" ")
+    first = " " * (len(line) - len(bare))
+    words = TextWrapper(WIDTH, first, first + INDENT, break_long_words=False, break_on_hyphens=False)
+    return words.fill(bare)

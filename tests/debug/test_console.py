@@ -55,7 +55,7 @@ def test_stops_at_what_was_asked_for(tmp_path: Path) -> None:
     assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", again)[len(forward) :] == forward
     back = talk(tmp_path, "goto 61", "goto line 17", "break broken", *["rc"] * (len(forward) + 2))
     assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", back) == forward[::-1]
-    assert re.search(r"broken: contact@.*\nafter line 13: DELETE", back)
+    assert re.search(r"broken: contact@.*(\n    .*)*\nafter line 13: DELETE", back)
     assert "no break or watch was hit before" in back
 
 

@@ -24,6 +24,7 @@ from udec_ia.errors import UdecError
 from udec_ia.inspect.change import patch
 from udec_ia.inspect.look.atlas import TABLE
 from udec_ia.layout import offsets as g
+from udec_ia.printable import folded
 from udec_ia.signals import dealt_with, hold, passing
 
 INSIDE = ("pass", "group", "write")
@@ -97,8 +98,8 @@ class Console(Looks):
         return f"{int(self.debugger.array.h.ci[g.MCTOT])}{'' if not self.debugger.in_past else ' past'}"
 
     def say(self, text: str) -> None:
-        """Print a line."""
-        self.stdout.write(text + "\n")
+        """Print a line, or as many as it takes up."""
+        self.stdout.write(folded(text) + "\n")
 
     def tell(self, lines: Iterator[str]) -> None:
         """Print lines."""
@@ -310,7 +311,8 @@ class Console(Looks):
         stretch, _cycles = self.debugger.timeline.place(self.debugger.event)
         at = stretch.line if stretch else 0
         for number in range(max(at - LISTED, 1), min(at + LISTED, len(self.deck)) + 1):
-            self.say(f"{'->' if number == at else '  '} {number:4} {self.deck[number - 1].rstrip()}")
+            line = self.deck[number - 1].rstrip()
+            self.stdout.write(f"{'->' if number == at else '  '} {number:4} {line}\n")
 
     def do_print(self, text: str) -> None:
         """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), FRAC, 412."""

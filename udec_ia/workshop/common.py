@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.printable import folded
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing, Tables
@@ -92,7 +93,7 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
     try:
         found = look(args)
     except (IndexError, ValueError) as error:
-        print(f"udec {verb}: {error}", file=sys.stderr)
+        print(folded(f"udec {verb}: {error}"), file=sys.stderr)
         return MISUSE
     except UdecError as error:
         if error.number == DAMAGED and "file" in args:  # it is no run that has done this
