@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from naive import census as naive
 from udec_ia import Model
 from udec_ia.heap.accessors import puti
 from udec_ia.heap.census import census
+from udec_ia.heap.interpreting import Sparing
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
@@ -87,3 +89,26 @@ def test_groups_that_a_list_has_lost_are_told(build: str, skipped: int, said: st
     with pytest.raises(Unsound, match=re.escape(told)):
         m.table("contact")
     assert len(m.table("block")) == m.array.h.ci[g.NBLK]
+
+
+@pytest.mark.parametrize("build", ["i16r32", "i32r64", "i64r64"])
+def test_compiled_code_keeps_to_its_arrays(build: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the words are: it would end the process if it did not. A table is refused or whole."""
+    monkeypatch.setattr(Sparing, "at_once", True)
+    sound = [played(build, module, seed) for seed in (0, 3) for module in (scenes, soft_scenes)]
+    random = np.random.default_rng(11)
+    for trial in range(400):
+        model = sound[trial % len(sound)]
+        kept, top = model.array.h.ia.copy(), int(model.array.h.ci[g.MFREE]) - 1
+        many = int(random.integers(1, random.choice([4, 40, 300])))
+        limits = np.iinfo(kept.dtype)
+        some = np.array([0, 1, -1, top, top + 1, limits.max, limits.min], kept.dtype)
+        words = np.where(
+            random.random(many) < 0.5, random.choice(kept[:top], many), random.choice(some, many)
+        )
+        model.array.h.ia[random.integers(0, top, many)] = words
+        model.check()
+        for kind in ("contact", "corner", "zone"):
+            with suppress(Unsound):
+                assert len(model.table(kind)) >= len(census(model.array.h)[kind])
+        model.array.h.ia[:] = kept

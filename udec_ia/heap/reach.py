@@ -65,6 +65,8 @@ def reach(words: Any, ratio: int, shapes: Shapes, heads: Any, strict: bool, foun
     while found.many[SURE] or found.many[WAITING]:
         if not found.many[SURE]:
             _take_in(ratio, found)
+        if not found.many[SURE]:  # all that waited has been found as something else
+            return
         found.many[SURE] -= 1
         place = found.sure[found.many[SURE]]
         iad, kind = place * ratio + 1, found.kind_at[place]
