@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.reach import Shapes, reach, room_for
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, lay_out, read_table
@@ -31,7 +31,7 @@ CHOICES = {  # kinds that such a pointer can lead to
     "item": ("corner", "contact"),
     "soft": tuple(SOFT.values()),
 }
-REACH = Sparing(reach, 200_000)  # places where a group can begin, in 0.2 s
+REACH = Sparing(reach, 9e5, LOOKS)  # places where a group can begin
 
 
 def census(h: Any) -> dict[str, Any]:

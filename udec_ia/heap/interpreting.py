@@ -43,22 +43,34 @@ def interpreted() -> Iterator[None]:
         mode.python = before
 
 
+class Patience:
+    """For how many seconds kernels may run as Python in this process, all together that share it."""
+
+    def __init__(self, seconds: float) -> None:
+        self.left = seconds
+
+
+LOOKS = Patience(0.3)  # of what goes through a heap without changing it: census, checker, comparison
+
+
 class Sparing:
     """A kernel that a small model has little for: what it would cost to compile, Python does many times over.
 
-    It runs as Python until that has been handed `limit` groups in this process, and from then on compiled.
-    at_once: all of them run compiled from the first group on, which is how tools/ahead.py wants it.
+    It runs as Python as long as there is `patience`, of its own if none is given, and from then on compiled.
+    rate: groups that Python goes through in a second. at_once: all of them run compiled from the first group
+    on, which is how tools/ahead.py wants it.
     """
 
     at_once: ClassVar[bool] = False
 
-    def __init__(self, kernel: Callable[..., Any], limit: int) -> None:
-        self.kernel, self.left = kernel, limit
+    def __init__(self, kernel: Callable[..., Any], rate: float, patience: Patience | None = None) -> None:
+        self.kernel, self.rate = kernel, rate
+        self.patience = patience or Patience(0.1)
 
     def __call__(self, groups: int, *args: Any) -> Any:
         """Call the kernel with `args`. groups: how many it goes through."""
-        self.left -= groups
-        if self.left < 0 or self.at_once:
+        self.patience.left -= groups / self.rate
+        if self.patience.left < 0 or self.at_once:
             return self.kernel(*args)
         with interpreted():
             return self.kernel(*args)

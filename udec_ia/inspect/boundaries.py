@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
 from udec_ia.kernels.audit.lists import closed_lists
 from udec_ia.layout import offsets as g
 
-CLOSED_LISTS = Sparing(closed_lists, 1_000_000)  # places where a group could begin: in 0.1 s
+CLOSED_LISTS = Sparing(closed_lists, 1e7, LOOKS)  # places where a group could begin
 
 
 class Boundaries(NamedTuple):

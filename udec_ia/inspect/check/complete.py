@@ -23,7 +23,7 @@ from math import hypot, isqrt
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.check.touches import Touches
@@ -33,7 +33,7 @@ from udec_ia.kernels.audit.outlines import Outlines, in_rounded
 
 CHUNK = 100_000  # pairs of blocks looked at together
 AROUND = 8  # directions in which it is looked whether a block holds a point
-LONELY_MEETINGS, CROSSING = Sparing(lonely_meetings, 4000), Sparing(crossing, 4000)  # pairs, in 0.2 s
+LONELY_MEETINGS, CROSSING = Sparing(lonely_meetings, 1.7e4, LOOKS), Sparing(crossing, 2e4, LOOKS)  # pairs
 
 
 class Joined:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.slack import give_back
 from udec_ia.inspect.check.rings import lay_out
 from udec_ia.inspect.check.told import told
@@ -17,7 +17,7 @@ from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, na
 from udec_ia.kernels.audit.lists import STRETCH, astray, rows_of
 from udec_ia.layout import offsets as g
 
-ROWS_OF, ASTRAY = Sparing(rows_of, 100_000), Sparing(astray, 100_000)  # addresses, in 0.1 s
+ROWS_OF, ASTRAY = Sparing(rows_of, 1e6, LOOKS), Sparing(astray, 9e5, LOOKS)  # addresses
 
 LOST = "are in no group"  # what is said of words that no list leads to
 

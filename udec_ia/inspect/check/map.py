@@ -15,7 +15,7 @@ from collections import Counter
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
@@ -23,9 +23,9 @@ from udec_ia.kernels.audit.faces import cycles, passages, pieces
 from udec_ia.kernels.audit.lists import ill_linked
 from udec_ia.layout import offsets as g
 
-PASSAGES, CYCLES = Sparing(passages, 150_000), Sparing(cycles, 300_000)  # items, passages: in 0.1 s
-ILL_LINKED = Sparing(ill_linked, 50_000)  # items, in 0.1 s
-PIECES = Sparing(pieces, 60_000)  # contacts, in 0.1 s
+PASSAGES, CYCLES = Sparing(passages, 1.7e6, LOOKS), Sparing(cycles, 3e6, LOOKS)  # items, passages
+ILL_LINKED = Sparing(ill_linked, 5e5, LOOKS)  # items
+PIECES = Sparing(pieces, 6e5, LOOKS)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.inspect.check.groups import LOST, State
 from udec_ia.inspect.check.told import told
@@ -17,7 +17,7 @@ from udec_ia.inspect.reading import KIND_CODE, TABLE, Numbers
 from udec_ia.kernels.audit.lists import gaps
 
 JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
-GAPS = Sparing(gaps, 1_000_000)  # places where a group could begin, in 0.1 s
+GAPS = Sparing(gaps, 9e6, LOOKS)  # places where a group could begin
 
 
 def check_memory(state: State) -> None:

@@ -16,13 +16,13 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.errors import DISORDERED
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
 from udec_ia.kernels.audit.faces import areas, place_items
 from udec_ia.layout import offsets as g
 
-AREAS, PLACE_ITEMS = Sparing(areas, 100_000), Sparing(place_items, 200_000)  # items, in 0.1 s
+AREAS, PLACE_ITEMS = Sparing(areas, 9e5, LOOKS), Sparing(place_items, 1e6, LOOKS)  # items
 
 
 def check_outer(state: State) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import INDEX, Numbers
@@ -22,7 +22,7 @@ from udec_ia.kernels.audit.outlines import (
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
-    Sparing(kernel, 7000)  # blocks, in 0.1 s
+    Sparing(kernel, 7e4, LOOKS)  # blocks
     for kernel in (measure, fill_blocks, fill_circles, short_edges, wrong_circles)
 )
 

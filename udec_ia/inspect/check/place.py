@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.check.touches import Touches
@@ -21,8 +21,8 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g
 
-STANDING = Sparing(standing, 20_000)  # contacts, in 0.1 s
-DISORDERED = Sparing(disordered, 200_000)  # items, in 0.1 s
+STANDING = Sparing(standing, 2e5, LOOKS)  # contacts
+DISORDERED = Sparing(disordered, 2e6, LOOKS)  # items
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.inspect.check.told import told
@@ -15,7 +15,7 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import OVERLAP, PLACE, touching, unlike
 from udec_ia.layout import offsets as g
 
-TOUCHING, UNLIKE = Sparing(touching, 50_000), Sparing(unlike, 100_000)  # contacts, in 0.1 s
+TOUCHING, UNLIKE = Sparing(touching, 5e5, LOOKS), Sparing(unlike, 1e6, LOOKS)  # contacts
 
 
 class Touches(NamedTuple):

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.kernels.audit.lists import groups_along
 from udec_ia.layout import offsets as g
 
-GROUPS_ALONG = Sparing(groups_along, 1_000_000)  # words, in 0.1 s
+GROUPS_ALONG = Sparing(groups_along, 1e7, LOOKS)  # words
 LOST = -1  # the number of a group that matches none, and of what is no group
 
 

@@ -42,7 +42,7 @@ from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
-NOT_FINITE = Sparing(not_finite, 200)
+NOT_FINITE = Sparing(not_finite, 2e3)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 KINDS = {head.value: head.group for head in read_table().heads}
 REPORT_SECONDS = 0.2

@@ -27,7 +27,7 @@ from udec_ia.kernels.geometry.tensor import ROUND
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
-ADD_CONTACTS = Sparing(add_contacts, 200)  # in 0.1 s
+ADD_CONTACTS = Sparing(add_contacts, 2e3)
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
