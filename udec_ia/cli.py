@@ -178,6 +178,11 @@ def _main(argv: Sequence[str]) -> int:
     except StaleLayout as error:
         print(f"udec: {error}", file=sys.stderr)
         return ERROR
+    except MemoryError as error:
+        _last_of_output()
+        detail = str(error).partition(" for an array")[0]
+        print(f"udec: there is not enough memory{f': {detail}' if detail else ''}", file=sys.stderr)
+        return ERROR
     except BrokenPipeError:  # the reader of our output has gone: nobody is left to tell
         _last_of_output()
         return ERROR

@@ -129,6 +129,31 @@ def test_check_and_info_of_a_saved_run(in_folder: Path, capsys: pytest.CaptureFi
     assert capsys.readouterr().out
 
 
+NARROW = """
+import resource, sys
+from udec_ia.cli import main
+main(["info", "large.h5"])
+size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize() + 250 * 2**20
+resource.setrlimit(resource.RLIMIT_AS, (size, size))
+sys.exit(main(["convert", "large.h5", "to.h5", "--build", "i64r64"]))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the limit is set by what Linux tells")
+def test_memory_that_is_not_there_is_told(in_folder: Path) -> None:
+    """An array has room for 40 million words that its file need not hold: 160 MB, and 320 MB converted."""
+    model = Model("i32r64", mtop=40_000_000)
+    model.block(0, 0, 0, 1, 1, 1, 1, 0)
+    model.save("large.h5")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-c", NARROW]
+    done = subprocess.run(command, capture_output=True, timeout=120, env=environment, check=False, text=True)
+    assert done.returncode == 1
+    assert done.stderr.startswith("udec: there is not enough memory")
+    assert "Traceback" not in done.stderr
+    assert not Path("to.h5").exists()
+
+
 @pytest.mark.parametrize("verb", ["check", "info"])
 def test_a_foreign_file_is_refused(verb: str, in_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("foreign.h5").write_bytes(b"not a restart file")

@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scenes
+import soft_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Point, Polygon
 
 from udec_ia import Model
-from udec_ia.heap.interpreting import interpreted
+from udec_ia.heap.interpreting import Sparing, interpreted
+from udec_ia.inspect.check import check
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.outlines import outlines
 from udec_ia.kernels.audit import faces, lists
@@ -120,7 +123,8 @@ def test_what_lies_in_an_outline(corners: int, stretch: float, seed: int) -> Non
     """Of a star-shaped block, by shapely, at places that are not near its edges."""
     rng = np.random.default_rng(seed)
     angles = np.sort(rng.uniform(0, 2 * np.pi, corners))[::-1]
-    if (np.diff(np.append(angles, angles[0] - 2 * np.pi)) > -0.2).any():
+    turns = -np.diff(np.append(angles, angles[0] - 2 * np.pi))
+    if turns.min() < 0.2 or turns.max() > 3:  # too sharp a corner; or the origin is outside
         return
     ring = rng.uniform(2, 4, corners)[:, None] * np.column_stack((stretch * np.cos(angles), np.sin(angles)))
     model = Model()
@@ -162,3 +166,26 @@ def test_lists_around_blocks_close_or_are_left(along: tuple[int, ...], closes: b
     n, after = both(lists.closed_lists, words, np.array([1]), limits, steps, *room)
     assert after[-1].tolist() == [closes]
     assert after[-2][:n].tolist() == (list(along[:-1]) if closes else [])
+
+
+@pytest.mark.parametrize("module", [scenes, soft_scenes], ids=["rigid", "soft"])
+@pytest.mark.parametrize("build", ["i32r64", "i16r32"])
+def test_the_checker_says_the_same_in_both_forms(
+    build: str, module: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of states in which a few words or reals are wrong, whatever these are."""
+    monkeypatch.setattr(Sparing, "at_once", True)
+    array = module.play(3, Model(build), cycles=(2, 8)).model.array
+    random, h, kept = np.random.default_rng(2), array.h, array.h.ia.copy()
+    top, told = int(h.ci[g.MFREE]) - 1, 0
+    for trial in range(60):
+        h.ia[:] = kept
+        words, many = (h.ra, top // array.scheme.ratio) if trial % 3 else (h.ia, top)
+        at = random.integers(0, many, random.integers(1, 5))
+        some = [0, -1, top] if words is h.ia else [0, -1, np.nan, np.inf, 1e-3]
+        words[at] = words[random.integers(0, many, len(at))] if trial % 2 else random.choice(some, len(at))
+        found = [str(violation) for violation in check(array)]
+        with interpreted():
+            assert found == [str(violation) for violation in check(array)]
+        told += bool(found)
+    assert told > 30

@@ -81,8 +81,9 @@ def _on_arc_of_two(o: Outlines, k: int, other: int, place: Any) -> None:
     """On the arc of corner k, which must face the centre of the other arc."""
     after, x, y = o.after[k], o.c[other, 0] - o.c[k, 0], o.c[other, 1] - o.c[k, 1]
     place[0], place[1] = -(x * o.t[k, 0] + y * o.t[k, 1]), x * o.t[after, 0] + y * o.t[after, 1]
-    far = o.r[other] > BLUNT * o.d
-    place[2] = max(o.r[k], o.d) / math.sqrt(x * x + y * y) if far else 1.0
+    distance = math.sqrt(x * x + y * y)
+    far = o.r[other] > BLUNT * o.d and distance > 0
+    place[2] = max(o.r[k], o.d) / distance if far else 1.0
     place[3] = _along_arc(o, k, x, y)
 
 
