@@ -14,8 +14,8 @@ from contextlib import suppress
 from functools import cache
 from typing import Any
 
-TRIM_THRESHOLD, MMAP_MAX = -1, -4  # numbers of malloc.h
-ARRAY_LIMIT, KEPT_LIMIT = 2**25, 2**30  # bytes of one array that is kept, and of all together
+TRIM_THRESHOLD, MMAP_MAX = -1, -4  # numbers of malloc.h; the second: of arrays that the system gives singly
+KEPT_LIMIT = 2**30  # bytes that are kept, of all arrays together
 
 
 def keep_freed() -> None:

@@ -102,7 +102,7 @@ def _rounded(o: Outlines, corners: Numbers) -> Numbers:
 def _area(polygon: Numbers) -> float:
     """Area that a polygon runs around anticlockwise."""
     from_first = polygon - polygon[0]
-    return float(cross(from_first, np.roll(from_first, -1, axis=0)).sum() / 2)
+    return float(_cross(from_first, np.roll(from_first, -1, axis=0)).sum() / 2)
 
 
 def _turns(polygon: Numbers, points: Numbers) -> Numbers:
@@ -113,11 +113,11 @@ def _turns(polygon: Numbers, points: Numbers) -> Numbers:
         a = polygon - points[i]
         b = np.roll(a, -1, axis=0)
         up, down = (a[:, 1] <= 0) & (b[:, 1] > 0), (a[:, 1] > 0) & (b[:, 1] <= 0)
-        left = cross(a, b) > 0
+        left = _cross(a, b) > 0
         turns[i] = np.count_nonzero(up & left) - np.count_nonzero(down & ~left)
     return turns
 
 
-def cross(a: Numbers, b: Numbers) -> Numbers:
+def _cross(a: Numbers, b: Numbers) -> Numbers:
     """Vector products of two arrays of plane vectors."""
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
