@@ -58,7 +58,8 @@ def reached(
     strict: it is over as soon as groups have more words together than there are, as they lie in each other.
     """
     shapes, number = _our_shapes(ratio) if table is TABLE else _shapes(table, ratio)
-    ways = np.array([(number[kind], iad) for kind, iad in heads], np.int64).reshape(-1, 2)
+    known = [(number[kind], iad) for kind, iad in heads if kind in number]
+    ways = np.array(known, np.int64).reshape(-1, 2)
     places = (len(words) - 1) // ratio + 1  # groups begin on reals
     found = room_for(places)
     REACH(places, words, ratio, shapes, ways, strict, found)
@@ -97,7 +98,7 @@ def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
         for field in group.fields:
             if field.target is None or field.target == "any":
                 continue
-            kinds = CHOICES.get(field.target, (field.target,))
+            kinds = [kind for kind in CHOICES.get(field.target, (field.target,)) if kind in number]
             leads = soft if field.target == "soft" else [(number[kind], 0) for kind in kinds]
             word = layout.offset[field.name] + 1
             pointers += [(k, *to) for k in range(word, word + field.count) for to in leads]

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.walks import closed_lists
 from udec_ia.inspect.reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
-from udec_ia.kernels.audit.lists import closed_lists
 from udec_ia.layout import offsets as g
 
 CLOSED_LISTS = Sparing(closed_lists, 1e7, LOOKS)  # places where a group could begin

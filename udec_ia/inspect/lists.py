@@ -20,10 +20,10 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.walks import chains
 from udec_ia.inspect.boundaries import Boundaries, boundaries
 from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
 from udec_ia.inspect.walk import HEADS
-from udec_ia.kernels.audit.lists import chains
 
 CHAINS = Sparing(chains, 2e7, LOOKS)  # places where a group could begin
 

@@ -10,11 +10,11 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.slack import give_back
+from udec_ia.heap.walks import STRETCH, astray, rows_of
 from udec_ia.inspect.check.rings import lay_out
 from udec_ia.inspect.check.told import told
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
-from udec_ia.kernels.audit.lists import STRETCH, astray, rows_of
 from udec_ia.layout import offsets as g
 
 ROWS_OF, ASTRAY = Sparing(rows_of, 1e6, LOOKS), Sparing(astray, 9e5, LOOKS)  # addresses

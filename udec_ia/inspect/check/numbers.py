@@ -6,10 +6,10 @@ import numpy as np
 
 from udec_ia.heap.array import variable
 from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.reals import all_finite
 from udec_ia.inspect.check.codes import allowed
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.reading import TABLE
-from udec_ia.kernels.audit.numbers import all_finite
 
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 ALL_FINITE = Sparing(all_finite, 4e5, LOOKS)  # groups

@@ -17,9 +17,10 @@ import numpy as np
 
 from udec_ia.errors import DISORDERED
 from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.reals import place_items
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
-from udec_ia.kernels.audit.faces import areas, place_items
+from udec_ia.kernels.audit.faces import areas
 from udec_ia.layout import offsets as g
 
 AREAS, PLACE_ITEMS = Sparing(areas, 9e5, LOOKS), Sparing(place_items, 1e6, LOOKS)  # items

@@ -12,8 +12,8 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.walks import groups_along
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Word
-from udec_ia.kernels.audit.lists import groups_along
 from udec_ia.layout import offsets as g
 
 GROUPS_ALONG = Sparing(groups_along, 1e7, LOOKS)  # words
