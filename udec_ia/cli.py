@@ -23,12 +23,12 @@ from udec_ia.files import takes_files
 from udec_ia.layout.table import StaleLayout
 from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
-from udec_ia.workshop import VERBS as LOOKS
-from udec_ia.workshop import add_commands
+from udec_ia.workshop import LOOKS, add_commands
+from udec_ia.workshop import VERBS as WORKSHOP
 from udec_ia.workshop.common import given, variables, word_scheme
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", *LOOKS)
+VERBS = ("run", *WORKSHOP)
 
 
 def arguments() -> argparse.ArgumentParser:
@@ -162,7 +162,10 @@ def _main(argv: Sequence[str]) -> int:
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
-    args = arguments().parse_args(completed(argv))
+    line = completed(argv)
+    if line[0] in LOOKS:  # NumPy asks it when it is loaded; the system takes long to clear large pages
+        os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
+    args = arguments().parse_args(line)
     if args.checked and not _checked():
         print(
             "udec: --checked: kernels are already loaded: set UDEC_CHECKED=1 before they are", file=sys.stderr

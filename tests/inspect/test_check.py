@@ -440,6 +440,16 @@ def test_a_group_in_use_may_not_be_junk_too() -> None:
 BOUND = 2.0  # seconds; a sound map of this size takes some milliseconds
 
 
+def bounded(array: MainArray) -> list[Violation]:
+    """What the checker finds, in bounded time: if it had to compile, the second time."""
+    for _ in range(2):
+        start = perf_counter()
+        found = check(array)
+        if perf_counter() - start < BOUND:
+            return found
+    raise AssertionError("the checker takes too long")
+
+
 def small(name: str) -> MainArray:
     """The two blocks with some junk, in an array as small as it can be: garbage hits something there."""
     array = two_blocks(name)
@@ -474,9 +484,7 @@ def test_no_garbage_stops_the_checker(name: str, data: Any) -> None:
     array = small(name)
     write_anything(array, data)
     before = [part.tobytes() for part in array.h]
-    start = perf_counter()
-    found = check(array)
-    assert perf_counter() - start < BOUND
+    found = bounded(array)
     assert all(1 <= violation.invariant <= 9 and violation.message for violation in found)
     assert [part.tobytes() for part in array.h] == before
 
@@ -489,7 +497,5 @@ def test_nothing_but_garbage(name: str, seed: int) -> None:
     array = small(name)
     top = int(array.h.ci[g.MFREE])
     array.h.ia[: top - 1] = random.integers(0, random.choice([8, 50, top]), top - 1)
-    start = perf_counter()
-    found = check(array)
-    assert perf_counter() - start < BOUND
+    found = bounded(array)
     assert found

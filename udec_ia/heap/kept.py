@@ -11,10 +11,12 @@ numba also keeps apart what was compiled in different folders. Our cache is name
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from numba.core.caching import IndexDataCacheFile
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.runtime import rtsys
 
 
 class KeptCode(IndexDataCacheFile):
@@ -36,8 +38,28 @@ class KeptCode(IndexDataCacheFile):
         return str(self._data_name(int(hashlib.sha256(str(key).encode()).hexdigest()[:12], 16)))
 
 
+class _Cache(FunctionCache):
+    """What numba asks for the machine code of a kernel before it compiles it. folder: where our files are.
+
+    numba makes ready to compile before it asks, which takes longer than to read a dozen kernels. What machine
+    code needs to run, which is numba's memory for arrays, is made ready here, and the rest if there is none.
+    """
+
+    def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
+        super().__init__(kernel)
+        self._impl.locator._cache_path = str(folder)
+        self._cache_file = KeptCode(str(folder), self._impl.filename_base, None)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """What was kept for the types `sig`, or None."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            if kept := self._load_overload(sig, target_context):
+                return kept
+        target_context.refresh()
+        return None
+
+
 def keep_code(dispatcher: Any, folder: Path) -> None:
     """Have numba keep the machine code of `dispatcher` in files of our kind in `folder`."""
-    cache = dispatcher._cache
-    cache._impl.locator._cache_path = str(folder)
-    cache._cache_file = KeptCode(str(folder), cache._impl.filename_base, None)
+    dispatcher._cache = _Cache(dispatcher.py_func, folder)

@@ -124,9 +124,7 @@ class Forms:
     """
 
     def __init__(self, function: Callable[..., Any], folder: Path, apart: bool = False, **flags: Any) -> None:
-        self.whole = njit(cache=True, no_cfunc_wrapper=not apart, pipeline_class=_WholeCompiler, **flags)(
-            function
-        )
+        self.whole = njit(no_cfunc_wrapper=not apart, pipeline_class=_WholeCompiler, **flags)(function)
         keep_code(self.whole, folder)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags

@@ -33,7 +33,7 @@ def wanted() -> bool:
 def plain_kernel(function: Callable[..., Any], folder: Path, **flags: Any) -> Any:
     """`function` compiled. folder: where its machine code is kept; flags: as njit takes them."""
     KERNELS.add(function)
-    made = njit(cache=True, **flags)(function)
+    made = njit(**flags)(function)
     keep_code(made, folder)
     return made
 

@@ -12,7 +12,7 @@ and no list leads to has been lost, and that ends it in Unsound, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,12 +20,14 @@ import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import chains
+from udec_ia.heap.walks import astray, chains
 from udec_ia.inspect.boundaries import Boundaries, boundaries
 from udec_ia.inspect.reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
+from udec_ia.inspect.told import told
 from udec_ia.inspect.walk import HEADS
 
 CHAINS = Sparing(chains, 2e7, LOOKS)  # places where a group could begin
+ASTRAY = Sparing(astray, 9e5, LOOKS)  # addresses
 
 
 class Pointers(NamedTuple):
@@ -67,6 +69,24 @@ class Lists(Reading):
                 found, self.owner[kind] = self._hung(kind)
             self._enter(kind, found)
         return self.address[kind]
+
+    def pointers_astray(
+        self, kind: str, name: str, i: int, targets: Sequence[str], optional: bool
+    ) -> list[list[int]]:
+        """Row and value of each pointer of groups of `kind` that leads to none of the kinds `targets`
+        followed so far.
+
+        optional: 0 is no such pointer.
+        """
+        groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
+        where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
+        return [*told(ASTRAY, len(groups), 2, *where).tolist()]
+
+    def is_one(self, iad: int, kinds: Sequence[str]) -> bool:
+        """True if a group of the kinds `kinds` followed so far begins at the address `iad`."""
+        place, beside = divmod(iad - 1, self.ratio)
+        there = 0 <= place < len(self.kind_at) and not beside
+        return there and self.kind_at[place] in [KIND_CODE[kind] for kind in kinds]
 
     def tell_lost(self, *kinds: str) -> None:
         """Report groups of these kinds that the census knows, but no list leads to."""

@@ -43,9 +43,3 @@ def table(array: MainArray, kind: str) -> Any:
 def addresses(array: MainArray, kind: str) -> Any:
     """Addresses of all groups of `kind` in the order of the rows of their table. Raises as `table` does."""
     return Lists(array).addresses(kind)
-
-
-def all_addresses(array: MainArray) -> dict[str, Any]:
-    """The same of every kind."""
-    lists = Lists(array)
-    return {group.name: lists.addresses(group.name) for group in read_table().groups}

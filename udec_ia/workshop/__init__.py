@@ -12,6 +12,7 @@ from udec_ia.workshop import change, check, compare, debug, diverge, info, look,
 
 PARTS = (info, check, look, compare, change, debug, diverge, sweep, trade, view, verify)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
+LOOKS = tuple(verb for part in (check, look, compare, change) for verb in part.VERBS)  # which run nothing
 
 
 def add_commands(commands: Any) -> None:

@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import integers
 from udec_ia.heap.array import MainArray
+from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.look.atlas import Atlas, junk_list
 from udec_ia.inspect.look.names import called
-from udec_ia.inspect.reading import KIND_CODE, TABLE, TARGETS
-from udec_ia.inspect.table import all_addresses
+from udec_ia.inspect.reading import TABLE, TARGETS
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
@@ -32,9 +31,10 @@ def movable(array: MainArray) -> dict[str, Any]:
     words, free = len(array.h.ia), int(array.h.ci[g.MFREE])
     if not 1 <= free <= words + 1:
         raise Unsound(f"MFREE is {free}, which is no address in an array of {words} words")
-    found = all_addresses(array)
+    lists = Lists(array)
+    found = {group.name: lists.addresses(group.name) for group in TABLE.groups}
     _check_words(array, found)
-    _check_pointers(array, found)
+    _check_pointers(array, lists)
     return found
 
 
@@ -65,31 +65,16 @@ def _check_words(array: MainArray, found: dict[str, Any]) -> None:
         raise Unsound(f"the group that ends at word {end} and the one that begins at {begin} share words")
 
 
-def _check_pointers(array: MainArray, found: dict[str, Any]) -> None:
+def _check_pointers(array: MainArray, lists: Lists) -> None:
     """Unsound unless every pointer of a group or of the common block is 0 or leads to a group of its kind."""
-    h, free = array.h, int(array.h.ci[g.MFREE])
-    kind_at = np.zeros(free + 1, np.int8)  # the last one stands for all addresses where no group can be
-    for kind, at in found.items():
-        kind_at[at] = KIND_CODE[kind]
-
-    def astray(values: Any, target: str) -> Any:
-        """Where `values` are neither 0 nor addresses of groups that `target` means."""
-        inside = np.where((values >= 0) & (values < free), values, free)
-        good = np.zeros(len(KIND_CODE) + 1, bool)
-        good[[KIND_CODE[kind] for kind in TARGETS[target]]] = True
-        return np.flatnonzero(~good[kind_at[inside]] & (values != 0))
-
-    for kind, at in found.items():
-        for field in TABLE.group(kind).fields if len(at) else ():
-            for i in range(field.count if field.target else 0):
-                values = integers(h, at, getattr(g, field.name), i)
-                for row in astray(values, str(field.target))[:1]:
+    for kind, at in lists.address.items():
+        for field in TABLE.group(kind).fields:
+            targets = TARGETS[str(field.target)] if field.target else ()
+            for i in range(field.count if targets else 0):
+                for row, value in lists.pointers_astray(kind, field.name, i, targets, True)[:1]:
                     owner = name_at(array, int(at[row]))
-                    raise Unsound(
-                        f"{field.name} of {owner} points to {values[row]}, which is not a {field.target}"
-                    )
+                    raise Unsound(f"{field.name} of {owner} points to {value}, which is not a {field.target}")
     for field in TABLE.common:
-        if field.target:
-            value = h.ci[[getattr(g, field.name)]]
-            if len(astray(value, field.target)):
-                raise Unsound(f"{field.name} points to {value[0]}, which is no {field.target}")
+        value = lists.common(field.name) if field.target else 0
+        if value and not lists.is_one(value, TARGETS[str(field.target)]):
+            raise Unsound(f"{field.name} points to {value}, which is no {field.target}")

@@ -25,9 +25,9 @@ import numpy as np
 
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.told import told
 from udec_ia.inspect.check.touches import Touches
 from udec_ia.inspect.reading import HOSTS, Numbers
+from udec_ia.inspect.told import told
 from udec_ia.kernels.audit.meetings import EDGE, crossing, lonely_meetings
 from udec_ia.kernels.audit.outlines import Outlines, in_rounded
 

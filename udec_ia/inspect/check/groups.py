@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.slack import give_back
-from udec_ia.heap.walks import STRETCH, astray, rows_of
+from udec_ia.heap.walks import STRETCH, rows_of
 from udec_ia.inspect.check.rings import lay_out
-from udec_ia.inspect.check.told import told
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
 from udec_ia.layout import offsets as g
 
-ROWS_OF, ASTRAY = Sparing(rows_of, 1e6, LOOKS), Sparing(astray, 9e5, LOOKS)  # addresses
+ROWS_OF = Sparing(rows_of, 1e6, LOOKS)  # addresses
 
 LOST = "are in no group"  # what is said of words that no list leads to
 
@@ -82,7 +79,6 @@ class State(Lists):
     def forget(self) -> None:
         """Keep no column: what comes now needs others, and room."""
         self._columns.clear()
-        give_back()
 
     def leave_lists(self) -> None:
         """Keep no list either, nor where groups begin: what comes now looks at none."""
@@ -95,17 +91,6 @@ class State(Lists):
         before, row, code = self._before[kind], self._row[kind], KIND_CODE[kind]
         ROWS_OF(len(at), at, code, self.kind_at, self._nth_at, before, row, self._shift, found)
         return found.reshape(addresses.shape)
-
-    def pointers_astray(
-        self, kind: str, name: str, i: int, targets: Sequence[str], optional: bool
-    ) -> list[list[int]]:
-        """Row and value of each pointer of groups of `kind` that leads to none in use of the kinds `targets`.
-
-        optional: 0 is no such pointer.
-        """
-        groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
-        where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
-        return [*told(ASTRAY, len(groups), 2, *where).tolist()]
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""

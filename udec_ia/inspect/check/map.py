@@ -18,8 +18,8 @@ from udec_ia.counting import counted
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.walks import ill_linked
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import HOSTS, INDEX, KR, TABLE, Numbers, names
+from udec_ia.inspect.told import told
 from udec_ia.kernels.audit.faces import cycles, passages, pieces
 from udec_ia.layout import offsets as g
 

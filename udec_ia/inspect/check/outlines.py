@@ -9,8 +9,8 @@ import numpy as np
 
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.told import told
 from udec_ia.inspect.reading import INDEX, Numbers
+from udec_ia.inspect.told import told
 from udec_ia.kernels.audit.outlines import (
     Outlines,
     fill_blocks,

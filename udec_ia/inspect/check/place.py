@@ -14,9 +14,9 @@ import numpy as np
 
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.told import told
 from udec_ia.inspect.check.touches import Touches
 from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
+from udec_ia.inspect.told import told
 from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g

@@ -36,7 +36,7 @@ from udec_ia.inspect.translate.state import (
 )
 from udec_ia.layout.table import Field, Group, Table, lay_out
 
-PIECE = 16384  # groups that are written together: they fit in the machine's caches
+PIECE = 8192  # groups that are written together: they fit in the machine's caches
 
 
 def translate(state: Words, table: Table, scheme: Scheme) -> Words:
