@@ -12,7 +12,7 @@ import pytest
 from mechanics import G, at, block, box, model, on_base, push, sound, step
 
 from udec_ia import Model
-from udec_ia.layout.offsets import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND
+from udec_ia.layout.offsets import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND, WFRIC
 from udec_ia.ops.commands.energy import Balance
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -163,6 +163,20 @@ def test_broken_cohesion_is_accounted_for(cohesion: str) -> None:
     balance = m.balance()
     assert balance.friction > 0.1 * balance.throughput
     assert closes(balance)
+
+
+def test_what_friction_takes_does_not_need_an_account(tmp_path: Path) -> None:
+    """Shear that contacts lose as they open counts whether or not ENERGY is on: the same sum, bit for bit."""
+    sums = []
+    for on in (False, True):
+        m = on_base(1.0, 3.0, 0.1, 12.0, friction=50.0)
+        m.out = tmp_path
+        if on:
+            m.energy("on")
+        push(m, int(block(m, 0, 1.5)["address"]), xd=0.5, td=2.0)
+        m.cycle(3000)
+        sums.append(float(m.h.cd[WFRIC]))
+    assert sums[0] == sums[1] > 0
 
 
 def test_the_ball_closes() -> None:

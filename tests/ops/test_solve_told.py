@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from udec_ia import Model, UdecError
@@ -103,3 +104,40 @@ def test_the_word_that_was_typed_is_the_one_in_the_error(tmp_path: Path) -> None
     with pytest.raises(UdecError) as caught:
         stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1).run("FRACTION 2 SCALED\n")
     assert "FRACTION f SCALED" in f"{caught.value} {caught.value.advice}"
+
+
+def opening(out: Path) -> Model:
+    """An opening in 5 x 5 blocks, of joints that are far too rough to slip."""
+    m = Model(out=out)
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2500, kn=1e9, ks=1e9, friction=1e3)
+    m.round(0.02)
+    m.block(0, 0, 0, 5, 5, 5, 5, 0)
+    for y in range(1, 5):
+        m.split(-1, y, 6, y)
+    for y in range(5):
+        for x in np.arange(1 + y % 2 * 0.3, 5):
+            m.split(x, y - 0.01, x, y + 1.01)
+    for corner in (0, 4):
+        m.fix(corner, corner + 1, 0, 5)
+    m.fix(0, 5, 0, 1)
+    m.delete(1, 3, 1, 3)
+    return m
+
+
+def test_shear_that_is_lost_as_contacts_open_is_told(tmp_path: Path) -> None:
+    """Nothing slips, but gravity at once leaves other forces than gravity in ten steps."""
+    forces, told, why = [], [], []
+    for steps in (1, 10):
+        m = opening(tmp_path)
+        for k in range(1, steps + 1):
+            m.gravity(0, -10 * k / steps)
+            solution = m.solve(1e-5, static=True)
+            assert solution
+        contacts = m.table("contact")
+        forces.append(float(np.sqrt((contacts["KCFN"] ** 2 + contacts["KCFS"] ** 2).sum())))
+        told.append(solution.state)
+        why.append(solution.why)
+    assert abs(forces[0] / forces[1] - 1) > 0.01
+    assert told == ["joints slipped", ""]
+    assert "or opened and lost their shear: that took" in why[0]

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "0d90ff0604c322cb28ebd1c521c70e997b6dd58818f3fe9b459a0c1786789534"
+DIGEST = "5a4d19385dddd75e002fe1842032af218f38c8274a5981dd0e0c4aa19f574270"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -320,7 +320,7 @@ NCOMR = 1074
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle
-WFRIC = 1  # work done against friction so far
+WFRIC = 1  # work done against friction so far, and shear that was lost as contacts opened
 WBOUND = 2  # work of the boundary conditions since ENERGY ON
 WMASS = 3  # energy taken by mass damping and by INTERNAL since ENERGY ON
 WSTIF = 4  # energy taken by stiffness damping since ENERGY ON

@@ -18,10 +18,10 @@ import numpy as np
 
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.contact.joint_law import is_open
 from udec_ia.kernels.contact.notch import has_no_place, leave_notch
+from udec_ia.kernels.contact.springs import lose_shear
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
 from udec_ia.kernels.geometry.contact_geometry import faces
@@ -147,12 +147,9 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
 
 
 @inlined
-def opens(h: Memory, ic: int, account: Any) -> None:
-    """Contact `ic` overlaps no more, and loses what its springs held. account: as in ford_all."""
-    if account != 0 and getr(h, ic, g.KCFN) != 0:
-        zero = real(h, 0.0)
-        none = zero, zero
-        call_entry(account, h, ic, False, zero, none, none, none, none)
+def opens(h: Memory, ic: int) -> None:
+    """Contact `ic` overlaps no more, and loses what its springs held."""
+    lose_shear(h, ic, getr(h, ic, g.KCFS))
     no_force(h, ic)
 
 
@@ -176,7 +173,7 @@ def is_still(h: Memory, overlap: float) -> bool:
 
 
 @kernel
-def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
+def change(h: Memory, ic: int, own: bool) -> bool:
     """Bring contact `ic` up to date; False if it goes. own: whether it follows a law of the user's."""
     nx, ny, overlap = settle(h, ic)
     if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
@@ -187,7 +184,7 @@ def change(h: Memory, ic: int, own: bool, account: Any) -> bool:
         idle = overlap <= 0 or getr(h, ic, g.KCFN) == 0
     if idle and (not is_still(h, overlap) or has_no_place(h, ic)):
         if overlap <= 0 and not own:
-            opens(h, ic, account)
+            opens(h, ic)
         lost = loses(h, ic, overlap)
         if drop(h, ic, nx, ny, overlap):
             h.cd[g.WFRIC] += lost
@@ -211,15 +208,15 @@ def settle_all(h: Memory) -> None:
 
 
 @apart
-def change_map(h: Memory, waiting: Any, n: int, account: Any) -> bool:
+def change_map(h: Memory, waiting: Any, n: int) -> bool:
     """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
 
-    waiting: their addresses; negative if they follow a law of the user's. account: as in ford_all. ALL for
-    `n`: a command has changed the geometry, and all contacts follow it.
+    waiting: their addresses; negative if they follow a law of the user's. ALL for `n`: a command has
+    changed the geometry, and all contacts follow it.
     """
     if n == ALL:
         settle_all(h)
     for k in range(n):
-        if not change(h, abs(waiting[k]), waiting[k] < 0, account):
+        if not change(h, abs(waiting[k]), waiting[k] < 0):
             waiting[k] = 0
     return True

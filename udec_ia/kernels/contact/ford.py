@@ -79,7 +79,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     putr(h, ic, g.KCN, overlap)
     xd, yd = cvel(h, ic, soft)
     if not own and overlap <= zero:
-        opens(h, ic, account)
+        opens(h, ic)
         put_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
@@ -129,7 +129,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
                 n += 1
         ic = iget(h, ic, g.KC)
     if n > 0:
-        call_entry(change_map, h, waiting, int64(n), account)
+        call_entry(change_map, h, waiting, int64(n))
     for k in range(n):
         if waiting[k] != 0:
             ford(h, abs(waiting[k]), soft, joints, account, True)

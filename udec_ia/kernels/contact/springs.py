@@ -1,6 +1,6 @@
 """Constitutive number 1: a spring normal to the contact, one along it, and Coulomb friction; report 2.6.
 
-    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0, and what the shear spring held is lost
     dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
 
 The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
@@ -20,6 +20,15 @@ from udec_ia.layout import offsets as g
 
 
 @inlined
+def lose_shear(h: Memory, ic: int, fs: float) -> None:
+    """Contact `ic` opens: friction takes what its shear spring held, on the way to the shear force `fs`."""
+    held = getr(h, ic, g.KCFS)
+    if held != 0:
+        ks = h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
+        h.cd[g.WFRIC] += held * fs / (ks + ks)
+
+
+@inlined
 def by_springs(
     h: Memory, ic: int, before: float, closing: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
@@ -34,6 +43,7 @@ def by_springs(
     fn = getr(h, ic, g.KCFN) + kn * (getr(h, ic, g.KCN) - max(before, zero))
     fs = held + ks * dus
     if fn <= zero:
+        lose_shear(h, ic, fs)
         fn, fs = zero, zero
     strength = h.cr[g.COH + m] + h.cr[g.AMU + m] * fn
     dashpot = h.cr[g.BETA] * ks * sliding

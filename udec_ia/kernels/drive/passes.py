@@ -50,7 +50,7 @@ def passes(
         entry(note_loads, h) if keeps and loaded else 0,
         entry(note_stresses, h) if keeps and soft is not None else 0,
         entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
-        entry(change_map, h, NOBODY, 0, 0),
+        entry(change_map, h, NOBODY, 0),
         asked,
         entry(record, h, *recorded, asked) if recorded else 0,
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,

@@ -49,23 +49,17 @@ def note_contact(
     """What contact `ic` takes and gives in this step; it holds what it felt before, and its overlap of now.
 
     own: whether it follows a law of the user's. before: its overlap before. velocity: of block KB2 relative
-    to KB1. forces, dashpots: normal and shear force of now. A contact that opens is told of with zeros.
+    to KB1. forces, dashpots: normal and shear force of now.
     """
     (nx, ny), (xd, yd), (fn, _) = normal, velocity, forces
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    dt, zero = h.cr[g.TDEL], real(h, 0.0)
-    held, overlap, ks = getr(h, ic, g.KCFS), getr(h, ic, g.KCN), h.cr[g.AKS + iget(h, ic, g.KCM) - 1]
+    zero, overlap = real(h, 0.0), getr(h, ic, g.KCN)
     if own:
-        h.cd[g.WSTIF] += (dashpots[0] * closing + dashpots[1] * sliding) * dt
+        h.cd[g.WSTIF] += (dashpots[0] * closing + dashpots[1] * sliding) * h.cr[g.TDEL]
         if fn != zero and (before > zero or getr(h, ic, g.KCFN) != zero):
             note_corners(h, ic, fn, closing, overlap - before)
         return True
-    if overlap <= zero:
-        h.cd[g.WFRIC] += held * held / (ks + ks)
-        return True
-    if fn == zero:
-        h.cd[g.WFRIC] += held * (held + ks * (sliding * dt)) / (ks + ks)
-    elif before > zero:
+    if fn != zero and before > zero:
         note_corners(h, ic, fn, closing, overlap - before)
     if h.cr[g.BETA] != zero:
         was = zero, zero

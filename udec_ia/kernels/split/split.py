@@ -160,7 +160,7 @@ def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
-    return updating(h), entry(change_map, h, NOBODY, ALL, 0), entry(share, h, 0, 0) if soft is not None else 0
+    return updating(h), entry(change_map, h, NOBODY, ALL), entry(share, h, 0, 0) if soft is not None else 0
 
 
 @kernel

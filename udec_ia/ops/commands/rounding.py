@@ -99,7 +99,7 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
 
 def refresh(array: MainArray) -> None:
     """Bring contacts and domains up to date with a changed rounding length, whatever lies in what."""
-    change_map(array.h, NOBODY, ALL, 0)
+    change_map(array.h, NOBODY, ALL)
     flag_all(array.h)
     bring_up(array)
 

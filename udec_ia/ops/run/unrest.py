@@ -39,8 +39,10 @@ ONE_WAY, STEADY = 0.3, 0.5  # share and steady from which on blocks move on
 FASTER, SLOWER = 1.15, 0.87  # growth of what collapses, and of what settles
 FAR = 0.1  # of the rounding length: what moves less and does not slip has not lost its hold
 FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
-SLIPPED = 0.002  # of the strain energy: work of friction from which on the way is said to matter. Slip of a
-# hundredth of the elastic shear takes a fiftieth of the energy of shear, which may be a tenth of all
+SLIPPED = 0.0015  # of the strain energy: work of friction, and shear that contacts lost as they opened, from
+# which on the way is said to matter. Slip of a hundredth of the elastic shear takes a fiftieth of the energy
+# of shear, which may be a tenth of all (tools/studies/ways.py)
+ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
 AHEAD = 10_000  # cycles for which what still moves at rest is judged
 NAMED = 3  # blocks that are named
 STATES = (
@@ -243,16 +245,16 @@ class Unrest:
         return f"and yet it moves on, as fast as before: {named}; a smaller ratio would not be reached"
 
     def _slipped(self, h: Memory) -> str:
-        """What is said if friction has taken much on the way."""
+        """What is said if friction and opening contacts have taken much on the way."""
         taken = float(h.cd[g.WFRIC]) - self.looks[0].friction
         stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
         if taken <= SLIPPED * stored:
             return ""
         share = taken / stored if stored else np.inf
         return (
-            f"joints have slipped on the way{slipped_farthest(h)}: friction took {taken:.3g} J/m, "
-            f"{share:.1%} of what joints and blocks hold now, and where all rests may depend on the way; "
-            "load in steps, and compare"
+            f"joints have slipped on the way{slipped_farthest(h)}, or opened and lost their shear: that "
+            f"took {taken:.3g} J/m, {share:.2%} of what joints and blocks hold now, and where all rests may "
+            "depend on the way; load in steps, and compare"
         )
 
 
@@ -306,11 +308,16 @@ def at_strength(h: Memory) -> Any:
 
 
 def slipped_farthest(h: Memory) -> str:
-    """The contact that has slipped farthest since it closed: what its spring does not hold of its shear."""
+    """The contact that has slipped farthest since it closed: what its spring does not hold of its shear.
+
+    Nothing if none has slipped by more than what its spring has rounded.
+    """
     contacts, _, fs, m = _closed(h, springs=True)
     if not len(contacts):
         return ""
     held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
     slip = np.abs(np.asarray(getr(h, contacts, g.KCS), np.float64) - held)
     k = int(slip.argmax())
+    if slip[k] < ROUNDED * np.abs(held).max():
+        return ""
     return f", {place_of(h, int(contacts[k]))} by {slip[k]:.2g} m in all"
