@@ -55,6 +55,7 @@ from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Watch
 from udec_ia.transaction import beside, looking, once
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
+RESOLUTION = "resolution"  # what reals of few bits lose is told once, before the run or after it
 
 Ended = Callable[[int], None]
 
@@ -174,6 +175,7 @@ class Model(Files, Blocks, Numbers, Looks):
         moved = arrange(self.array)
         if moved is not None:
             self.renumber(moved)
+        self._runaway.drift.begin(self.array)
         watch = self.around(watch)
         report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])
@@ -201,6 +203,7 @@ class Model(Files, Blocks, Numbers, Looks):
             report.close()
         self.undo.afresh(self)
         self.keep(watch)
+        self.remark(self._runaway.drift.told(self.array), what=RESOLUTION)
         return done
 
     def _settle(self, watch: Watch | None) -> None:
@@ -229,7 +232,7 @@ class Model(Files, Blocks, Numbers, Looks):
         self.remark(on_joints(self.array))
         self.remark(on_loads(self.array))
         self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
-        self.remark(on_resolution(self.array), what="resolution")
+        self.remark(on_resolution(self.array), what=RESOLUTION)
 
     @once
     def history(

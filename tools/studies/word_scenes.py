@@ -15,7 +15,6 @@ import numpy as np
 from udec_ia import Model, UdecError
 from udec_ia.kernels.drive.unbalanced import force_ratio
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.ops.run.remarks import on_resolution
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LEFT_OUT = ("PLOT", "P ", "PRINT", "SAVE", "STOP", "END")
@@ -24,16 +23,22 @@ PARTED = 0.01  # of the farthest way that a block has gone: two runs have parted
 TURNS, SLICE = 7, 0.04  # of each scheme, by turns, and how long one takes at least, in s
 
 
+TOLD = {
+    "the last digit of coordinates": "before",
+    "may have moved places": "after",
+}  # the run, and words of it
+
+
 class Run(NamedTuple):
     """One scene in one scheme.
 
     model: None if IA() was too small. looks: of each, cycle and the centroids of all blocks, (n, 2).
-    digits: True if CYCLE warns of the last digits.
+    told: whether CYCLE or SOLVE warns of the last digits, one of TOLD; "no" if it does not.
     """
 
     model: Model | None
     looks: list[tuple[int, np.ndarray]]
-    digits: bool
+    told: str
 
 
 def wall() -> str:
@@ -100,14 +105,17 @@ def run(text: str, build: str) -> Run:
     """The deck `text` in the words of `build`."""
     with tempfile.TemporaryDirectory() as folder:
         m = Model(build, out=folder)
+        said: list[str] = []
         m.tell = m.inform = lambda _: None
         looks, begun = [], 0
         try:
             for line in pieces(text):
                 if not looks and line.upper().startswith(("CYC", "SOLVE")):
-                    m.run("CYCLE 0")  # which puts a large model's groups where they will stay
+                    said.append(
+                        m.run("CYCLE 0") or ""
+                    )  # which puts a large model's groups where they will stay
                     looks.append((0, centroids(m)))
-                m.run(line)
+                said.append(m.run(line) or "")
                 cycles, places = int(m.h.ci[MCTOT]), centroids(m)
                 if looks and len(looks[-1][1]) != len(places):
                     looks = [(cycles, places)]  # blocks were taken away: what counts is what comes of it
@@ -117,8 +125,12 @@ def run(text: str, build: str) -> Run:
         except UdecError as error:
             if error.number not in (1, 2):
                 raise
-            return Run(None, [], False)
-    return Run(m, looks, any(on_resolution(m.array)))
+            return Run(None, [], "no")
+    return Run(
+        m,
+        looks,
+        next((when for words, when in TOLD.items() if words in " ".join("".join(said).split())), "no"),
+    )
 
 
 def forces(m: Model) -> tuple[float, float]:

@@ -127,8 +127,8 @@ def loss(name: str, text: str, wide: Run, narrow: Run) -> str:
     places, most, every, parted = losses(wide, narrow)
     ends = [rest(text, one) for one in (wide, narrow)]
     cells = [f"{way(wide):.2g} m", *(f"{part:.0e}" for part in (places, most, every))]
-    said = "yes" if narrow.digits else "no"
-    return row(name, *cells, f"cycle {parted:,}" if parted else "-", ", ".join(dict.fromkeys(ends)), said)
+    parts = f"cycle {parted:,}" if parted else "-"
+    return row(name, *cells, parts, ", ".join(dict.fromkeys(ends)), narrow.told)
 
 
 def price(name: str, runs: dict[str, Run]) -> str:
@@ -154,7 +154,7 @@ def prices(parted: Curves) -> Iterator[str]:
     parted: takes how places part, by scene.
     """
     names = "places", "greatest force", "all forces", "part", "force ratio at the end, 64 and 32 bits"
-    yield head("32-bit reals lose", "way", *names, "told before the run")
+    yield head("32-bit reals lose", "way", *names, "told")
     taken = []
     for name, made in SCENES.items():
         text = made()

@@ -255,7 +255,7 @@ def cut_path(
             enter_box(h, blocks[n], boxes[n])
             n += 1
     if h.cr[g.DTOL] != rounding_length:
-        call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL), int64(0))
+        call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL))
         flag_all(h)
         return (DONE if call_entry(passes[UPDATE], h, int64(0)) else NO_MEMORY), n
     return (DONE if update_cracks(h, blocks, first, n, passes[UPDATE]) else NO_MEMORY), n

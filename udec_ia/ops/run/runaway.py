@@ -41,6 +41,7 @@ from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.chatter import JUDGE, Chatter
 from udec_ia.ops.run.damped import damped
+from udec_ia.ops.run.drift import Drift
 from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
 from udec_ia.ops.run.timestep import bound, instability, is_safe, kind_of, safe_fraction, shortened
@@ -75,13 +76,14 @@ class Account:
 class Runaway:
     """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last.
 
-    chatter: watches its contacts.
+    chatter: watches its contacts. drift: knows where its blocks were.
     """
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = Limit(np.inf, 0)
         self.chatter = Chatter(tell)
+        self.drift = Drift()
         self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
         self._warned = (0.0, 0.0)  # step, and what damping left of it
         self._suspected = self._own_laws = self._shortened = False
