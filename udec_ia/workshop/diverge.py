@@ -61,7 +61,8 @@ def add_commands(commands: Any) -> None:
         nargs=2,
         type=Path,
         metavar=("A.h5", "B.h5"),
-        help="files for the two states after that cycle",
+        help="files for the two states after that cycle (default: DECK-first.h5 and DECK-second.h5, in the "
+        "current folder)",
     )
 
 
@@ -153,10 +154,8 @@ def _said(found: Divergence, kept: list[Path]) -> list[str]:
 
 
 def _keep(args: argparse.Namespace, runs: list[Run], found: Divergence) -> list[Path]:
-    """Write both states."""
-    paths = args.keep or [
-        args.file.with_name(f"{args.file.stem}-{which}.h5") for which in ("first", "second")
-    ]
+    """Write both states; into the current folder, as `udec run` does."""
+    paths = args.keep or [Path(f"{args.file.stem}-{which}.h5") for which in ("first", "second")]
     for path, run, state in zip(paths, runs, found.states, strict=True):
         run.model.take_up(state.array(), run.model.deck_log)
         run.model.save(path.absolute(), force=True)
