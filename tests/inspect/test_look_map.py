@@ -16,7 +16,7 @@ from naive.names import names as naive_names
 from PIL import Image
 
 from udec_ia import Model
-from udec_ia.heap.accessors import puti
+from udec_ia.heap.accessors import puti, putr
 from udec_ia.inspect.look import Atlas, graph, heap_map
 from udec_ia.inspect.look.atlas import NAMES, UNUSED
 from udec_ia.inspect.look.cover import ACROSS, DOWN, cover, stretch
@@ -240,6 +240,18 @@ def test_pictures_are_files_of_their_type(scene: Model, tmp_path: Path) -> None:
     for draw in (heap_picture.draw, lambda _, path: place_picture.draw(atlas, block, path)):
         with pytest.raises(ValueError, match=r"a.dot: the name of a picture ends in .png or .svg"):
             draw(scene.array, tmp_path / "a.dot")
+
+
+@pytest.mark.parametrize("centre", [1e9, 1e15, -1e25])
+def test_what_would_be_named_far_outside_is_not(scene: Model, tmp_path: Path, centre: float) -> None:
+    """The address of a corner stands beside its arc, whose centre a damaged state may have anywhere."""
+    array = scene.array.copy()
+    block = int(scene.table("block")["address"][0])
+    for ip in scene.table("corner")["address"].tolist():
+        putr(array.h, ip, g.KXCP, centre)
+    atlas = Atlas(array.h)
+    place_picture.draw(atlas, block, tmp_path / "place.png")
+    assert (tmp_path / "place.png").stat().st_size > 1000
 
 
 @pytest.mark.parametrize(

@@ -245,7 +245,6 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
         "fontsize": 6,
         "zorder": 6,
         "bbox": label,
-        "clip_on": True,
     }
     inner = [(domain, TINTS[i % len(TINTS)]) for i, domain in enumerate(domains) if not domain.outer]
     faces, edges = [(tint, 0.35) for _, tint in inner], [tint for _, tint in inner]
@@ -255,7 +254,7 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
     )
     for domain, tint in inner:
         if np.ptp(domain.polygon, axis=0).max() * inches / POINT > LEGIBLE:
-            axes.text(*_middle(domain.polygon), str(domain.address), color=tint, **style)
+            axes.annotate(str(domain.address), _middle(domain.polygon), color=tint, **style)
 
 
 def _middle(polygon: Any) -> tuple[float, float]:
@@ -269,7 +268,10 @@ def _middle(polygon: Any) -> tuple[float, float]:
 
 
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
-    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read."""
+    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read.
+
+    Those outside of the picture are left out: what is damaged may lie where no letter can be drawn.
+    """
     middles = np.repeat(o.centroid, np.diff(o.first), axis=0)
     room = np.maximum.reduceat(np.abs(o.corner - middles).max(axis=1), o.first[:-1]) * 2.0 * inches / POINT
     style: dict[str, Any] = {"ha": "center", "color": INK, "zorder": 6}
@@ -283,4 +285,4 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
         if room[i] > ROOMY:
             corners = o.corner_address[o.first[i] : o.first[i + 1]]
             for (x, y), address in zip(beside_corners(o, int(i)), corners, strict=True):
-                axes.text(x, y, str(address), clip_on=True, va="center", fontsize=6, alpha=0.7, **style)
+                axes.annotate(str(address), (x, y), va="center", fontsize=6, alpha=0.7, **style)
