@@ -23,6 +23,7 @@ from udec_ia.inspect.table import table
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = [group.name for group in read_table().groups]
 CHAINED = {"sdef", "fdef", "zone", "gridpoint", "tabpoint"}
 
@@ -143,6 +144,24 @@ def test_blocks_that_have_moved_far(cycles: int) -> None:
     assert all(a == b for pairs in matched(before, m.array).values() for a, b in pairs)
     found = compare(before.h, m.array.h)
     assert {one.name for one in found.fields} == {"KX", "KXP", "KXCP", "KXC"}
+
+
+@pytest.mark.parametrize("cycles", [1000, 2500])
+def test_deformed_blocks_after_others_were_deleted(cycles: int, tmp_path: Path) -> None:
+    """Deformable blocks change their size, and one may come to look like another did: their mass stays."""
+    m = Model(out=tmp_path)
+    m.run((EXAMPLES / "collapse-small.dat").read_text().partition("DUMP")[0] + "DAMP 0.5 1 MASS\n")
+    m.cycle(400)
+    one = m.array.copy()
+    gone = {int(row["address"]) for row in m.table("block") if 20 < row["KX"] < 40 and 10 < row["KY"] < 20}
+    m.damping(0.05, 1.0, "mass")
+    m.delete(20, 40, 10, 20)
+    m.cycle(cycles)
+    found = Matching(one.h, m.array.h)
+    assert {*found.left("block")[0].tolist()} == gone
+    assert len(gone) == 4
+    assert not len(found.left("block")[1])
+    assert np.array_equal(*found.pairs["block"])  # no block that stays has got another address
 
 
 @pytest.mark.parametrize("build", ["i16r32", "i32r64"])

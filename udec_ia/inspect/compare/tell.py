@@ -152,11 +152,13 @@ def _row(found: Compared, one: Differing, row: int) -> tuple[Any, ...]:
     a, b = int(one.one[row]), int(one.two[row])
     name = COMMON_BLOCK if one.kind == COMMON else f"{one.kind}@{a}" + (f"/{b}" if a != b else "")
     field = f"{one.name}({a + 1})" if one.kind == COMMON and one.field.count > 1 else one.name
-    values = (
+    first, second = (
         _shown(side, one, values[row].item())
         for side, values in zip(found.matching.sides, one.values, strict=True)
     )
-    return name, field, *values, *_distances(one, row)
+    if first == second and isinstance(second, str):  # what has the name of a group there, and is not it
+        second += ", another"
+    return name, field, first, second, *_distances(one, row)
 
 
 def _shown(side: Side, one: Differing, value: int | float) -> int | float | str:
