@@ -135,10 +135,10 @@ def test_a_deck_that_goes_on_from_a_file(
     (tmp_path / "decks" / "other.h5").rename(tmp_path / "other.h5")
     monkeypatch.chdir(tmp_path)
     for restart, cycles in (
-        ("state.h5", 33),
-        ("other.h5", 33),
-        ("", 33),
-        ("state.h5\nSAVE\nCYCLE 2\nRESTART", 33),
+        ("state.h5", 3),
+        ("other.h5", 3),
+        ("", 3),
+        ("state.h5\nSAVE\nCYCLE 2\nRESTART", 5),
     ):
         for name, friction in (("one", 0.5), ("two", 0.49)):
             text = f"RESTART {restart}\nPROPERTY MAT=1 FRICTION={friction}\nCYCLE 3\n"
@@ -166,7 +166,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_all" in said["said"][0]
     assert main(["diff", *kept, "--only", "block.KYD"]) == 1
     assert main(["diverge", *kept, "--cycles", "3", "--tolerance", "1"]) == 0
-    assert capsys.readouterr().out.endswith("no difference in 34 cycles\n")
+    assert capsys.readouterr().out.endswith("no difference in 3 cycles\n")
     assert main(["diverge", str(one), "--builds", "i32r64,i64r64"]) == 0
     for wrong in ([str(one)], [str(one), "--builds", "i8"], [*kept, "--cycles", "-1"], [str(one), "no.dat"]):
         assert main(["diverge", *wrong]) == 2

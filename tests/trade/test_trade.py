@@ -14,6 +14,7 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.cli import main
+from udec_ia.layout import offsets as g
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.blame import Blame
@@ -212,3 +213,57 @@ def test_what_was_not_run_has_no_numbers(fall: Price) -> None:
     setting, numbers = fall.rows[0].setting, fall.rows[0].numbers
     (row,) = shown(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
     assert row == (setting.name, "", "", 2.0, "", "", 0, "not run: beyond the budget")
+
+
+MILD = (
+    f"{PROPERTIES}BLOCK 0 0 0 3 4 3 4 0\nSPLIT -1 1 5 1\nFIX 0 4 0 1\nROUND 0.1\nGRAVITY 0 -10\n"
+    "SOLVE 1E-5 STATIC\n"
+)
+
+
+def test_a_deck_that_begins_with_static_keeps_its_own_step_afterwards(tmp_path: Path) -> None:
+    """STATIC has a time-step for itself alone: the deck as it is is the deck, bit for bit."""
+    text = f"{MILD}GRAVITY 3 -10\nDAMPING 0.3 8\nCYCLE 200\nSTOP\nEND\n"
+    m = Model(out=tmp_path)
+    m.run(text.replace("STOP\nEND\n", ""))
+    price = priced(text, tmp_path, quantities=("way = mean block.DISPLACEMENT",))
+    own = next(row for row in price.rows if row.setting == Setting())
+    assert own.result is not None
+    assert own.result.time == float(m.h.cd[g.TIME])
+    runs = segments(tmp_path / RUNS / own.setting.name)
+    assert [one.static for one in runs] == [False, False]  # a file does not say so
+    assert runs[1].step == float(m.h.cr[g.TDEL])
+    assert price.fraction == 0.1
+    assert {1.0, 0.5} <= {row.setting.step for row in price.rows}
+
+
+def test_steps_are_not_tried_where_static_is_all(tmp_path: Path) -> None:
+    price = priced(MILD, tmp_path, quantities=("way = mean block.DISPLACEMENT",))
+    assert {(row.setting.step, row.setting.safe, row.setting.static) for row in price.rows} == {(1, 0, False)}
+    assert price.best is not None
+    assert not any("FRACTION" in line for line in changes(price, price.best))
+    assert not any("power" in line for line in sentences(price))
+
+
+def test_a_deck_that_goes_on_from_a_file_keeps_its_fraction(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.run(f"{WALL}FRACTION 0.05\nCYCLE 10\nSAVE a.h5\n")
+    price = trade(
+        "RESTART a.h5\nCYCLE 60\n",
+        "x.dat",
+        {},
+        tmp_path / "out",
+        Options(builds=("i32r64",), jobs=0),
+        tmp_path,
+    )
+    assert price.fraction == 0.05
+    runs = segments(tmp_path / "out" / RUNS / SURVEYED)
+    assert runs[0].step == float(m.h.cr[g.TDEL])
+
+
+def test_a_scaled_step_is_not_tried_beyond_the_safe_bound(tmp_path: Path) -> None:
+    """FRACTION takes no more than 1 SAFE or SCALED."""
+    text = WALL.replace("FRAC 0.1", "FRACTION 0.9 SCALED") + "DAMPING LOCAL 0.5\nSOLVE 1E-3\n"
+    price = priced(text, tmp_path, quantities=("way = mean block.DISPLACEMENT",))
+    assert all(row.ran for row in price.rows if row.result is not None)
+    assert max(row.setting.step for row in price.rows) == 1

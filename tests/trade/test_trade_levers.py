@@ -29,7 +29,7 @@ CYCLE 7
 
 
 def lines(setting: Setting, numbers: Numbers | None = None, text: str = DECK) -> list[str]:
-    return Deck(text, "x.dat").written(setting, numbers).splitlines()
+    return Deck(text, "x.dat").written(setting, numbers, 0.1).splitlines()
 
 
 def test_the_deck_as_it_is_only_loses_what_shows() -> None:

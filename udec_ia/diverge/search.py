@@ -40,7 +40,7 @@ class Divergence(NamedTuple):
 def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
     """Where two runs differ first, or how many cycles they agree. Raises the UdecError that ends one."""
     before: tuple[Step, Step] | None = None
-    cycle = 0
+    agreed = 0
     for now in zip(one.steps, two.steps, strict=False):
         if now[0].cycle != now[1].cycle:
             raise UdecError(
@@ -50,13 +50,14 @@ def diverge(one: Run, two: Run, judge: Judge) -> Divergence | int:
                 "only runs with the same CYCLEs, and SOLVEs that end after as many cycles, can be compared",
             )
         cycle = now[0].cycle
+        agreed += max(cycle - before[0].cycle, 0) if before else 0  # START begins at 0 again
         off = judge.off(now[0].copy.array(), now[1].copy.array())
         if off is not None:
             if before is None or before[0].cycle == cycle:
                 return Divergence(cycle, "", off, now[0].line, (now[0].copy, now[1].copy))
             return _within((one, two), before, now, judge)
         before = now
-    return cycle
+    return agreed
 
 
 def _at(line: str) -> str:

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "5a4d19385dddd75e002fe1842032af218f38c8274a5981dd0e0c4aa19f574270"
+DIGEST = "84d9e892f6c8ec720c14fe79722f9ffbb63509013d28ddb8355c8ec3e38495b1"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

@@ -21,15 +21,18 @@ TIGHTER = 0.1  # ratio of SOLVE, from one level of the reference to the next
 def level(setting: Setting, k: int, deck: Deck) -> Setting:
     """The setting of the reference after `k` halvings."""
     ratio = TIGHTER**k if deck.has("solve") else 1.0
-    return replace(setting, step=2.0**-k, ratio=float(f"{ratio:.6g}"))
+    return replace(setting, step=2.0**-k if deck.is_stepped else 1.0, ratio=float(f"{ratio:.6g}"))
 
 
 def longer(deck: Deck, survey: Sequence[Segment], builds: Sequence[str]) -> list[Setting]:
     """Steps of the deck and above, as far as they can be stable, and what else is cheaper."""
     found: list[Setting] = []
+    if not deck.is_stepped:
+        found = [Setting(build) for build in builds]
+        return found + tighter(deck, found)
     for build in builds:
         step = 1.0
-        while step <= LONGEST * 1.01:
+        while step <= min(LONGEST * 1.01, deck.longest):
             one = Setting(build, rounded(step))
             if step == 1 or share_of_bound(survey, one) <= BEYOND:
                 found.append(one)
@@ -48,8 +51,10 @@ def tighter(deck: Deck, settings: Sequence[Setting]) -> list[Setting]:
     return [replace(one, ratio=one.ratio * TIGHTER) for one in settings]
 
 
-def shorter(builds: Sequence[str], finest: float) -> list[Setting]:
-    """Steps below that of the deck, down to `finest`."""
+def shorter(deck: Deck, builds: Sequence[str], finest: float) -> list[Setting]:
+    """Steps below that of the deck, down to `finest`, if they matter to it."""
+    if not deck.is_stepped:
+        return []
     found: list[Setting] = []
     step = 1 / RUNG
     while step > finest * 0.99:

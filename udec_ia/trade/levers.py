@@ -6,6 +6,7 @@ shows or saves is left out as a comment: it takes as long at any setting.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -108,6 +109,24 @@ class Deck:
         return self.has("solve") and all(call.positional[0] == 0 for call in calls)
 
     @property
+    def statics(self) -> list[bool]:
+        """Of each CYCLE and SOLVE, in order: whether it is SOLVE ... STATIC, whose step is its own."""
+        runs = ((one, name) for one, name in self._named() if name in ("cycle", "solve"))
+        return [name == "solve" and bool(parse(one).named.get("static")) for one, name in runs]
+
+    @property
+    def is_stepped(self) -> bool:
+        """True if the time-step that FRACTION gives matters to a CYCLE or SOLVE."""
+        return not all(self.statics)
+
+    @property
+    def longest(self) -> float:
+        """Times the time-step that FRACTION f SAFE and SCALED can be given, of which f is 1 at most."""
+        calls = (parse(one) for one, name in self._named() if name == "fraction")
+        safe = [call.positional[0] for call in calls if call.named.get("safe") or call.named.get("scaled")]
+        return 1 / max(safe) if safe else math.inf
+
+    @property
     def histories(self) -> int:
         """Number of statements HISTORY."""
         return self.commands[: self.obeyed].count("history")
@@ -136,12 +155,12 @@ class Deck:
 
     # ---- written anew
 
-    def written(self, setting: Setting, numbers: Numbers | None = None, fraction: float = 0.1) -> str:
-        """The deck for `setting`. fraction: what it begins with, where no line says so."""
+    def written(self, setting: Setting, numbers: Numbers | None = None, fraction: float | None = None) -> str:
+        """The deck for `setting`. fraction: what it begins with, where no line says so; None: it stays so."""
         numbers = numbers or Numbers()
         lines: list[str] = []
         run = 0  # CYCLEs and SOLVEs until here
-        told = "fraction" in self._until_run()
+        told = "fraction" in self._until_run() or not self.is_stepped
         for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
             if k >= self.obeyed:
                 lines += [line.text for line in one.lines]
@@ -149,7 +168,7 @@ class Deck:
             if name in ("cycle", "solve") and setting.types and run == 0:
                 lines += _types(setting.types)
             lines += self._line(one, name, setting, numbers, run)
-            if name in ("start", "restart") and not told:
+            if name in ("start", "restart") and not told and fraction is not None:
                 lines.append(_fraction(setting, numbers, fraction, ""))
             run += name in ("cycle", "solve")
         return "".join(f"{line}\n" for line in lines)

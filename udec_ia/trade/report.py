@@ -66,7 +66,8 @@ def _of_limits(price: Price) -> Iterator[str]:
         if one is None:
             yield f"{name}: no value, see log.txt in {price.path(price.levels[-1])}"
         elif name in price.known:
-            yield f"{name}: {one.value:.7g}, known to within {one.share:.1e} of it{_order(one)}"
+            order = "" if price.deck.has("solve") else _order(one)  # whose ratio is made smaller as well
+            yield f"{name}: {one.value:.7g}, known to within {one.share:.1e} of it{order}"
         else:
             known = [row.result.quantities[name] for row in price.rows if row.result and row.ran]
             yield (

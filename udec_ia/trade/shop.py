@@ -63,7 +63,7 @@ class Shop:
         self.wide = WIDE.get(options.build, options.build)
         self.builds = [*dict.fromkeys((self.wide, *(options.builds or (NARROW[self.wide],))))]
         self.survey: list[Segment] = []
-        self.fraction = 0.1
+        self.fraction: float | None = None  # what the deck begins with, as far as that matters
         self.rates: dict[str, cost.Rates] = {}
         self.left = options.budget  # seconds of the clock
         self._done: dict[str, list[Row]] = {}
@@ -101,7 +101,7 @@ class Shop:
         result = self.results([run])[0]
         self.survey = self._segments(SURVEYED)
         if self.survey:
-            self.fraction = self.survey[0].fraction
+            self.fraction = next((one.fraction for one in self.survey if not one.static), None)
             found, rehearsed = cost.rates(result, self.survey), dict(self.rates)
             apart = rehearsed[self.wide].apart if self.wide in rehearsed else found.apart
             found = cost.Rates(apart, found.each)  # without what limits need
@@ -169,4 +169,7 @@ class Shop:
             told.close()
 
     def _segments(self, name: str) -> list[Segment]:
-        return segments(self.folder / RUNS / name)
+        found = segments(self.folder / RUNS / name)
+        for one, static in zip(found, self.deck.statics, strict=False):  # a run may have failed half-way
+            one.static = static
+        return found

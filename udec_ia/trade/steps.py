@@ -42,6 +42,8 @@ def numbers(survey: Sequence[Segment], setting: Setting) -> Numbers:
 
 def _step(one: Segment, setting: Setting) -> float:
     """The time-step that a setting makes."""
+    if one.static:
+        return one.step
     return setting.safe * one.bound if setting.safe else setting.step * one.step
 
 
@@ -87,4 +89,5 @@ def _limits(survey: Sequence[Segment], longer: Sequence[float], setting: Setting
 
 def share_of_bound(survey: Sequence[Segment], setting: Setting) -> float:
     """The greatest share of the safe bound that a time-step of `setting` has; 0 if nothing bounds it."""
-    return max((_step(one, setting) / one.bound for one in survey if one.bound > 0), default=0.0)
+    own = [one for one in survey if one.bound > 0 and not one.static]
+    return max((_step(one, setting) / one.bound for one in own), default=0.0)

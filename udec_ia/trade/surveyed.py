@@ -35,7 +35,7 @@ class Segment:
 
     asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the
     estimate, or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0
-    if not asked for. seconds: of the processor, without compiling.
+    if not asked for. seconds: of the processor, without compiling. static: the deck says SOLVE ... STATIC.
     """
 
     asked: int
@@ -48,6 +48,7 @@ class Segment:
     bound: float
     done: int = 0
     seconds: float = 0.0
+    static: bool = False
 
 
 @dataclass(frozen=True)

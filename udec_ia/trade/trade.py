@@ -29,8 +29,8 @@ class Price:
     """The price list. rows: of all settings. limits: of the quantities, None without one.
 
     known: quantities that can be compared. levels: rows of the reference, the step halved from one to the
-    next. best: what to take. fraction: that the deck begins with. parted: where the finest runs part.
-    said: sentences.
+    next. best: what to take. fraction: that the deck begins with, None if that does not matter. parted: where
+    the finest runs part. said: sentences.
     """
 
     deck: Deck
@@ -41,7 +41,7 @@ class Price:
     limits: dict[str, Limit | None] = field(default_factory=dict)
     known: list[str] = field(default_factory=list)
     best: Row | None = None
-    fraction: float = 0.1
+    fraction: float | None = None
     parted: Parting | None = None
     said: list[str] = field(default_factory=list)
 
@@ -146,7 +146,7 @@ def _settings(price: Price, shop: Shop) -> None:
         steps = [row.setting.step for row in price.levels]
         finest = price.best.setting.step if price.best else min(steps, default=1.0)
         done = {row.setting for row in price.rows}
-        finer = candidates.shorter(shop.builds, finest)
+        finer = candidates.shorter(price.deck, shop.builds, finest)
         _try(
             price, shop, [one for one in [*finer, *candidates.tighter(price.deck, finer)] if one not in done]
         )

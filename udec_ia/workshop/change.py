@@ -86,7 +86,7 @@ def _convert_line(args: argparse.Namespace) -> str:
 def _convert_script(args: argparse.Namespace) -> str:
     imports = "from udec_ia.heap.words import scheme\nfrom udec_ia.inspect.change import convert"
     proof = "print(made.broken)" if args.force else "assert made.broken == []"
-    change = f"made = convert(state.array, scheme({args.build!r}))\nprint(made.said)\n{proof}"
+    change = f"made = convert(state.array, scheme({args.build!r}))\nprint(*made.said, sep='\\n')\n{proof}"
     return _script(args, imports, change, "made.array", _convert_line(args))
 
 
@@ -121,24 +121,33 @@ def _patch_line(args: argparse.Namespace) -> str:
 
 def _patch_script(args: argparse.Namespace) -> str:
     given = ", ".join(map(repr, args.assignments))
-    change = f"print(patch(state.array, {given}{', force=True' if args.force else ''}))"
+    change = (
+        f"done = patch(state.array, {given}{', force=True' if args.force else ''})\n"
+        "print(*(f'{one.what}: {one.value} -> {one.now}' for one in done.former), *done.broken, sep='\\n')"
+    )
     return _script(args, "from udec_ia.inspect.change import patch", change, "state.array", _patch_line(args))
 
 
 def _script(args: argparse.Namespace, imports: str, change: str, array: str, line: str) -> str:
+    _check_other(args)
     file, to = str(args.file), str(args.to)
     return SCRIPT.format(imports=imports, file=file, change=change, array=array, to=to, line=line)
 
 
 def _read(args: argparse.Namespace) -> Restored:
-    """All that FILE holds. Error 31 if TO is the same file."""
+    """All that FILE holds."""
     from udec_ia.restart import load_to_change
 
+    _check_other(args)
+    return load_to_change(args.file)
+
+
+def _check_other(args: argparse.Namespace) -> None:
+    """Error 31 if TO is FILE."""
     if args.to.exists() and args.file.exists() and os.path.samefile(args.file, args.to):
         raise UdecError(
             31, f"{args.to} is the file that is read", "give TO another name, and move the file afterwards"
         )
-    return load_to_change(args.file)
 
 
 def _write(

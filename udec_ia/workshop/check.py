@@ -22,7 +22,7 @@ from udec_ia.restart import see
 
 seen = see({file!r})  # of a model: model.check()
 found = check(seen.array)
-print(*seen.said, *found, *unjudged(seen.array, found), sep="\\n")"""
+print(*seen.said, *(found or ["sound"]), *unjudged(seen.array, found), sep="\\n")"""
 
 
 def add_commands(commands: Any) -> None:

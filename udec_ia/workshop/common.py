@@ -25,7 +25,7 @@ Script = Callable[[argparse.Namespace], str]
 def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> argparse.ArgumentParser:
     """A command that prints what `look` finds, or with --python the lines of `script`.
 
-    What `look` raises as IndexError or ValueError is a wrong argument. The parser that is returned has no
+    What these raise as IndexError or ValueError is a wrong argument. The parser that is returned has no
     arguments yet but --json and --python.
     """
     parser: argparse.ArgumentParser = commands.add_parser(verb, help=text, description=text)
@@ -87,10 +87,10 @@ def seconds(option: str, text: str) -> float:
 
 
 def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:
-    if args.python:
-        print(script(args))
-        return 0
     try:
+        if args.python:
+            print(script(args))
+            return 0
         found = look(args)
     except (IndexError, ValueError) as error:
         print(folded(f"udec {verb}: {error}"), file=sys.stderr)

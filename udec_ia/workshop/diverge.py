@@ -144,9 +144,10 @@ def _diverge(args: argparse.Namespace) -> Listing:
 def _said(found: Divergence, kept: list[Path]) -> list[str]:
     from udec_ia.printable import printable
 
-    when = (
-        f"in cycle {found.cycle}" if found.in_pass else f"after {counted(found.cycle, 'cycle')}, by commands"
-    )
+    when = f"in cycle {found.cycle}"
+    if not found.in_pass:
+        by = "by commands" if found.line else "before any of these"
+        when = f"after {counted(found.cycle, 'cycle')}, {by}"
     where = f", after the pass {found.in_pass}" if found.in_pass else ""
     line = f" of {printable(found.line)}" if found.line else ""
     names = " and ".join(printable(str(path)) for path in kept)
@@ -173,5 +174,6 @@ def _script(args: argparse.Namespace) -> str:
         "from udec_ia.diverge import Judge, diverge, of_deck, of_state\n\n"
         f"given = zip({paths}, {builds}, {_laws(args)}, {_values(args)})\n"
         f"runs = [{made} for path, build, laws, values in given]\n"
-        f"print(diverge(*runs, Judge({args.tolerance})))"
+        f"found = diverge(*runs, Judge({args.tolerance}))\n"
+        "print(found if isinstance(found, int) else (found.cycle, found.in_pass, found.line, *found.off))"
     )

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -44,17 +45,19 @@ class Call(NamedTuple):
 
     def script(self, path: Path) -> str:
         """The same in Python."""
-        given = [
-            self.subject,
-            *map(repr, self.given),
-            *(f"{name}={one!r}" for name, one in self.named.items()),
-        ]
+        named = (f"{name}={_literal(one)}" for name, one in self.named.items())
+        given = [self.subject, *map(_literal, self.given), *named]
         return (
             f"from udec_ia.inspect.look import Atlas\nfrom {self.module} import {self.function}\n"
             f"from udec_ia.restart import look_into\n\n"
             f"array = look_into({str(path)!r})  # of a model: model.array\natlas = Atlas(array.h)\n"
             f"print({self.function}({', '.join(given)}).as_text(), end='')"
         )
+
+
+def _literal(value: Any) -> str:
+    """A value as Python reads it."""
+    return f"float('{value}')" if isinstance(value, float) and not isfinite(value) else repr(value)
 
 
 def add_commands(commands: Any) -> None:

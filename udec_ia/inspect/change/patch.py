@@ -65,9 +65,10 @@ class Patched(NamedTuple):
 def patch(array: MainArray, *assignments: str, force: bool = False) -> Patched:
     """Make the assignments, each `PLACE = VALUE`, several with commas between them, and prove the state.
 
-    As after RSET the next CYCLE finds masses and time-step anew. Error 10 for what cannot be read or is not
-    there, 30 for an address outside the words in use, and 28 for a value that the word cannot hold or, unless
-    `force` is given, with which the state would not be sound. They leave it as it was.
+    As after RSET the next CYCLE finds the time-step anew, and before the first one the masses. Error 10 for
+    what cannot be read or is not there, 30 for an address outside the words in use, and 28 for a value that
+    the word cannot hold or, unless `force` is given, with which the state would not be sound. They leave it
+    as it was.
     """
     patches = read_patches(array, assignments)
     ready, array.h.ci[g.LREADY] = int(array.h.ci[g.LREADY]), 0

@@ -1,4 +1,4 @@
-"""Invariants 7 and 9: what holds for each number alone."""
+"""Invariants 5, 7 and 9: what holds for each real alone."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ import numpy as np
 from udec_ia.heap.array import variable
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.reals import all_finite
-from udec_ia.inspect.check.codes import allowed
+from udec_ia.inspect.check.codes import allowed, in_words
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.reading import TABLE
 
+COMMON = [field for field in TABLE.common if field.type != "int"]
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 ALL_FINITE = Sparing(all_finite, 4e5, LOOKS)  # groups
 
 
 def check_numbers(state: State) -> None:
-    """Invariants 7 and 9: reals are finite, and masses and areas not negative."""
+    """Invariants 5, 7 and 9: reals are finite; masses and areas, properties and dampings not negative."""
     for kind, addresses in state.address.items():
         finite = _all_finite(state, kind)
         for field in TABLE.group(kind).fields:
@@ -29,12 +30,13 @@ def check_numbers(state: State) -> None:
             for row in np.flatnonzero(bad):
                 number = 9 if field.name in FORCE_SUMS else 7
                 state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
-    sound = np.isfinite(state.h.cr).all() and np.isfinite(state.h.cd).all()
-    for field in TABLE.common if not sound else ():
+    for field in COMMON:
         values = variable(state.h, field)
-        for i in np.flatnonzero(~np.isfinite(values)):
+        finite = np.isfinite(values)
+        for i in np.flatnonzero(~(finite & allowed(field, values))):
             element = f"({i + 1})" if field.count > 1 else ""
-            state.report(7, f"{field.name}{element} is {values[i]}")
+            wanted = f", not {in_words(field)}" if finite[i] else ""
+            state.report(5 if finite[i] else 7, f"{field.name}{element} is {values[i]:g}{wanted}")
 
 
 def _all_finite(state: State, kind: str) -> bool:
