@@ -27,7 +27,7 @@ from udec_ia.heap.interpreting import mode
 from udec_ia.inspect.arrange import arrange
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
-from udec_ia.layout.offsets import MCTOT
+from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
@@ -138,7 +138,7 @@ class Model(Files, Blocks, Numbers, Looks):
 
     def _to_rest(self, ratio: float, limit: int, criterion: str, ended: Ended | None = None) -> Solution:
         """Up to `limit` cycles to rest; ended: as of _cycle."""
-        unrest, mean = Unrest(), criterion == MEAN
+        unrest, mean = Unrest(self._runaway.since_rest(self.array)), criterion == MEAN
         watch = Watch(self.array, self._recorder.series, ratio, mean, unrest)
         cycles = self._cycle(limit, watch, ended)
         h, kinds = self.array.h, soft_or_loaded_in(self.array.h)
@@ -162,6 +162,8 @@ class Model(Files, Blocks, Numbers, Looks):
             why,
         )
         self._recorder.solutions.append(solution)
+        if reached:
+            self._runaway.rested = float(h.cd[WFRIC])
         return solution
 
     def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
@@ -176,6 +178,7 @@ class Model(Files, Blocks, Numbers, Looks):
         if moved is not None:
             self.renumber(moved)
         self._runaway.drift.begin(self.array)
+        self._runaway.since_rest(self.array)
         watch = self.around(watch)
         report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])

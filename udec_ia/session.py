@@ -21,7 +21,7 @@ from udec_ia.inspect.table import table
 from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.log import Log, Step
-from udec_ia.ops.run.solution import worth_telling
+from udec_ia.ops.run.solution import in_short
 from udec_ia.ops.run.watch import Series, Watch
 from udec_ia.recorder import Recorder
 
@@ -143,7 +143,7 @@ class Session:
             self._files,
             perf_counter() - self._clock,
             compile_seconds() - self._compiled,
-            worth_telling(self._recorder.solutions),
+            in_short(self._recorder.solutions),
         )
 
     # ---- files

@@ -69,7 +69,7 @@ def test_blocks_that_are_cut_begin_anew(tmp_path: Path) -> None:
     m, said = Model("i32r32", out=tmp_path), list[str]()
     m.tell = said.append
     m.run(COLUMN)
-    m.cycle(900)
+    m.cycle(150)
     m.split(-1, 5, 3, 5)
-    m.cycle(900)
+    m.cycle(150)
     assert not any("moved places" in one for one in said)

@@ -141,3 +141,18 @@ def test_shear_that_is_lost_as_contacts_open_is_told(tmp_path: Path) -> None:
     assert abs(forces[0] / forces[1] - 1) > 0.01
     assert told == ["joints slipped", ""]
     assert "or opened and lost their shear: that took" in why[0]
+
+
+def test_what_slipped_in_a_cycle_before_is_not_forgotten(tmp_path: Path) -> None:
+    """Whether SOLVE runs all the way or a CYCLE goes before it; and rest begins anew what counts."""
+    states = []
+    for before in (0, 400):
+        m = stack(tmp_path, 2, 2.0, 1.0, kn=1e8, d=0.05)
+        m.property(1, friction=0.3)
+        m.gravity(2.9, -10)
+        m.fraction(0.3, safe=True)
+        m.damping(local=0.8)
+        m.cycle(before)
+        states.append(m.solve(1e-4).state)
+        states.append(m.solve(1e-4).state)
+    assert states == ["joints slipped", "", "joints slipped", ""]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import shutil
 from pathlib import Path
 
 import h5py
@@ -174,3 +175,33 @@ def test_names_of_folders() -> None:
     long = name_of({f"V{k}": math.pi for k in range(30)})
     assert len(long) < 140
     assert long != name_of({f"V{k}": math.pi for k in range(29)} | {"V29": 1})
+
+
+def test_what_solve_has_to_say_stands_in_the_table(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A run that ends without rest has ended, and its line says so."""
+    (pile / "pile.dat").write_text(PILE.partition("CYCLE")[0] + "SOLVE 1E-6 LIMIT $N\nSTOP\nEND\n")
+    found = sweep("pile.dat", {"F": 0.5, "N": [20, 30]}, quantities=("time",), jobs=0)
+    assert found.table.columns["status"] == ["ended", "ended"]
+    for text in found.table.columns["message"]:
+        assert text.startswith("SOLVE 1e-06 NOT REACHED (")
+    assert main(["sweep", "pile.dat", "--set", "F=0.5", "--set", "N=20,30", "--jobs", "0"]) == 0
+    assert "SOLVE 1e-06 NOT REACHED" in capsys.readouterr().out
+
+
+def test_a_file_in_the_place_of_a_run_goes(pile: Path) -> None:
+    """What stands in the folder of runs is ours: the run is done again."""
+    values = {"F": 0.5, "N": [10, 20]}
+    first = sweep("pile.dat", values, quantities=("time",), jobs=0)
+    here = pile / "pile-sweep" / "runs" / "F=0.5,N=10"
+    shutil.rmtree(here)
+    here.write_text("something else")
+    again = sweep("pile.dat", values, quantities=("time",), jobs=0)
+    assert [one.outcome for one in again.results] == [one.outcome for one in first.results]
+    assert here.is_dir()
+
+
+def test_a_sweep_of_nothing_is_refused(pile: Path) -> None:
+    with pytest.raises(ValueError, match="no variable is given a value"):
+        sweep("pile.dat", {}, jobs=0)
+    with pytest.raises(ValueError, match="F has the value 1000000 twice"):
+        sweep("pile.dat", {"F": "1e6,1000000", "N": 10}, jobs=0)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import Browser
-from pages import HOSTILE, Told, needs_browser, selected
+from pages import HOSTILE, Told, arrived, needs_browser, selected
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g
@@ -72,9 +72,11 @@ def test_a_damaged_state(browser: Browser, told: Told) -> None:
     assert browser.js("document.querySelector('#about summary').textContent").startswith("The checker finds ")
     assert browser.js("app.map.faults.size") > 1
     assert browser.js("app.picture.faults.length") > 1
+    browser.js("location.hash = 'at=1&state=3'")
+    arrived(browser, 1)
     browser.click_on("#about summary")
     browser.click_on("#about .fault a")
-    browser.wait(f"!location.hash.includes('at={first}&')")
+    browser.wait("!location.hash.includes('at=1&')")
     browser.js(f"location.hash = 'at={second}&state=3'")
     browser.wait(f"document.querySelector('#chosen h2').textContent === 'block@{second}'")
     row = "[...document.querySelectorAll('#chosen tr')].find((r) => r.cells[0].textContent.startsWith('KX'))"

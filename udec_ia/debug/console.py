@@ -18,6 +18,7 @@ from udec_ia.debug.places import place
 from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, shown
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
+from udec_ia.deck.parser import NO_DECK, RESTART_FILE
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
@@ -152,7 +153,7 @@ class Console(Looks):
         return self._forward(None)
 
     def do_step(self, text: str) -> bool:
-        """step [N]: go on by N events: cycles, or commands of the deck.
+        """step [N], step cycle: go on by N events: cycles, or commands of the deck.
 
         step pass | group | write: go on within the next cycle, which must have been run before.
         """
@@ -164,7 +165,7 @@ class Console(Looks):
             self.debugger.within(text, 1)
             self._here()
             return False
-        return self._forward(_count(text))
+        return self._forward(_count("" if text == "cycle" else text))
 
     def do_goto(self, text: str) -> bool:
         """goto CYCLE | goto line N | goto now: go to after a cycle, before a line, or to where the run is."""
@@ -383,8 +384,10 @@ def debug(
     """Run the text of a deck on `model` under the debugger, which stops before the first command.
 
     script: commands of the debugger, after which it ends; None asks for them. values: of the variables of the
-    deck. Raises the UdecError that ends the deck, after stopping there.
+    deck. Raises the UdecError that ends the deck, after stopping there, and 2 for a restart file.
     """
+    if deck.startswith(" ".join(RESTART_FILE)):  # in whose words one would look for variables first
+        raise UdecError(2, f"{name} is no deck", NO_DECK)
     lines, variables = deck.splitlines(), Variables(values)
     variables.check(lines, name)
     console = Console(model, out, lines, script or (), ends=script is not None)

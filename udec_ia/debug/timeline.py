@@ -230,4 +230,6 @@ class Timeline:
         for stretch in self.stretches:
             if stretch.runs and stretch.cycle <= cycle <= stretch.cycle + stretch.done:
                 return stretch.first + 1 + cycle - stretch.cycle
-        raise Gone(f"cycle {cycle} has not been run yet")
+        first = min((stretch.cycle for stretch in self.stretches if stretch.runs), default=cycle)
+        before = f"is before what was recorded, which begins with cycle {first}"
+        raise Gone(f"cycle {cycle} {before if cycle < first else 'has not been run yet'}")

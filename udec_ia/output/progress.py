@@ -14,7 +14,6 @@ from rich.text import Text
 
 from udec_ia.counting import counted
 from udec_ia.heap.compiling import working_time
-from udec_ia.ops.run.solution import Solution
 from udec_ia.printable import printable
 
 LINES = 10  # plain lines for one CYCLE command, at most
@@ -97,18 +96,18 @@ def summary(
     files: list[Path],
     wall: float,
     compiling: float = 0.0,
-    solutions: Sequence[Solution] = (),
+    solutions: Sequence[str] = (),
 ) -> str:
     """The line that ends every run.
 
     cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s,
-    `compiling` of it spent on compiling; solutions: each SOLVE of which there is something to be said.
+    `compiling` of it spent on compiling; solutions: what there is to be said of the SOLVEs.
     """
     names = ", ".join(printable(path.name) for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""
     written = f"wrote {names}{more}" if files else "no file written"
     compiled = f", {compiling:.1f} s of it compiling" if compiling >= SHOWN else ""
-    solve = "".join(f"; {one.short}" for one in solutions)
+    solve = "".join(f"; {one}" for one in solutions)
     return (
         f"{counted(cycles, 'cycle')} (t = {time:.4g} s), {counted(blocks, 'block')}, "
         f"{counted(contacts, 'contact')}, largest normal force {force:.4g} N/m{solve}; {written}; "

@@ -24,6 +24,7 @@ from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Variables
 from udec_ia.errors import UdecError
 from udec_ia.model import Model
+from udec_ia.ops.run.solution import in_short
 from udec_ia.study.memory import peak_memory, restart_peak
 from udec_ia.study.reading import read
 from udec_ia.study.runs import DECK, DIED, ENDED, ERROR, Result, Run, write
@@ -123,10 +124,12 @@ def _new(folder: Path, name: str) -> Path:
 def _publish(here: Path, there: Path) -> None:
     """Give the folder of a run its name. FileNotFoundError if somebody has cleared it away meanwhile."""
     (here / BEGUN).unlink()
-    if there.exists():
+    if there.is_dir() and not there.is_symlink():
         old = _new(there.parent, there.name)
         os.replace(there, old)
         shutil.rmtree(old)
+    else:
+        there.unlink(missing_ok=True)
     os.replace(here, there)
 
 
@@ -143,7 +146,7 @@ def _result(run: Run, here: Path, rehearsal: bool = False) -> Result:
             model = Model(run.build, out=here, constitutive=run.constitutive or None, name=name)
             observer = Observer(run, model, rehearsal)
             observer.obey(out)
-            status, message = observer.over or ENDED, observer.why
+            status, message = observer.over or ENDED, observer.why or "; ".join(in_short(model.solutions()))
             found, remarks = observer.quantities()
         except UdecError as failure:
             print(failure, file=out)

@@ -9,7 +9,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from udec_ia.counting import counted
 from udec_ia.printable import MESSAGE, printable
-from udec_ia.study.runs import DIED, ENDED, ERROR, Result
+from udec_ia.study.runs import DIED, ERROR, Result
 
 KEPT = "kept"
 
@@ -68,6 +68,6 @@ class Told:
 def told(result: Result) -> str:
     """A result on one line."""
     text = f"{result.name} {result.status}"
-    if result.status != ENDED:
+    if result.message:
         text += f", {result.message}"
     return printable(f"{text}, {counted(result.cycles, 'cycle')}, {result.seconds:.1f} s", MESSAGE)

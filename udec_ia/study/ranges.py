@@ -42,9 +42,11 @@ def values_of(name: str, given: Given) -> list[Value]:
         raise ValueError(f"{error.detail}: {error.advice}") from error
     if not found:
         raise ValueError(f"{name} has no value")
-    if len({*spellings}) < len(spellings):
-        twice = next(one for one in spellings if spellings.count(one) > 1)
-        raise ValueError(f"{name} has the value {twice} twice")
+    seen: set[Value] = set()
+    for value, spelling in zip(found, spellings, strict=True):
+        if value in seen or spelling in seen:  # 1000000 and 1e6 are one
+            raise ValueError(f"{name} has the value {spelling} twice")
+        seen |= {value, spelling}
     return found
 
 

@@ -90,11 +90,11 @@ class Result:
     """What has come of a run.
 
     status: "ended", "error", "stopped" by a rule, "timed out" at the limit, or "died" if the process did.
-    error: number of the error, 0 for none or one without a number. message: of the error, or the rule; "" for
-    a run that ended. quantities: in the order of the run's, NaN for those without a value. remarks: why they
-    have none. cycles, time (s): done until then. words: of IA() in use. seconds: of processor time without
-    compiling; wall_seconds: of the clock, with it. peak_memory: bytes that the process had at most, 0 where
-    that is not known. made_of: see Run. limit: of the run.
+    error: number of the error, 0 for none or one without a number. message: of the error, or the rule; of a
+    run that ended what its SOLVEs have to say, "" for nothing. quantities: in the order of the run's, NaN for
+    those without a value. remarks: why they have none. cycles, time (s): done until then. words: of IA() in
+    use. seconds: of processor time without compiling; wall_seconds: of the clock, with it. peak_memory: bytes
+    that the process had at most, 0 where that is not known. made_of: see Run. limit: of the run.
     """
 
     name: str

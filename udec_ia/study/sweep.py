@@ -59,6 +59,8 @@ def sweep(
     A run that fails is a result. Raises ValueError for what is given wrongly, UdecError 7 and 10 for
     variables of the deck, 31 if something cannot be written. Ctrl-C leaves the table of what is done.
     """
+    if not values:
+        raise ValueError("no variable is given a value, so there is one run and nothing to sweep")
     text, file = _read(deck)
     stem = Path(file).stem if file else "deck"
     folder = Path(f"{stem}-sweep" if out is None else out)

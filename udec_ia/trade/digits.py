@@ -84,8 +84,10 @@ def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
     """What limits a quantity."""
     if wide is None or narrow is None:
         return "too few runs have ended: see log.txt in their folders"
-    if wide.digits - narrow.digits < SHARE * (wide.full - narrow.full):
-        return "chaos: longer words give no more digits"
+    more, gained = wide.full - narrow.full, max(wide.digits - narrow.digits, 0.0)
+    if gained < SHARE * more:
+        sooner = "; the time-step takes more" if step < wide.lower else ""
+        return f"chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left{sooner}"
     lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
     if step < wide.lower:
         return f"the time-step; {lost}"

@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from udec_ia.study.runs import Result
+from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.levers import Deck, Numbers, Setting
 from udec_ia.trade.limit import limit, share
 from udec_ia.trade.shop import Shop
@@ -83,7 +83,8 @@ def _rows(
     for setting, result, value in zip(own, results, values, strict=True):
         factor = math.nan if lever == "types" else getattr(setting, PARTS[lever])
         off = found.error_of(value) if found else share(abs(value - values[0]), values[0])
-        what = result.message or (setting.types or "as it is" if lever == "types" else "")
+        what = result.message if result.status != ENDED else ""
+        what = what or (setting.types or "as it is" if lever == "types" else "")
         if found and not what:
             order = f"order {found.order:.2f}" if math.isfinite(found.order) else "no order"
             what = f"limit known to within {found.share:.1e}, {order}"

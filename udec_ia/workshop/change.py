@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
-from udec_ia.printable import printable
+from udec_ia.printable import folded, printable
 from udec_ia.workshop.common import Look, Script, command, file
 
 if TYPE_CHECKING:
@@ -168,5 +168,6 @@ def _write(
         said = [f"NOT written: {to}, which would not be sound; --force writes it", *listing.said]
         return Listing(said, ("violation",), [(str(one),) for one in broken], 1)
     save_changed(state, array, args.to, line, [str(one) for one in broken])
-    written = [f"written: {to}", *([f"NOT SOUND: {in_short(broken)}"] if broken else [])]
+    faults = folded(f"NOT SOUND: {in_short(broken)}").splitlines() if broken else []
+    written = [f"written: {to}", *faults]
     return listing._replace(said=[*written, *listing.said])

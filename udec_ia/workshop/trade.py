@@ -74,7 +74,12 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         _text(args), args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent
     )
     if args.half_step:
-        return Listing(price.said if len(price.levels) < 2 else half_step(price))
+        if len(price.levels) < 2:
+            failed = [row.result for row in price.rows if row.result and not row.ran]
+            return Listing(
+                [*price.said, *(f"{one.name} {one.status}: {one.message}" for one in failed)], status=1
+            )
+        return Listing(half_step(price))
     files = _files(price, args)
     written = [f"written: {', '.join(map(str, files))}"] if files else []
     return Listing([*sentences(price), *written], COLUMNS, shown(price), 0 if price.rows else 1)

@@ -62,8 +62,8 @@ class State(Lists):
         """Nothing: all pointers that lead astray are told together."""
 
     def violations(self) -> list[Violation]:
-        """What was found, each violation once, in the order of the invariants."""
-        return sorted(dict.fromkeys(self.found), key=lambda violation: violation.invariant)
+        """What was found, each once, in the order of the invariants; words that no list leads to last."""
+        return sorted(dict.fromkeys(self.found), key=lambda one: (not one.misleads, one.invariant))
 
     def tolerance(self, name: str) -> float:
         """A real of the common block."""

@@ -67,6 +67,12 @@ def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int
         return f"around domain@{start}", _once("item", (((iad, ib), iad) for iad, ib in loop(atlas.h, start)))
     if along in LINKS and start is not None:
         return f"from {start} along {along}", _linked(atlas, along, start)
+    if along in LINKS:
+        raise ValueError(f"a list along {along} begins at a {LINKS[along]}: give its ADDRESS as well")
+    if along in MAIN:
+        raise ValueError(
+            f"the {along} list begins at {MAIN[along]}: give no ADDRESS, or a field that links them"
+        )
     around = " and ".join(f"{kind} ADDRESS" for kind in AROUND)
     raise ValueError(
         f"no list {along}: there are {', '.join(MAIN)}; "

@@ -229,7 +229,17 @@ def _without_contact(array: MainArray, ip: int) -> UdecError:
         f"a contact in time: block@{ib} with its corner at ({x:g}, {y:g})"
     )
     advice = "take a greater KN, lower velocities, a smaller FRACTION or a greater ROUND"
-    return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=ip)
+    return UdecError(OVERLAP_TOO_GREAT, detail, _what_to_do(h, advice), group=ip)
+
+
+def _what_to_do(h: Memory, advice: str) -> str:
+    """The advice on blocks that have gone into each other, but where masses are scaled."""
+    if h.ci[g.LSCALE] == 0:
+        return advice
+    return (
+        "what falls with scaled masses goes by leaps: if the model collapses, CYCLE, or SOLVE with DAMPING "
+        "LOCAL 0.8 and without STATIC or SCALED, shows it"
+    )
 
 
 def _too_deep(array: MainArray, group: int) -> UdecError:
@@ -250,7 +260,7 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
         "of the critical one: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
-    return UdecError(OVERLAP_TOO_GREAT, detail, advice, group=group)
+    return UdecError(OVERLAP_TOO_GREAT, detail, _what_to_do(h, advice), group=group)
 
 
 def raise_error(array: MainArray, laws: LawBook) -> None:

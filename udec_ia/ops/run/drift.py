@@ -19,7 +19,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 
-ENOUGH = 1_000  # cycles, before which nothing is said
+ENOUGH = 200  # cycles, before which nothing is said
 LOST = 0.004  # of the farthest way, from which on it is said. What is more than the way has not moved at all
 
 

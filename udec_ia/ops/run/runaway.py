@@ -76,7 +76,8 @@ class Account:
 class Runaway:
     """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last.
 
-    chatter: watches its contacts. drift: knows where its blocks were.
+    chatter: watches its contacts. drift: knows where its blocks were. rested:
+    work of friction until it was at rest last, or was first looked at, in J/m; None before that.
     """
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
@@ -84,6 +85,7 @@ class Runaway:
         self.safe = Limit(np.inf, 0)
         self.chatter = Chatter(tell)
         self.drift = Drift()
+        self.rested: float | None = None
         self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
         self._warned = (0.0, 0.0)  # step, and what damping left of it
         self._suspected = self._own_laws = self._shortened = False
@@ -112,6 +114,13 @@ class Runaway:
         if said:
             self._shortened = True
             self.tell(said)
+
+    def since_rest(self, array: MainArray) -> float:
+        """Work of friction until the model was at rest last. ENERGY ON begins its sum anew."""
+        taken = float(array.h.cd[g.WFRIC])
+        if self.rested is None or taken < self.rested:
+            self.rested = taken
+        return self.rested
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
         """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow laws of the user's."""

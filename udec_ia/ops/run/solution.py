@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -99,6 +100,12 @@ class Solution(NamedTuple):
         if not self.reached:
             return f"{asked} NOT REACHED ({self.ratio:.3g}{f', {self.state}' if self.state else ''})"
         return f"{asked} reached, but: {self.state}" if self.state else ""
+
+
+def in_short(solutions: Sequence[Solution]) -> list[str]:
+    """What there is to be said of SOLVEs in a few words, each once, with how often it has been so."""
+    texts = Counter(one.short for one in worth_telling(solutions))
+    return [text + (f", {times} times" if times > 1 else "") for text, times in texts.items()]
 
 
 def worth_telling(solutions: Sequence[Solution]) -> list[Solution]:

@@ -102,6 +102,7 @@ def time_step(array: MainArray) -> float:
 
 NEAR = 0.8  # of the safe bound: from here on it is warned of impacts if nothing damps
 IMPACTS = 0.5  # of the safe bound: what is advised then
+HARDLY = 0.01  # by which a step that has become shorter is not worth a word
 LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
 
 
@@ -165,11 +166,11 @@ def _damping(h: Memory) -> tuple[str, str]:
 def shortened(array: MainArray, before: float, safe: Limit) -> str:
     """What is said of a SAFE time-step of `before` s that has become shorter in a run; "" if hardly."""
     h = array.h
-    now, then = f"{h.cr[g.TDEL]:.3g}", f"{before:.3g}"
-    if now == then:
+    now = float(h.cr[g.TDEL])
+    if now > (1 - HARDLY) * before:
         return ""
     return (
-        f"the SAFE time-step is {now} s instead of {then} s from cycle "
+        f"the SAFE time-step is {now:.3g} s instead of {before:.3g} s from cycle "
         f"{int(h.ci[g.MCTOT])} on: {_place(h, safe.address)} "
         "is held more stiffly than when the run began; it may become shorter still"
     )

@@ -58,13 +58,12 @@ STATES = (
 
 
 class Look(NamedTuple):
-    """cycle; x, y: centroids of all blocks; moving: kinetic energy; friction: its work until then, in J/m."""
+    """cycle; x, y: centroids of all blocks; moving: kinetic energy in J/m."""
 
     cycle: int
     x: Any
     y: Any
     moving: float
-    friction: float
 
 
 class Motion(NamedTuple):
@@ -79,9 +78,10 @@ class Motion(NamedTuple):
 
 
 class Unrest:
-    """Notes the way of one SOLVE."""
+    """Notes the way of one SOLVE. rested: work of friction until the model was at rest last, in J/m."""
 
-    def __init__(self) -> None:
+    def __init__(self, rested: float = 0.0) -> None:
+        self.rested = rested
         self.looks: list[Look] = []
         self.every = FIRST
         self._blocks: Any = np.zeros(0, np.int64)
@@ -104,7 +104,7 @@ class Unrest:
             return
         x, y = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KX, g.KY))
         moving = float(liveliest(h, soft_in(h))[0])
-        self.looks.append(Look(cycle, x, y, moving, float(h.cd[g.WFRIC])))
+        self.looks.append(Look(cycle, x, y, moving))
         if len(self.looks) > KEPT:
             self.looks, self.every = self.looks[::2], 2 * self.every
 
@@ -245,8 +245,8 @@ class Unrest:
         return f"and yet it moves on, as fast as before: {named}; a smaller ratio would not be reached"
 
     def _slipped(self, h: Memory) -> str:
-        """What is said if friction and opening contacts have taken much on the way."""
-        taken = float(h.cd[g.WFRIC]) - self.looks[0].friction
+        """What is said if friction and opening contacts have taken much since the last rest."""
+        taken = float(h.cd[g.WFRIC]) - self.rested
         stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
         if taken <= SLIPPED * stored:
             return ""
