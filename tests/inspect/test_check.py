@@ -12,10 +12,12 @@ from handmade import ROUNDING, SIDE, two_blocks
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.inspect.change import patch
 from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.walk import corners, groups
 from udec_ia.layout import offsets as g
@@ -499,3 +501,32 @@ def test_nothing_but_garbage(name: str, seed: int) -> None:
     array.h.ia[: top - 1] = random.integers(0, random.choice([8, 50, top]), top - 1)
     found = bounded(array)
     assert found
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("FRAC", -1.0),
+        ("ALPHA", -100.0),
+        ("BETA", -1e-3),
+        ("AMU(1)", -3.0),
+        ("DENS(1)", -5.0),
+        ("AKN(1)", -1e8),
+    ],
+)
+def test_numbers_of_the_common_block_are_in_their_ranges(name: str, value: float) -> None:
+    """What no command would take is told, and a patch with it is refused."""
+    array = two_blocks("i32r64")
+    with pytest.raises(UdecError, match=r"would not be sound: invariant 5: "):
+        patch(array, f"{name} = {value}")
+    found = patch(array, f"{name} = {value}", force=True).broken
+    assert [
+        one for one in found if one.message == f"{name} is {value:g}, not 0 or more" and one.invariant == 5
+    ]
+
+
+def test_what_kinetic_damping_remembers_may_be_negative() -> None:
+    """A kinetic energy between two half steps is a product of their velocities."""
+    array = two_blocks("i32r64")
+    array.h.cd[g.EMOVES] = -1e-3
+    assert not check(array)

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.table import require_current
 
-DIGEST = "84d9e892f6c8ec720c14fe79722f9ffbb63509013d28ddb8355c8ec3e38495b1"
+DIGEST = "a30ea6b73f79c7590ba08a30ef6984e23e1691cac9b5cce0ceadbbaacdab7f41"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
