@@ -61,7 +61,7 @@ def check_shapes(array: MainArray) -> list[Violation]:
 
 
 def check(array: MainArray) -> list[Violation]:
-    """All violations of the invariants in `array`, by their numbers, and lost words last; none when it is sound.
+    """All violations of the invariants in `array`, by number, lost words last; none when it is sound.
 
     A cycle that has stopped half-way, as the memory was full, has moved blocks that their contacts are yet to
     follow: these are not compared with the outlines then.
