@@ -50,15 +50,18 @@ class Fit:
         with np.errstate(over="ignore", under="ignore"):
             narrow = held.astype(to)
         back = narrow.astype(held.dtype)
-        lost = (back != held) & ~np.isnan(held)
+        lost = back != held
+        if not lost.any():
+            return narrow
+        lost &= ~np.isnan(held)
         self._note(lost & np.isinf(back), rows, field, held)
-        self.rounded += int(np.count_nonzero(lost))
-        self.vanished += int(np.count_nonzero(lost & (back == 0)))
-        kept = lost & (back != 0) & np.isfinite(back)
-        change = np.zeros_like(held)
-        change[kept] = np.abs((back[kept] - held[kept]) / held[kept])
+        was, now = held[lost], back[lost]
+        self.rounded += len(was)
+        self.vanished += int(np.count_nonzero(now == 0))
+        change = np.where((now != 0) & np.isfinite(now), np.abs((now - was) / was), 0.0)
         if change.max(initial=0.0) > self.change:
-            self.change, self.where = float(change.max()), _name(rows, field, int(np.argmax(change)))
+            place = np.flatnonzero(lost)[np.argmax(change)]
+            self.change, self.where = float(change.max()), _name(rows, field, int(place))
         return narrow
 
     def _note(self, bad: Any, rows: Rows, field: Field, held: Any) -> None:

@@ -25,7 +25,9 @@ class Places:
     """
 
     def __init__(self, state: Words, found: dict[str, Any] | None) -> None:
-        """found: addresses of the groups of every kind, if they are known and fill the words with junk."""
+        """found: addresses of the groups of every kind, if it is proved that they and junk fill the words,
+        and that all pointers lead to them.
+        """
         table, self.ratio, self.words = state.table, state.scheme.ratio, len(state.ia)
         self.old = {group.name: lay_out(group, self.ratio) for group in table.groups}
         self.known, self.stays, self.used = found is not None, False, self.words
@@ -93,6 +95,8 @@ class Places:
 
     def followed(self, pointers: Any, target: str) -> tuple[Any, Any]:
         """The new addresses of what `pointers` lead to, and where they lead to no `target` (nor are 0)."""
+        if self.known:  # which was proved of all pointers
+            return self._moved[self._places(pointers)], np.broadcast_to(np.False_, pointers.shape)
         kinds = list(self.at) if target == "any" else CHOICES.get(target, (target,))
         leads = np.zeros(len(self.at) + 1, bool)
         leads[[number for number, kind in enumerate(self.at, 1) if kind in kinds]] = True
