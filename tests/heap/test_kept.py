@@ -88,3 +88,32 @@ def test_a_second_process_does_not_compile_again(tmp_path: Path, monkeypatch: py
             assert compiled(number) == 6
             assert sum(compiled.whole.stats.cache_hits.values()) == hits * (1 + isinstance(number, float))
     assert len([*tmp_path.rglob("*.nbc")]) == 2
+
+
+TWICE = """
+import sys
+from udec_ia.heap.jit import kernel
+@kernel
+def twice(x: float) -> float:
+    return x + x
+print(twice(2.0), "numba.np.npyimpl" in sys.modules)
+"""
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_what_is_kept_runs_without_what_compiles(tmp_path: Path) -> None:
+    """numba makes ready to compile, which takes a while, only where there is nothing yet."""
+    environment = {**os.environ, "UDEC_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}
+    (tmp_path / "script.py").write_text(TWICE)
+    said = [
+        subprocess.run(
+            [sys.executable, str(tmp_path / "script.py")],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=120,
+        ).stdout
+        for _ in range(2)
+    ]
+    assert said == ["4.0 True\n", "4.0 False\n"]
