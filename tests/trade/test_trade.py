@@ -20,7 +20,7 @@ from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.blame import Blame
 from udec_ia.trade.digits import measure
 from udec_ia.trade.judge import Row, recommended
-from udec_ia.trade.levers import Numbers, Setting
+from udec_ia.trade.levers import Fraction, Numbers, Setting
 from udec_ia.trade.noise import Noisy
 from udec_ia.trade.parting import parting
 from udec_ia.trade.report import changes, half_step, sentences, shown
@@ -233,7 +233,7 @@ def test_a_deck_that_begins_with_static_keeps_its_own_step_afterwards(tmp_path: 
     runs = segments(tmp_path / RUNS / own.setting.name)
     assert [one.static for one in runs] == [False, False]  # a file does not say so
     assert runs[1].step == float(m.h.cr[g.TDEL])
-    assert price.fraction == 0.1
+    assert price.fraction == Fraction(0.1)
     assert {1.0, 0.5} <= {row.setting.step for row in price.rows}
 
 
@@ -245,9 +245,12 @@ def test_steps_are_not_tried_where_static_is_all(tmp_path: Path) -> None:
     assert not any("power" in line for line in sentences(price))
 
 
-def test_a_deck_that_goes_on_from_a_file_keeps_its_fraction(tmp_path: Path) -> None:
+@pytest.mark.parametrize("fraction", [(0.05, ""), (0.8, " SAFE"), (0.8, " SCALED")])
+def test_a_deck_that_goes_on_from_a_file_keeps_its_fraction(
+    fraction: tuple[float, str], tmp_path: Path
+) -> None:
     m = Model(out=tmp_path)
-    m.run(f"{WALL}FRACTION 0.05\nCYCLE 10\nSAVE a.h5\n")
+    m.run(f"{WALL}FRACTION {fraction[0]}{fraction[1]}\nCYCLE 10\nSAVE a.h5\n")
     price = trade(
         "RESTART a.h5\nCYCLE 60\n",
         "x.dat",
@@ -256,9 +259,13 @@ def test_a_deck_that_goes_on_from_a_file_keeps_its_fraction(tmp_path: Path) -> N
         Options(builds=("i32r64",), jobs=0),
         tmp_path,
     )
-    assert price.fraction == 0.05
-    runs = segments(tmp_path / "out" / RUNS / SURVEYED)
-    assert runs[0].step == float(m.h.cr[g.TDEL])
+    assert price.fraction == fraction
+    for name in (SURVEYED, Setting().name):
+        runs = segments(tmp_path / "out" / RUNS / name)
+        assert (runs[0].safe, runs[0].scaled) == (bool(fraction[1]), fraction[1] == " SCALED")
+        same = 1e-3 if fraction[1] else 1e-12  # the safe bound is found anew: contacts are not what they were
+        assert runs[0].step == pytest.approx(float(m.h.cr[g.TDEL]), rel=same)
+    assert all(row.ran for row in price.rows if row.result is not None)
 
 
 def test_a_scaled_step_is_not_tried_beyond_the_safe_bound(tmp_path: Path) -> None:

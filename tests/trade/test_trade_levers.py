@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from udec_ia.errors import UdecError
-from udec_ia.trade.levers import Deck, Numbers, Setting
+from udec_ia.trade.levers import Deck, Fraction, Numbers, Setting
 
 DECK = """\
 START
@@ -29,7 +29,7 @@ CYCLE 7
 
 
 def lines(setting: Setting, numbers: Numbers | None = None, text: str = DECK) -> list[str]:
-    return Deck(text, "x.dat").written(setting, numbers, 0.1).splitlines()
+    return Deck(text, "x.dat").written(setting, numbers, Fraction(0.1)).splitlines()
 
 
 def test_the_deck_as_it_is_only_loses_what_shows() -> None:

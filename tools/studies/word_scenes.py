@@ -23,10 +23,7 @@ PARTED = 0.01  # of the farthest way that a block has gone: two runs have parted
 TURNS, SLICE = 7, 0.04  # of each scheme, by turns, and how long one takes at least, in s
 
 
-TOLD = {
-    "the last digit of coordinates": "before",
-    "may have moved places": "after",
-}  # the run, and words of it
+TOLD = {"the last digit of coordinates": "before", "may have moved places": "after"}  # by words that tell it
 
 
 class Run(NamedTuple):

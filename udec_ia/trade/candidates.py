@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from udec_ia.deck.language import COMMANDS
 from udec_ia.trade.levers import Deck, Setting
-from udec_ia.trade.steps import share_of_bound
+from udec_ia.trade.steps import longest, share_of_bound
 from udec_ia.trade.surveyed import Segment
 
 RUNG = 2**0.5  # of the ladder of time-steps: what is cheapest on it is so to within that factor
@@ -30,9 +30,10 @@ def longer(deck: Deck, survey: Sequence[Segment], builds: Sequence[str]) -> list
     if not deck.is_stepped:
         found = [Setting(build) for build in builds]
         return found + tighter(deck, found)
+    largest = longest(survey)
     for build in builds:
         step = 1.0
-        while step <= min(LONGEST * 1.01, deck.longest):
+        while step <= min(LONGEST * 1.01, largest):
             one = Setting(build, rounded(step))
             if step == 1 or share_of_bound(survey, one) <= BEYOND:
                 found.append(one)

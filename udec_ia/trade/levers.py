@@ -6,10 +6,10 @@ shows or saves is left out as a comment: it takes as long at any setting.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.parser import parse
@@ -77,6 +77,13 @@ class Numbers:
     limits: tuple[int | None, ...] = ()
 
 
+class Fraction(NamedTuple):
+    """What FRACTION says. words: " SAFE" or " SCALED", "" for a fraction of the estimate."""
+
+    value: float
+    words: str = ""
+
+
 class Deck:
     """A deck with the values of its variables, as far as levers go. Raises UdecError for what is no deck.
 
@@ -120,13 +127,6 @@ class Deck:
         return not all(self.statics)
 
     @property
-    def longest(self) -> float:
-        """Times the time-step that FRACTION f SAFE and SCALED can be given, of which f is 1 at most."""
-        calls = (parse(one) for one, name in self._named() if name == "fraction")
-        safe = [call.positional[0] for call in calls if call.named.get("safe") or call.named.get("scaled")]
-        return 1 / max(safe) if safe else math.inf
-
-    @property
     def histories(self) -> int:
         """Number of statements HISTORY."""
         return self.commands[: self.obeyed].count("history")
@@ -155,7 +155,9 @@ class Deck:
 
     # ---- written anew
 
-    def written(self, setting: Setting, numbers: Numbers | None = None, fraction: float | None = None) -> str:
+    def written(
+        self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
+    ) -> str:
         """The deck for `setting`. fraction: what it begins with, where no line says so; None: it stays so."""
         numbers = numbers or Numbers()
         lines: list[str] = []
@@ -169,7 +171,7 @@ class Deck:
                 lines += _types(setting.types)
             lines += self._line(one, name, setting, numbers, run)
             if name in ("start", "restart") and not told and fraction is not None:
-                lines.append(_fraction(setting, numbers, fraction, ""))
+                lines.append(_fraction(setting, numbers, *fraction))
             run += name in ("cycle", "solve")
         return "".join(f"{line}\n" for line in lines)
 

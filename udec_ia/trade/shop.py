@@ -15,7 +15,7 @@ from udec_ia.study.progress import Told
 from udec_ia.study.runs import Result
 from udec_ia.trade import cost
 from udec_ia.trade.judge import Row
-from udec_ia.trade.levers import Deck, Numbers, Setting
+from udec_ia.trade.levers import Deck, Fraction, Numbers, Setting
 from udec_ia.trade.steps import numbers
 from udec_ia.trade.surveyed import Segment, Surveyed, segments
 
@@ -55,6 +55,11 @@ class Options:
         print(text, file=self.stream, flush=True)
 
 
+def _fraction(one: Segment) -> Fraction:
+    """What FRACTION has to say for the time-step of a CYCLE or SOLVE."""
+    return Fraction(one.fraction, " SCALED" if one.scaled else " SAFE" if one.safe else "")
+
+
 class Shop:
     """Runs settings of one deck, and knows what they cost."""
 
@@ -63,7 +68,7 @@ class Shop:
         self.wide = WIDE.get(options.build, options.build)
         self.builds = [*dict.fromkeys((self.wide, *(options.builds or (NARROW[self.wide],))))]
         self.survey: list[Segment] = []
-        self.fraction: float | None = None  # what the deck begins with, as far as that matters
+        self.fraction: Fraction | None = None  # what the deck begins with, as far as that matters
         self.rates: dict[str, cost.Rates] = {}
         self.left = options.budget  # seconds of the clock
         self._done: dict[str, list[Row]] = {}
@@ -101,7 +106,7 @@ class Shop:
         result = self.results([run])[0]
         self.survey = self._segments(SURVEYED)
         if self.survey:
-            self.fraction = next((one.fraction for one in self.survey if not one.static), None)
+            self.fraction = next((_fraction(one) for one in self.survey if not one.static), None)
             found, rehearsed = cost.rates(result, self.survey), dict(self.rates)
             apart = rehearsed[self.wide].apart if self.wide in rehearsed else found.apart
             found = cost.Rates(apart, found.each)  # without what limits need

@@ -87,6 +87,11 @@ def _limits(survey: Sequence[Segment], longer: Sequence[float], setting: Setting
     )
 
 
+def longest(survey: Sequence[Segment]) -> float:
+    """Times the time-step that FRACTION f SAFE and SCALED can be given, of which f is 1 at most."""
+    return min((1 / one.fraction for one in survey if one.safe and not one.static), default=math.inf)
+
+
 def share_of_bound(survey: Sequence[Segment], setting: Setting) -> float:
     """The greatest share of the safe bound that a time-step of `setting` has; 0 if nothing bounds it."""
     own = [one for one in survey if one.bound > 0 and not one.static]

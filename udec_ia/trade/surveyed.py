@@ -35,7 +35,8 @@ class Segment:
 
     asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the
     estimate, or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0
-    if not asked for. seconds: of the processor, without compiling. static: the deck says SOLVE ... STATIC.
+    if not asked for. scaled: with scaled masses. seconds: of the processor, without compiling. static: the
+    deck says SOLVE ... STATIC.
     """
 
     asked: int
@@ -46,6 +47,7 @@ class Segment:
     safe: bool
     estimate: float
     bound: float
+    scaled: bool = False
     done: int = 0
     seconds: float = 0.0
     static: bool = False
@@ -133,6 +135,7 @@ class Survey(Watch):
             float(h.cr[g.FRAC]),
             bool(h.ci[g.LSAFE]),
             *limits,
+            scaled=bool(h.ci[g.LSCALE]),
         )
         found.append(one)
         self._segment = one

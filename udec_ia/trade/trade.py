@@ -12,7 +12,7 @@ from udec_ia.study.many import RUNS
 from udec_ia.study.runs import ENDED
 from udec_ia.trade import candidates
 from udec_ia.trade.judge import Row, judge, margin, recommended
-from udec_ia.trade.levers import Deck, Setting
+from udec_ia.trade.levers import Deck, Fraction, Setting
 from udec_ia.trade.limit import Limit, limit, shrinks
 from udec_ia.trade.parting import Parting, parting
 from udec_ia.trade.shop import Options, Shop
@@ -41,7 +41,7 @@ class Price:
     limits: dict[str, Limit | None] = field(default_factory=dict)
     known: list[str] = field(default_factory=list)
     best: Row | None = None
-    fraction: float | None = None
+    fraction: Fraction | None = None
     parted: Parting | None = None
     said: list[str] = field(default_factory=list)
 

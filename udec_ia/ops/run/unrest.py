@@ -80,7 +80,7 @@ class Motion(NamedTuple):
 class Unrest:
     """Notes the way of one SOLVE. rested: work of friction until the model was at rest last, in J/m."""
 
-    def __init__(self, rested: float = 0.0) -> None:
+    def __init__(self, rested: float) -> None:
         self.rested = rested
         self.looks: list[Look] = []
         self.every = FIRST
