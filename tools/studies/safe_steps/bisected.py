@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tools" / "studies")]
 from naive.stiffness import Scene  # noqa: E402
 
 from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.heap.accessors import getr, iget, putr  # noqa: E402
+from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 from udec_ia.ops.common.lists import chain  # noqa: E402
 from udec_ia.ops.run.damped import damped  # noqa: E402
@@ -36,15 +36,21 @@ BULK, SHEAR, KN = 1e9, 6e8, 1e9
 Materials = dict[int, tuple[float, float]]
 
 
-def stack(heights: list[float], across: int = 1, kn: float = 1.0, density: float = 1.0) -> Model:
-    """Blocks on each other, or a grid of `across` columns, in a corner of two fixed blocks.
-
-    kn, density: of every other block, over those of the rest.
-    """
+def empty(density: float = 1.0) -> Model:
+    """Without blocks, with two materials. density: of the second, over that of the first."""
     m = Model(out="/tmp")
     m.tell = m.inform = lambda _: None
-    for number, k, d in ((1, 1.0, 1.0), (2, kn, density)):
-        m.property(number, density=2500 * d, kn=KN * k, ks=KN * k / 2, bulk=BULK, g=SHEAR, cohesion=1e30)
+    for number, d in ((1, 1.0), (2, density)):
+        m.property(number, density=2500 * d, kn=KN, ks=KN / 2, bulk=BULK, g=SHEAR, cohesion=1e30)
+    return m
+
+
+def stack(heights: list[float], across: int = 1, density: float = 1.0) -> Model:
+    """Blocks on each other, or a grid of `across` columns, in a corner of two fixed blocks.
+
+    density: of every other block, over that of the rest.
+    """
+    m = empty(density)
     m.round(min(min(heights) / 10, 0.02))
     top, right = sum(heights), float(across)
     m.block(-1, -1, -1, top, right, top, right, -1)
@@ -56,10 +62,47 @@ def stack(heights: list[float], across: int = 1, kn: float = 1.0, density: float
     m.fix(-1, 0, -1, top)
     for row in [*m.table("block")][::2]:
         x, y = float(row["KX"]), float(row["KY"])
-        if kn != 1 or density != 1:
+        if density != 1:
             m.change(x - 1e-9, x + 1e-9, y - 1e-9, y + 1e-9, material=2)
     heavy = max(density, 1.0)
     m.gravity(-3 / heavy, -10 / heavy)
+    return m
+
+
+def pressed(ratio: float) -> Model:
+    """A free column whose middle joint is stiffer by `ratio`, and pressed together by a pair of forces.
+
+    It overlaps as it does with the usual stiffness under the weight, so that nothing moves. Under the weight
+    alone, a joint of 1e12 times that stiffness would overlap by less than the last digit of a coordinate.
+    """
+    m = stack([1.0] * 4)
+    m.delete(-1, 0, 0, 4)
+    m.gravity(0, -10)
+    m.solve(1e-6, limit=3000, static=True)
+    m.property(2, kn=KN * ratio, ks=KN * ratio / 2, cohesion=1e30)
+    force = 0.0
+    for row in m.table("contact"):
+        if round(float(row["KYC"]), 3) == 2:
+            putr(m.h, int(row["address"]), g.KCFN, KN * ratio * float(row["KCN"]))
+            puti(m.h, int(row["address"]), g.KCM, 2)
+            force += KN * (ratio - 1) * float(row["KCN"])
+    m.boundary(0, 1, 2, 3, yforce=-force)
+    m.boundary(0, 1, 1, 2, yforce=force)
+    return m
+
+
+def wedges() -> Model:
+    """Eight that meet in a point, one of them fixed, under a pressure from outside."""
+    m = empty()
+    m.round(0.02)
+    m.block(-1, -1, -1, 1, 1, 1, 1, -1)
+    for angle in np.pi * (np.arange(4) / 4 + 0.1):
+        x, y = 2 * float(np.cos(angle)), 2 * float(np.sin(angle))
+        m.split(-x, -y, x, y)
+    m.fix(-1, 1, -1, -0.6)
+    for low in (-1.1, 0.9):
+        m.boundary(low, low + 0.2, -2, 2, stress=(-1e5, 0, -1e5))
+        m.boundary(-2, 2, low, low + 0.2, stress=(-1e5, 0, -1e5))
     return m
 
 
@@ -89,8 +132,9 @@ SCENES: dict[str, Callable[[], Model]] = {
     "column of 8": lambda: stack([1.0] * 8),
     "grid, 4 x 4": lambda: stack([1.0] * 4, 4),
     "slabs, 1:100": lambda: stack([0.01, 1.0, 0.01, 1.0]),
+    "fan of 8 wedges": wedges,
     "a tiny block": lambda: stack([1.0, 0.001, 1.0]),
-    **{f"stiffness 1:1e{k}": lambda k=k: stack([1.0] * 4, kn=10.0**k) for k in (3, 6)},
+    **{f"stiffness 1:1e{k}": lambda k=k: pressed(10.0**k) for k in (3, 6, 9, 12)},
     **{f"mass 1:1e{k}": lambda k=k: stack([1.0] * 4, density=10.0**k) for k in (3, 6, 9)},
     "SDEF": lambda: soft("sdef"),
     "FDEF, good mesh": lambda: soft("fdef"),
@@ -120,9 +164,9 @@ def ready(step: float, file: Path, shaken: bool) -> Model:
     h = m.array.h
     m.cycle(0)
     rng = np.random.default_rng(1)
-    least = min(float(fn) for fn in m.table("contact")["KCFN"] if fn > 0)
-    stiffest = float(max(h.cr[g.AKN : g.AKN + 2]))
-    speed = SHAKE * least / stiffest / step if shaken else 0.0  # of the smallest overlap in a cycle
+    contacts = m.table("contact")
+    overlaps = contacts["KCFN"] / h.cr[g.AKN + contacts["KCM"] - 1]
+    speed = SHAKE * float(min(overlaps[overlaps > 0])) / step if shaken else 0.0  # of the least in a cycle
     for ib in chain(h, int(h.ci[g.IBPNT]), g.KB):
         if iget(h, ib, g.KBFIX) == 0:
             for k, arm in ((g.KXD, 1.0), (g.KYD, 1.0), (g.KTD, float(getr(h, ib, g.KBRO)))):
