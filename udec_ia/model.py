@@ -138,7 +138,7 @@ class Model(Files, Blocks, Numbers, Looks):
 
     def _to_rest(self, ratio: float, limit: int, criterion: str, ended: Ended | None = None) -> Solution:
         """Up to `limit` cycles to rest; ended: as of _cycle."""
-        unrest, mean = Unrest(self._runaway.since_rest(self.array)), criterion == MEAN
+        unrest, mean = Unrest(self._guard.since_rest(self.array)), criterion == MEAN
         watch = Watch(self.array, self._recorder.series, ratio, mean, unrest)
         cycles = self._cycle(limit, watch, ended)
         h, kinds = self.array.h, soft_or_loaded_in(self.array.h)
@@ -147,7 +147,7 @@ class Model(Files, Blocks, Numbers, Looks):
         worst, lively = (
             kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
         )
-        state, why = unrest.explain(self.array, reached, ratio, self._runaway.chatter)
+        state, why = unrest.explain(self.array, reached, ratio, self._guard.chatter)
         solution = Solution(
             reached,
             ratio,
@@ -163,7 +163,7 @@ class Model(Files, Blocks, Numbers, Looks):
         )
         self._recorder.solutions.append(solution)
         if reached:
-            self._runaway.rested = float(h.cd[WFRIC])
+            self._guard.rested = float(h.cd[WFRIC])
         return solution
 
     def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
@@ -177,8 +177,8 @@ class Model(Files, Blocks, Numbers, Looks):
         moved = arrange(self.array)
         if moved is not None:
             self.renumber(moved)
-        self._runaway.drift.begin(self.array)
-        self._runaway.since_rest(self.array)
+        self._guard.drift.begin(self.array)
+        self._guard.since_rest(self.array)
         watch = self.around(watch)
         report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])
@@ -193,7 +193,7 @@ class Model(Files, Blocks, Numbers, Looks):
                 self.laws,
                 watch,
                 lambda: self._settle(watch),
-                self._runaway,
+                self._guard,
             )
         except BaseException:
             ended = ended or (lambda n: self.log_part(Model.cycle, (n,), {}))
@@ -206,7 +206,7 @@ class Model(Files, Blocks, Numbers, Looks):
             report.close()
         self.undo.afresh(self)
         self.keep(watch)
-        self.remark(self._runaway.drift.told(self.array), what=RESOLUTION)
+        self.remark(self._guard.drift.told(self.array), what=RESOLUTION)
         return done
 
     def _settle(self, watch: Watch | None) -> None:
@@ -226,9 +226,9 @@ class Model(Files, Blocks, Numbers, Looks):
 
     def _judge(self) -> None:
         """Judge the time-step and the materials of a CYCLE; explain the step if that is asked for."""
-        self._runaway.judge(self.array, self.explain_step)
+        self._guard.runaway.judge(self.array, self.explain_step)
         if self.explain_step:
-            self.inform(describe(self.array, self._runaway.safe))
+            self.inform(describe(self.array, self._guard.runaway.safe))
             self.remark([damping(self.array.h)], self.inform)
         self.remark(on_moduli(self.array, self.laws.block_laws))
         self.remark(on_laws(self.array))

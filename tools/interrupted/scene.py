@@ -47,8 +47,8 @@ def state(model: Model) -> dict[str, Any]:
         "flags": (model.started, model._touched, model._unproved, model.explain_step),
         "remarks": (
             sorted(model._said),
-            model._runaway._judged,
-            model._runaway._warned,
-            model._runaway._account,
+            model._guard.runaway._judged,
+            model._guard.runaway._warned,
+            model._guard.runaway._account,
         ),
     }

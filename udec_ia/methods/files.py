@@ -17,7 +17,7 @@ from udec_ia.methods.state import State
 from udec_ia.ops.commands.history import definitions
 from udec_ia.ops.common.memory import refit
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.guard import Guard
 from udec_ia.printable import printable
 from udec_ia.session import NAME
 from udec_ia.transaction import beside
@@ -77,7 +77,7 @@ class Files(State):
             self.tell(warning)
         self._boxes.forget()
         self._touched, self._unproved = force, True
-        self._runaway = Runaway(self.warn)
+        self._guard = Guard(self.warn)
         self.started = True
         ci, name = array.h.ci, array.scheme.name
         self.inform(
@@ -103,7 +103,7 @@ class Files(State):
         self.go_on(lines, series)
         self._boxes.forget()
         self._touched, self._unproved = False, True
-        self._runaway = Runaway(self.warn)
+        self._guard = Guard(self.warn)
 
     @classmethod
     def restore(

@@ -132,7 +132,7 @@ def main() -> None:
         cells = [cell(name, build, angle) for name, build in columns]
         print(f"| {angle:g} | {' | '.join(cells)} |", flush=True)
         for head, one in zip(heads, cells, strict=True):
-            if one[-3] in "+-":  # an exponent
+            if one[-3] in "+-" and float(one):  # an exponent; the axis has no zero
                 curves[head].append((angle, abs(float(one))))
     if given.out:
         draw(given.out, curves, "corner, degrees", "error, or share that is not accounted for")

@@ -1,6 +1,6 @@
 """The true limit of the time-step found by runs, against that of the matrices, the bound and the estimate.
 
-    python tools/studies/safe_steps/bisected.py [SCENE ...] [--file FILE]
+    python tools/studies/safe_steps/bisected.py [SCENE ...] [--file FILE] [--out PICTURE]
 
 A scene is brought near rest under a weight that closes its joints, and run for CYCLES cycles twice, once
 shaken a little before: a step is unstable if the energy of motion of the difference has grown a millionfold
@@ -23,6 +23,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tools" / "studies")]
 
 from naive.stiffness import Scene  # noqa: E402
 
+from safe_steps.picture import dots  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
@@ -217,7 +218,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", choices=[*SCENES, []])
     parser.add_argument("--file", type=Path, default=Path("bisected.csv"))
+    parser.add_argument("--out", type=Path)
     given = parser.parse_args()
+    shown = {}
     known = {row[0]: row for row in csv.reader(given.file.open())} if given.file.exists() else {}
     print("| scene | limit of the matrices, s | by runs | safe bound | estimate |\n|---|---|---|---|---|")
     for name in given.scenes or SCENES:
@@ -227,7 +230,10 @@ def main() -> None:
             with given.file.open("a", newline="") as out:
                 csv.writer(out).writerow(row)
         limit, *shares = map(float, row[1:])
+        shown[name] = dict(zip(("runs", "bound", "estimate"), shares, strict=True))
         print(f"| {name} | {limit:.3e} | {' | '.join(f'{share:.3f}' for share in shares)} |", flush=True)
+    if given.out:
+        dots(shown, given.out)
 
 
 if __name__ == "__main__":

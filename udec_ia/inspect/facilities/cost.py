@@ -24,6 +24,7 @@ from udec_ia.inspect.look.listing import Listing
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import cycle, prepare
+from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.watch import Watch
 
@@ -84,11 +85,13 @@ def _row(one: Facility, here: str, share: Share, each: float, size: int) -> tupl
 
 def _piece(trial: Trial, n: int) -> float:
     """Processor time of `n` cycles of a copy."""
-    array, runaway = trial.array.copy(), (Runaway if trial.judged else Unwatched)(lambda warning: None)
-    runaway.judge(array)
+    array, guard = trial.array.copy(), Guard()
+    if not trial.judged:
+        guard.runaway = Unwatched()
+    guard.runaway.judge(array)
     watch = Watch(array, []) if trial.recorded and array.h.ci[g.IHPNT] else None
     start = process_time()
-    cycle(array, n, laws=trial.laws, watch=watch, runaway=runaway)
+    cycle(array, n, laws=trial.laws, watch=watch, guard=guard)
     return process_time() - start
 
 
@@ -152,6 +155,6 @@ def _preparing(array: MainArray) -> float:
         copy.h.ci[g.LREADY] = 0
         start = process_time()
         prepare(copy)
-        Runaway(lambda warning: None).judge(copy)
+        Runaway().judge(copy)
         found.append(process_time() - start)
     return float(np.median(found))

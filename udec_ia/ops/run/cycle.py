@@ -35,8 +35,8 @@ from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
+from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.renewal import ahead, put_step
-from udec_ia.ops.run.runaway import Runaway
 from udec_ia.ops.run.scaling import renew_relaxations
 from udec_ia.ops.run.timestep import kind_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
@@ -97,14 +97,14 @@ def cycle(
     laws: LawBook | None = None,
     watch: Watch | None = None,
     settled: Callable[[], None] | None = None,
-    runaway: Runaway | None = None,
+    guard: Guard | None = None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     laws: those of the user's; error 9 if a constitutive number is in use for which there is none.
     report: called with the number of cycles done so far, every `every` cycles or a few times a second.
     prepared: called before the first cycle, when the time-step is known.
-    watch: records on the way and may end the run before. runaway: error 37 if it finds energy from nowhere.
+    watch: records on the way and may end the run before. guard: error 37 if it finds energy from nowhere.
     settled: called after every piece of the run, before its errors are raised: what was computed is to stay.
     Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
     too coarse for contacts, or a force grown beyond them: the cycle in which it did is completed.
@@ -119,14 +119,14 @@ def cycle(
     # a run that was interrupted may have left an error behind, or a wish for memory
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
     energy.begin(array)
-    runaway = runaway or Runaway()
-    runaway.begin(array, bound.own_blocks)
+    guard = guard or Guard()
+    guard.runaway.begin(array, bound.own_blocks)
     try:
         try:
-            done = _run(array, n, report, every, bound, watch, settled or (lambda: None), runaway)
+            done = _run(array, n, report, every, bound, watch, settled or (lambda: None), guard)
         finally:
             finish(array, watch)
-            runaway.end(array)
+            guard.runaway.end(array)
         _check_finite(array)
     except UdecError as error:
         if error.number in SPOILING:
@@ -150,7 +150,7 @@ def _run(
     bound: Bound,
     watch: Watch | None,
     settled: Callable[[], None],
-    runaway: Runaway,
+    guard: Guard,
 ) -> int:
     """`n` cycles, in pieces. Returns how many were completed."""
     if watch is not None:
@@ -162,11 +162,11 @@ def _run(
         start = working_time()
         before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
         while done < target and not (watch is not None and watch.reached):
-            cycles = ahead(array, min(target - done, runaway.ahead(array.h)))
+            cycles = ahead(array, min(target - done, guard.ahead(array.h)))
             if watch is not None:
                 cycles = min(cycles, watch.ahead())
             given = soft(array), bound.blocks, bound.joints
-            marks = runaway.chatter.marks(array.h, n - done)
+            marks = guard.chatter.marks(array.h, n - done)
             if watch is None:
                 done += run_unwatched(array.h, cycles, given, marks)
             else:
@@ -174,8 +174,7 @@ def _run(
             settled()
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
-                runaway.look(array)
-                runaway.renew(array)
+                guard.look(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)

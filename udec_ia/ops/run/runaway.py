@@ -39,12 +39,10 @@ from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, s
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.soft import soft_in
-from udec_ia.ops.run.chatter import JUDGE, Chatter
+from udec_ia.ops.run.chatter import JUDGE
 from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.drift import Drift
-from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, instability, is_safe, kind_of, safe_fraction, shortened
+from udec_ia.ops.run.timestep import bound, instability, kind_of, safe_fraction
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
@@ -74,21 +72,14 @@ class Account:
 
 
 class Runaway:
-    """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last.
-
-    chatter: watches its contacts. drift: knows where its blocks were. rested:
-    work of friction until it was at rest last, or was first looked at, in J/m; None before that.
-    """
+    """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last."""
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = Limit(np.inf, 0)
-        self.chatter = Chatter(tell)
-        self.drift = Drift()
-        self.rested: float | None = None
         self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
         self._warned = (0.0, 0.0)  # step, and what damping left of it
-        self._suspected = self._own_laws = self._shortened = False
+        self._suspected = self._own_laws = False
         self._account: Account | None = None
 
     def judge(self, array: MainArray, anew: bool = False) -> None:
@@ -105,22 +96,6 @@ class Runaway:
         if warning and not alike(step, left, *self._warned):
             self._warned = step, left
             self.tell(warning)
-
-    def renew(self, array: MainArray) -> None:
-        """Have a SAFE time-step or scaled masses renewed that are due; tell once that a step is shorter."""
-        before = float(array.h.cr[g.TDEL])
-        safe = renew(array)
-        said = "" if safe is None or self._shortened else shortened(array, before, safe)
-        if said:
-            self._shortened = True
-            self.tell(said)
-
-    def since_rest(self, array: MainArray) -> float:
-        """Work of friction until the model was at rest last. ENERGY ON begins its sum anew."""
-        taken = float(array.h.cd[g.WFRIC])
-        if self.rested is None or taken < self.rested:
-            self.rested = taken
-        return self.rested
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
         """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow laws of the user's."""
@@ -153,7 +128,6 @@ class Runaway:
     def look(self, array: MainArray) -> None:
         """Error 37 if there is more energy than there can be. A run not suspected is judged again."""
         h, account = array.h, self._account
-        self.chatter.judge(array, is_safe(h, self.safe))
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
             self.judge(array)
             self.begin(array, self._own_laws)
