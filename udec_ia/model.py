@@ -49,12 +49,15 @@ from udec_ia.ops.run.remarks import (
 from udec_ia.ops.run.scaling import relaxations_due
 from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
 from udec_ia.ops.run.static import STATIC, statically
+from udec_ia.ops.run.strides import given
 from udec_ia.ops.run.timestep import bound, describe, kind_of
 from udec_ia.ops.run.unrest import Unrest
 from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Watch
 from udec_ia.transaction import beside, looking, once
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
+GIVEN = "given strides"  # of that which BOUNDARY moves, before the run
+STRIDES = "strides"  # what they lose of a steady way is told once, after the run
 RESOLUTION = "resolution"  # what reals of few bits lose is told once, before the run or after it
 
 Ended = Callable[[int], None]
@@ -178,6 +181,7 @@ class Model(Files, Blocks, Numbers, Looks):
         if moved is not None:
             self.renumber(moved)
         self._guard.drift.begin(self.array)
+        self._guard.strides.begin(self.array)
         self._guard.since_rest(self.array)
         watch = self.around(watch)
         report = self.report(self.array, n)
@@ -206,7 +210,10 @@ class Model(Files, Blocks, Numbers, Looks):
             report.close()
         self.undo.afresh(self)
         self.keep(watch)
-        self.remark(self._guard.drift.told(self.array), what=RESOLUTION)
+        lost = list(self._guard.strides.told(self.array))
+        self.remark(lost, what=STRIDES)
+        if not lost:
+            self.remark(self._guard.drift.told(self.array), what=RESOLUTION)
         return done
 
     def _settle(self, watch: Watch | None) -> None:
@@ -236,6 +243,7 @@ class Model(Files, Blocks, Numbers, Looks):
         self.remark(on_loads(self.array))
         self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
         self.remark(on_resolution(self.array), what=RESOLUTION)
+        self.remark(given(self.array), what=GIVEN)
 
     @once
     def history(

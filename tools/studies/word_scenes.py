@@ -23,7 +23,11 @@ PARTED = 0.01  # of the farthest way that a block has gone: two runs have parted
 TURNS, SLICE = 7, 0.04  # of each scheme, by turns, and how long one takes at least, in s
 
 
-TOLD = {"the last digit of coordinates": "before", "may have moved places": "after"}  # by words that tell it
+TOLD = {  # by words that tell it
+    "the last digit of coordinates": "before",
+    "may have moved places": "after",
+    "too short for the strides": "after",
+}
 
 
 class Run(NamedTuple):

@@ -1,9 +1,9 @@
 """What is watched from one CYCLE of a model to the next, beside its heap.
 
 Of a run it is asked whether it gains energy from nowhere (runaway.py), whether its contacts chatter
-(chatter.py), what rounding has done to its places (drift.py), what friction has taken since it was at rest,
-and whether a safe time-step is to be found anew. Each knows how things stood before; none of it is a part of
-the state.
+(chatter.py), what rounding has done to its places (drift.py, strides.py), what friction has taken since it
+was at rest, and whether a safe time-step is to be found anew. Each knows how things stood before; none of it
+is a part of the state.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from udec_ia.ops.run.chatter import Chatter
 from udec_ia.ops.run.drift import Drift
 from udec_ia.ops.run.renewal import renew
 from udec_ia.ops.run.runaway import Runaway
+from udec_ia.ops.run.strides import Strides
 from udec_ia.ops.run.timestep import is_safe, shortened
 
 
@@ -31,6 +32,7 @@ class Guard:
         self.runaway = Runaway(tell)
         self.chatter = Chatter(tell)
         self.drift = Drift()
+        self.strides = Strides()
         self.rested: float | None = None
         self._shortened = False
 
@@ -52,6 +54,7 @@ class Guard:
         """
         self.chatter.judge(array, is_safe(array.h, self.runaway.safe))
         self.runaway.look(array)
+        self.strides.look(array)
         before = float(array.h.cr[g.TDEL])
         safe = renew(array)
         said = "" if safe is None or self._shortened else shortened(array, before, safe)

@@ -1,0 +1,208 @@
+"""Whether reals are too short for what a cycle moves a body by.
+
+A cycle adds velocity times time-step to a coordinate, and the sum is rounded to the last digit. A body that
+goes on at one speed is rounded the same way in each cycle: if a stride is 1.4 digits it goes one, and with
+less than half a digit it stands still for ever, however fast its velocity says that it is.
+
+So every thousand cycles and at the end of a run places and velocities are noted. For a body that goes on, or
+has not moved at all, the way that its velocities make is known, and what it lacks is what was lost. That must
+be what the next cycle would lose, too, times the number of cycles: else it was chance, or the body turned
+about in between. Of reals of 64 bits no stride is so short.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.timestep import kind_of
+from udec_ia.ops.run.unrest import overlap
+
+EVERY = 1000  # cycles from one look to the next, at least
+ENOUGH = 200  # cycles, before which nothing is said
+SAME = 0.1  # share by which the velocity of a body that goes on may change between two looks
+AGREED = 0.2  # share by which the two ways to know what was lost may differ
+LOST = 0.004  # of the farthest way, from which on it is said
+SHORT = 20  # last digits: a given stride that is shorter is told of, as it may be off by a fortieth
+HELD = 4  # last digits: what bears a force may move by as much while springs hold it
+
+
+class Bodies(NamedTuple):
+    """Blocks that move as one, and grid-points: addresses, and those of their blocks."""
+
+    at: Any
+    blocks: Any
+    points: int  # from this one on they are grid-points
+
+    def read(self, h: Memory, of_block: tuple[Any, Any], of_point: tuple[Any, Any]) -> Any:
+        """Two fields of all, (n, 2), in reals of the array."""
+        one, two = self.at[: self.points], self.at[self.points :]
+        return np.stack(
+            [
+                np.concatenate([np.asarray(getr(h, one, a)), np.asarray(getr(h, two, b))])
+                for a, b in zip(of_block, of_point, strict=True)
+            ],
+            axis=1,
+        )
+
+    def places(self, h: Memory) -> Any:
+        """Coordinates."""
+        return self.read(h, (g.KX, g.KY), (g.KXG, g.KYG))
+
+    def velocities(self, h: Memory) -> Any:
+        """Velocities of the last half of a cycle."""
+        return self.read(h, (g.KXD, g.KYD), (g.KXDG, g.KYDG))
+
+
+def bodies_of(h: Memory) -> Bodies:
+    """All that a cycle moves."""
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    blocks = blocks[integers(h, blocks, g.KBFIX) != g.FIXED]
+    meshed = blocks[integers(h, blocks, HEAD) == g.MFDEF]
+    whole = blocks[integers(h, blocks, HEAD) != g.MFDEF]
+    points = [addresses(h, iget(h, iget(h, int(ib), g.KBEX), g.KFG), g.KG) for ib in meshed]
+    hosts = [np.full(len(some), ib) for ib, some in zip(meshed, points, strict=True)]
+    return Bodies(np.concatenate([whole, *points]), np.concatenate([whole, *hosts]), len(whole))
+
+
+def given(array: MainArray) -> Iterator[str]:
+    """CYCLE: a velocity that BOUNDARY gives, its factor being 1, and that reals of 32 bits cannot follow."""
+    h = array.h
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
+    if array.scheme.real_bits > 32 or not len(bounds):
+        return
+    blocks, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
+    at = np.where(points > 0, points, blocks)
+    some: Any = np.where(points > 0, points, 1)
+    digits = []
+    for flag, speed, of_block, of_point in (
+        (g.ALONG_X, g.KUVX, g.KX, g.KXG),
+        (g.ALONG_Y, g.KUVY, g.KY, g.KYG),
+    ):
+        place = np.where(points > 0, getr(h, some, of_point), getr(h, blocks, of_block))
+        stride = np.abs(getr(h, bounds, speed)) * h.cr[g.TDEL]
+        here = (integers(h, bounds, g.KUFIX) & flag > 0) & (stride > 0)
+        digits.append(np.where(here, stride / np.spacing(np.abs(place)), np.inf))
+    least = np.minimum(*digits)
+    k = int(least.argmin())
+    if least[k] < SHORT:
+        yield (
+            f"BOUNDARY moves {kind_of(h, int(at[k]))} by {least[k]:.2g} last digits of its coordinates in a "
+            f"cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take reals "
+            "of 64 bits, a greater FRACTION, or an origin within the model"
+        )
+
+
+class Look(NamedTuple):
+    """Places and velocities in a cycle, (n, 2), and what the next cycle would lose of the way."""
+
+    cycle: int
+    places: Any
+    velocities: Any
+    lost: Any
+
+
+class Strides:
+    """Watches one model, from a CYCLE to the next as long as it has the same bodies."""
+
+    def __init__(self) -> None:
+        none = np.zeros(0, np.int64)
+        self._bodies = Bodies(none, none, 0)
+        self._first: Look | None = None  # None for reals of 64 bits
+        self._last: Look | None = None
+        self._lost: Any = np.zeros((0, 2))
+        self._cycles: Any = np.zeros((0, 2))  # in which so much was lost
+
+    def begin(self, array: MainArray) -> None:
+        """A run begins."""
+        if array.scheme.real_bits > 32:
+            return
+        h, last, bodies = array.h, self._last, bodies_of(array.h)
+        if last and last.cycle <= h.ci[g.MCTOT] and np.array_equal(bodies.at, self._bodies.at):
+            return
+        self._bodies, self._last = bodies, None
+        self._lost, self._cycles = (np.zeros((len(bodies.at), 2)) for _ in range(2))
+
+    def look(self, array: MainArray, every: int = EVERY) -> None:
+        """Note where all are, and what was lost since the last time, if that is `every` cycles ago."""
+        h, before = array.h, self._last
+        if array.scheme.real_bits > 32 or (before and h.ci[g.MCTOT] < before.cycle + every):
+            return
+        now = self._seen(h)
+        self._last = now
+        if before is None:
+            self._first = now
+            return
+        n = now.cycle - before.cycle
+        first = before.velocities + (now.velocities - before.velocities) / n  # a velocity is half a cycle old
+        moved = now.places - before.places
+        with np.errstate(over="ignore", invalid="ignore"):
+            lost = moved - n * float(h.cr[g.TDEL]) * (first + now.velocities) / 2
+            thought = n * (before.lost + now.lost) / 2
+            fastest = np.maximum(np.abs(before.velocities), np.abs(now.velocities))
+            goes_on = (np.abs(now.velocities - before.velocities) < SAME * fastest) | (moved == 0)
+            counts = goes_on & self._free(h, moved) & (np.abs(lost - thought) < AGREED * np.abs(thought))
+        self._lost += np.where(counts, lost, 0.0)
+        self._cycles += np.where(counts, n, 0)
+
+    def _seen(self, h: Memory) -> Look:
+        """What there is now. In the first cycle of a model the time-step may be another one than before."""
+        x, v, dt = self._bodies.places(h), self._bodies.velocities(h), h.cr[g.TDEL]
+        wide, speed = x.astype(float), v.astype(float)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return Look(int(h.ci[g.MCTOT]), wide, speed, ((x + v * dt) - wide) - speed * float(dt))
+
+    def told(self, array: MainArray) -> Iterator[str]:
+        """A run has ended: which body has gone too far or not far enough by most, if by much."""
+        self.look(array, ENOUGH)
+        first, last, h = self._first, self._last, array.h
+        if first is None or last is None or last.cycle - first.cycle < ENOUGH:
+            return
+        many, moved = last.cycle - first.cycle, last.places - first.places
+        lost = np.where(2 * self._cycles > many, self._lost, 0.0)
+        k, axis = np.unravel_index(int(np.abs(lost).argmax()), lost.shape)
+        if not abs(lost[k, axis]) > LOST * np.hypot(*(moved - lost).T).max():
+            return
+        gone, digit = moved[k, axis], float(np.spacing(np.abs(self._bodies.places(h)[k, axis])))
+        stride = abs(last.velocities[k, axis]) * float(h.cr[g.TDEL])
+        yield (
+            f"reals of {array.scheme.real_bits} bits are too short for the strides of "
+            f"{kind_of(h, int(self._bodies.at[k]))} in {'xy'[axis]}: {stride:.2g} m in a cycle are "
+            f"{stride / digit:.2g} last digits of its coordinate, and in {many} cycles it has gone "
+            f"{gone:.4g} m instead of {gone - lost[k, axis]:.4g} m; take reals of 64 bits, a greater "
+            "FRACTION, or an origin within the model"
+        )
+
+    def _free(self, h: Memory, moved: Any) -> Any:
+        """Which bodies go where their velocities take them, in x and y: springs hold none of these there.
+
+        A condition says how they move, or they bear no force and no point of theirs is held, or they have
+        gone farther than springs give, those of a mesh left out.
+        """
+        contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
+        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+        bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
+        ib, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
+        at, blocks, first = self._bodies
+        fixed = integers(h, at[first:], g.KGFIX) > 0
+        held = np.concatenate(
+            [
+                integers(h, contacts, g.KB1),
+                integers(h, contacts, g.KB2),
+                blocks[first:][fixed],
+                ib[points > 0],
+            ]
+        )
+        far = np.hypot(*moved.T) > max(overlap(h), HELD * float(np.spacing(self._bodies.places(h)).max()))
+        far[first:] = False
+        given, targets = integers(h, bounds, g.KUFIX), np.where(points > 0, points, ib)
+        driven = [np.isin(at, targets[given & along > 0]) for along in (g.ALONG_X, g.ALONG_Y)]
+        return np.stack([far | ~np.isin(blocks, held) | one for one in driven], axis=1)
