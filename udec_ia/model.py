@@ -34,6 +34,7 @@ from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
 from udec_ia.ops.common.limits import not_negative, whole
 from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.run.aside import goes_on
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.damped import UNDAMPED, damping
 from udec_ia.ops.run.remarks import (
@@ -45,6 +46,7 @@ from udec_ia.ops.run.remarks import (
     on_rest,
     on_rounding,
     on_slivers,
+    on_softness,
 )
 from udec_ia.ops.run.scaling import relaxations_due
 from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
@@ -150,7 +152,7 @@ class Model(Files, Blocks, Numbers, Looks):
         worst, lively = (
             kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
         )
-        state, why = unrest.explain(self.array, reached, ratio, self._guard.chatter)
+        state, why = unrest.explain(self.array, reached, ratio, self._guard, self._goes_on)
         solution = Solution(
             reached,
             ratio,
@@ -168,6 +170,9 @@ class Model(Files, Blocks, Numbers, Looks):
         if reached:
             self._guard.rested = float(h.cd[WFRIC])
         return solution
+
+    def _goes_on(self, ib: int, speed: float, n: int) -> bool:
+        return bool(self.laws.given) or goes_on(self.array, ib, speed, n)  # a law may remember cycles
 
     def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
         """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were.
@@ -242,6 +247,7 @@ class Model(Files, Blocks, Numbers, Looks):
         self.remark(on_joints(self.array))
         self.remark(on_loads(self.array))
         self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
+        self.remark(on_softness(self.array))
         self.remark(on_resolution(self.array), what=RESOLUTION)
         self.remark(given(self.array), what=GIVEN)
 

@@ -41,7 +41,7 @@ def test_impacts_are_warned_of_near_the_bound_if_nothing_damps(build: str, damps
         m.cycle(10)
     warned = [one for one in said if "safe bound" in one]
     assert len(warned) == (not damps and share > 0.8)
-    assert all(IMPACTS in one and "FRACTION 0.5, or DAMPING" in one for one in warned)
+    assert all(IMPACTS in one and "FRACTION 0.5 SAFE, or DAMPING" in one for one in warned)
 
 
 def test_a_block_that_is_thrown_up_is_told_of_before_and_stopped_with_a_cure() -> None:

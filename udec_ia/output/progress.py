@@ -26,16 +26,16 @@ class Progress:
     """Progress of one CYCLE command.
 
     stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
-    total: cycles of the command. tdel: time-step in s. frac: its share of the critical one.
+    total: cycles of the command. tdel: time-step in s; its share: of the estimate, or what else it is of.
     started: reading of `working_time` when the command began; None for now.
     """
 
     def __init__(
-        self, stream: TextIO, total: int, tdel: float, frac: float, started: float | None = None
+        self, stream: TextIO, total: int, tdel: float, share: str, started: float | None = None
     ) -> None:
         self.stream = stream
         self.total = total
-        self.step = f"dt {tdel:.3g} s ({frac:.3g} of critical)"
+        self.step = f"dt {tdel:.3g} s ({share})"
         self.started = working_time() if started is None else started
         self.lines = 0
         self.last = ""  # line on how far the command is

@@ -10,6 +10,7 @@ from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.drive.unbalanced import unbalanced
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.run.timestep import share_of
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -46,8 +47,8 @@ class Report:
         if self.progress is None:
             from udec_ia.output.progress import Progress
 
-            tdel, frac = float(h.cr[g.TDEL]), float(h.cr[g.FRAC])
-            self.progress = Progress(stream, self.total, tdel, frac, self.started)
+            tdel = float(h.cr[g.TDEL])
+            self.progress = Progress(stream, self.total, tdel, share_of(h), self.started)
         self.shown = done
         made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
         self.progress.update(

@@ -36,9 +36,10 @@ from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import Bound, LawBook
 from udec_ia.ops.run.guard import Guard
+from udec_ia.ops.run.remarks import sinks_too_far
 from udec_ia.ops.run.renewal import ahead, put_step
 from udec_ia.ops.run.scaling import renew_relaxations
-from udec_ia.ops.run.timestep import kind_of, time_step
+from udec_ia.ops.run.timestep import kind_of, share_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
@@ -233,7 +234,7 @@ def _without_contact(array: MainArray, ip: int) -> UdecError:
 
 def _what_to_do(h: Memory, advice: str) -> str:
     """The advice on blocks that have gone into each other, but where masses are scaled."""
-    if h.ci[g.LSCALE] == 0:
+    if h.ci[g.LSCALE] == 0 or sinks_too_far(h):
         return advice
     return (
         "what falls with scaled masses goes by leaps: if the model collapses, CYCLE, or SOLVE with DAMPING "
@@ -256,8 +257,8 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         f"{limit}, in cycle {cycle}"
     )
     advice = (
-        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {h.cr[g.FRAC]:g} "
-        "of the critical one: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {share_of(h)}: "
+        "a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
     return UdecError(OVERLAP_TOO_GREAT, detail, _what_to_do(h, advice), group=group)
 

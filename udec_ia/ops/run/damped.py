@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, getr
+from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 
@@ -24,6 +24,13 @@ def has_dashpots(h: Memory) -> bool:
     return bool(len(bounds)) and any(bool(np.any(getr(h, bounds, k))) for k in (g.KUCXX, g.KUCYY))
 
 
+def has_simply_deformable(h: Memory) -> bool:
+    """True if there are simply-deformable blocks."""
+    if not h.ci[g.NSOFT]:
+        return False
+    return bool((integers(h, addresses(h, int(h.ci[g.IBPNT]), g.KB), HEAD) == g.MSDEF).any())
+
+
 def what_damps(h: Memory) -> list[str]:
     """Each kind of damping that acts, with its numbers and on what."""
     found = []
@@ -33,7 +40,7 @@ def what_damps(h: Memory) -> list[str]:
         found.append(f"MASS damping takes ALPHA = {h.cr[g.ALPHA]:.3g} 1/s of every velocity")
     if h.cr[g.BETA]:
         found.append(f"STIFFNESS damping, BETA = {h.cr[g.BETA]:.3g} s, acts on contacts that do not slip")
-    if h.cr[g.ALPB]:
+    if h.cr[g.ALPB] and has_simply_deformable(h):
         found.append(f"INTERNAL damping takes {h.cr[g.ALPB]:.3g} 1/s of the strain rates of SDEF blocks")
     if has_dashpots(h):
         found.append("dashpots of BOUNDARY act where they are")

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.accessors import HEAD, getr, integers
+from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
@@ -193,19 +193,45 @@ def digit_force(array: MainArray) -> tuple[float, float]:
     return stiffness * digit, digit
 
 
+def usual_force(h: Memory) -> float:
+    """What free blocks put on a contact in N/m: half of their weight and of what loads them, in the mean."""
+    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    free = integers(h, blocks, g.KBFIX) != g.FIXED
+    mass = np.asarray(getr(h, blocks, g.KBM), float)[free].sum()
+    weight = mass * math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    loads = np.hypot(*(np.asarray(getr(h, bounds, k), float) for k in (g.KUFX, g.KUFY))).sum()
+    return float(weight + loads) / 2 / max(int(free.sum()), 1)
+
+
+def sinks_too_far(h: Memory) -> str:
+    """What is said if blocks overlap by more than is allowed before their contacts bear them; "" if not."""
+    materials = np.unique(integers(h, addresses(h, int(h.ci[g.IBPNT]), g.KB), g.KMAT)) - 1
+    stiffest, usual = float(h.cr[g.AKN + materials].max()), usual_force(h)
+    if not usual > stiffest * float(h.cr[g.DTOL2]) > 0:
+        return ""
+    return (
+        f"a block of mean weight and load puts {usual:.3g} N/m on a contact, and KN of {stiffest:.3g} N/m2 "
+        f"bears it at an overlap of {usual / stiffest:.2g} m; more than {h.cr[g.DTOL2]:.2g} m is error 15: "
+        "take a greater KN or a greater ROUND"
+    )
+
+
+def on_softness(array: MainArray) -> Iterator[str]:
+    """CYCLE, before the first one: joints too soft to bear a block within the overlap that ROUND allows."""
+    said = "" if array.h.ci[g.MCTOT] else sinks_too_far(array.h)
+    if said:
+        yield said
+
+
 def on_resolution(array: MainArray) -> Iterator[str]:
     """CYCLE: a last digit of a coordinate that is a force worth speaking of, where the stiffest contact is.
 
-    It is compared with what free blocks put on a contact, half of their weight and of what loads them.
+    It is compared with what free blocks put on a contact.
     """
-    h = array.h
+    h, usual = array.h, usual_force(array.h)
     blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
-    x, y, reach, mass = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO, g.KBM))
-    free = integers(h, blocks, g.KBFIX) != g.FIXED
-    weight = mass[free].sum() * math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
-    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
-    loads = np.hypot(*(np.asarray(getr(h, bounds, k), float) for k in (g.KUFX, g.KUFY))).sum()
-    usual = float(weight + loads) / 2 / max(int(free.sum()), 1)
+    x, y, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO))
     materials = np.unique(integers(h, blocks, g.KMAT)) - 1
     stiffness = float(max(h.cr[g.AKN + materials].max(), h.cr[g.AKS + materials].max()))
     digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))

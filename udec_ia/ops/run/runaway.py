@@ -42,7 +42,7 @@ from udec_ia.ops.common.soft import soft_in
 from udec_ia.ops.run.chatter import JUDGE
 from udec_ia.ops.run.damped import damped
 from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, instability, kind_of, safe_fraction
+from udec_ia.ops.run.timestep import bound, fraction_line, instability, kind_of, safe_fraction
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
@@ -153,7 +153,7 @@ class Runaway:
             f"put in {came:.3g}: {kind_of(h, int(at))} leads with {largest:.3g}. The time-step "
             f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
-        advice = f"go back to where you began or saved, and take FRACTION {fraction:.2g}"
+        advice = f"go back to where you began or saved, and take {fraction_line(h, fraction)}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))
 
 

@@ -21,8 +21,8 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
+from udec_ia.ops.run.bearing import overlap
 from udec_ia.ops.run.timestep import kind_of
-from udec_ia.ops.run.unrest import overlap
 
 EVERY = 1000  # cycles from one look to the next, at least
 ENOUGH = 200  # cycles, before which nothing is said
@@ -89,14 +89,15 @@ def given(array: MainArray) -> Iterator[str]:
         place = np.where(points > 0, getr(h, some, of_point), getr(h, blocks, of_block))
         stride = np.abs(getr(h, bounds, speed)) * h.cr[g.TDEL]
         here = (integers(h, bounds, g.KUFIX) & flag > 0) & (stride > 0)
-        digits.append(np.where(here, stride / np.spacing(np.abs(place)), np.inf))
-    least = np.minimum(*digits)
-    k = int(least.argmin())
-    if least[k] < SHORT:
+        with np.errstate(over="ignore"):  # at the origin
+            digits.append(np.where(here, stride / np.spacing(np.abs(place)), np.inf))
+    shortest = np.minimum(*digits)
+    k = int(shortest.argmin())
+    if shortest[k] < SHORT:
         yield (
-            f"BOUNDARY moves {kind_of(h, int(at[k]))} by {least[k]:.2g} last digits of its coordinates in a "
-            f"cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take reals "
-            "of 64 bits, a greater FRACTION, or an origin within the model"
+            f"BOUNDARY moves {kind_of(h, int(at[k]))} by {shortest[k]:.2g} last digits of its coordinates in "
+            f"a cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take "
+            "reals of 64 bits, a greater FRACTION, or an origin within the model"
         )
 
 

@@ -111,6 +111,17 @@ def is_safe(h: Memory, safe: Limit) -> bool:
     return bool(h.cr[g.TDEL] <= damped(h, safe.step) * (1 + LAST_DIGITS))
 
 
+def share_of(h: Memory) -> str:
+    """What the time-step is a fraction of, and which."""
+    return f"{h.cr[g.FRAC]:.3g} of the {'safe bound' if h.ci[g.LSAFE] else 'estimate'}"
+
+
+def fraction_line(h: Memory, fraction: float) -> str:
+    """The command FRACTION with another number, of what it is a fraction now."""
+    words = " SCALED" if h.ci[g.LSCALE] else " SAFE" if h.ci[g.LSAFE] else ""
+    return f"FRACTION {fraction:.2g}{words}"
+
+
 def safe_fraction(array: MainArray, share: float) -> float:
     """FRACTION of a step that is safe, where the present one is `share` of the critical one.
 
@@ -129,7 +140,7 @@ def instability(array: MainArray, safe: Limit) -> str:
         place = _place(array.h, safe.address)
         return f"no time-step is safe: a mass or a stiffness of {place} is zero, infinite or no number"
     share = step / critical if critical else math.inf
-    fraction = f"FRACTION {safe_fraction(array, share):.2g} is safe"
+    fraction = f"{fraction_line(array.h, safe_fraction(array, share))} is safe"
     if step <= safe.step:
         cause, cure = _damping(array.h)
         return f"{cause} may make the time-step of {step:.3g} s unstable: {fraction}, or {cure}"
@@ -150,7 +161,7 @@ def _impacts(array: MainArray, share: float) -> str:
     return (
         f"nothing damps, and the time-step is {share:.2g} of the safe bound, which is that of joints that "
         "stay closed: those that open and close may throw blocks ever higher; take "
-        f"FRACTION {safe_fraction(array, share):.2g}, or DAMPING"
+        f"{fraction_line(array.h, safe_fraction(array, share))}, or DAMPING"
     )
 
 
@@ -177,12 +188,17 @@ def shortened(array: MainArray, before: float, safe: Limit) -> str:
 
 
 def describe(array: MainArray, safe: Limit) -> str:
-    """One line: the time-step, its shares of estimate and safe bound, and which groups set these."""
+    """One line: the time-step, its shares of estimate and safe bound, and which groups set these.
+
+    The bound is what damping leaves of it, as FRACTION ... SAFE takes it.
+    """
     step = float(array.h.cr[g.TDEL])
+    left = Limit(damped(array.h, safe.step), safe.address) if math.isfinite(safe.step) else safe
+    named = "safe bound" + (" with its damping" if left.step < safe.step else "")
     parts = [
         f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "
         f"({_place(array.h, limit.address)})"
-        for name, limit in (("estimate", estimate(array)), ("safe bound", safe))
+        for name, limit in (("estimate", estimate(array)), (named, left))
         if math.isfinite(limit.step)
     ]
     return f"time-step {step:.4g} s, {', '.join(parts)}"

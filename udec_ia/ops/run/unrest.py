@@ -16,6 +16,7 @@ moves.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,8 +29,10 @@ from udec_ia.kernels.drive.unbalanced import carried
 from udec_ia.kernels.energy.stored import liveliest, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.run.bearing import at_strength, closed, overlap, slipped_farthest
 from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
-from udec_ia.ops.run.damped import what_damps
+from udec_ia.ops.run.damped import damped, what_damps
+from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.remarks import digit_force
 from udec_ia.ops.run.timestep import kind_of
 
@@ -42,10 +45,13 @@ FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
 SLIPPED = 0.0015  # of the strain energy: work of friction, and shear that contacts lost as they opened, from
 # which on the way is said to matter. Slip of a hundredth of the elastic shear takes a fiftieth of the energy
 # of shear, which may be a tenth of all (tools/studies/ways.py)
-ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
 AHEAD = 10_000  # cycles for which what still moves at rest is judged
+STOPPED = 0.1  # of its speed in the last quarter: what has no more than that has come to a stop
+TRIED = 500, 2000  # cycles, at least and at most, that are tried on a copy to see whether it goes on
 NAMED = 3  # blocks that are named
+HARDLY = 10  # safe time-steps: the stiffest joints have not swung three times
 STATES = (
+    "hardly begun",
     "collapse",
     "creep",
     "settles",
@@ -55,6 +61,9 @@ STATES = (
     "still moves",
     "joints slipped",
 )
+
+
+GoesOn = Callable[[int, float, int], bool]  # block, speed in metres a cycle, cycles: see aside.py
 
 
 class Look(NamedTuple):
@@ -75,6 +84,7 @@ class Motion(NamedTuple):
     steady: float
     growth: float
     fall: float  # kinetic energy over that of the quarter before
+    now: Any  # what each block would move by in as many cycles with its present velocity
 
 
 class Unrest:
@@ -102,11 +112,16 @@ class Unrest:
         cycle = int(h.ci[g.MCTOT])
         if self.looks and (cycle == self.looks[-1].cycle or self.ahead(h) != self.every):
             return
-        x, y = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KX, g.KY))
+        x, y = self._seen(h)
         moving = float(liveliest(h, soft_in(h))[0])
         self.looks.append(Look(cycle, x, y, moving))
         if len(self.looks) > KEPT:
             self.looks, self.every = self.looks[::2], 2 * self.every
+
+    def _seen(self, h: Memory) -> tuple[Any, Any]:
+        """Where all blocks are."""
+        x, y = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KX, g.KY))
+        return x, y
 
     def motion(self, h: Memory) -> Motion | None:
         """The last two quarters; None if there are too few looks."""
@@ -123,6 +138,7 @@ class Unrest:
             float(np.mean([one.moving for one in self.looks[k : k + q]])) for k in (n + 1 - q, n + 1 - 2 * q)
         )
         time = (c.cycle - b.cycle) * float(h.cr[g.TDEL])
+        vx, vy = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KXD, g.KYD))
         return Motion(
             c.cycle - b.cycle,
             np.where(free, np.hypot(dx, dy), 0.0),
@@ -130,21 +146,30 @@ class Unrest:
             both / math.sqrt(now * before) if now * before > 0 else 0.0,
             math.sqrt(now / before) if before > 0 else math.inf,
             energy / earlier if earlier > 0 else 1.0,
+            np.hypot(vx, vy) * time,
         )
 
-    def explain(self, array: MainArray, reached: bool, wanted: float, chatter: Chatter) -> tuple[str, str]:
+    def explain(
+        self, array: MainArray, reached: bool, wanted: float, guard: Guard, goes_on: GoesOn
+    ) -> tuple[str, str]:
         """One of STATES and a sentence; two empty ones if there is nothing to be said."""
         motion = self.motion(array.h)
         if reached and (integers(array.h, self._blocks, g.KBFIX) == g.FIXED).all():
             return "", "all blocks are fixed, and nothing can move: FREE some"
         if reached:
-            said = driven(array.h) or (self._still(array.h, motion) if motion else "")
+            said = driven(array.h) or (self._still(array.h, motion, goes_on) if motion else "")
             if said:
                 return "still moves", said
             said = self._slipped(array.h)
             return ("joints slipped", said) if said else ("", "")
         if motion is None:
             return "", ""
+        chatter, safe = guard.chatter, damped(array.h, guard.runaway.safe.step)
+        if self._time(array.h) < HARDLY * safe < math.inf:
+            return "hardly begun", self._hardly(array.h, safe, wanted)
+        falls = self._falling(array.h, motion)
+        if falls:
+            return "collapse", falls
         if chatter.share >= SHARE and chatter.judged > self.looks[0].cycle:
             return "chatter", self._chatters(array.h, motion, chatter)
         if motion.share > ONE_WAY and motion.steady > STEADY:
@@ -152,6 +177,35 @@ class Unrest:
         return self._swings(array, motion, wanted)
 
     # ---- not reached
+
+    def _time(self, h: Memory) -> float:
+        """Seconds since the beginning, with the present time-step."""
+        return (int(h.ci[g.MCTOT]) - self.looks[0].cycle) * float(h.cr[g.TDEL])
+
+    def _hardly(self, h: Memory, safe: float, wanted: float) -> str:
+        step = float(h.cr[g.TDEL])
+        return (
+            f"it has hardly begun: the time-step of {step:.3g} s is {step / safe:.2g} of the safe one, and "
+            f"{self._time(h):.2g} s have gone by, in which no joint has swung; take a greater "
+            f"FRACTION{self._static(h, wanted)}"
+        )
+
+    def _falling(self, h: Memory, motion: Motion) -> str:
+        """What is said if a block that no contact bears has fallen far; that of most speed."""
+        pull = math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
+        bearing = np.concatenate([integers(h, closed(h)[0], k) for k in (g.KB1, g.KB2)])
+        loose = ~np.isin(self._blocks, bearing) & (integers(h, self._blocks, g.KBFIX) != g.FIXED)
+        vx, vy = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KXD, g.KYD))
+        height = np.where(loose, vx * vx + vy * vy, 0.0) / (2 * pull) if pull else np.zeros(len(loose))
+        k = int(height.argmax()) if len(height) else 0
+        if not len(height) or not height[k] > FAR * h.cr[g.DTOL] or not motion.by[k] > FAR * h.cr[g.DTOL]:
+            return ""
+        ib = int(self._blocks[k])
+        return (
+            f"no contact bears block@{ib} at ({getr(h, ib, g.KX):.4g}, {getr(h, ib, g.KY):.4g}): it has come "
+            f"{motion.by[k]:.2g} m in the last {motion.cycles} cycles, and falls on at "
+            f"{math.hypot(vx[k], vy[k]):.2g} m/s; a support would hold it, or wait until it has landed"
+        )
 
     def _chatters(self, h: Memory, motion: Motion, chatter: Chatter) -> str:
         moved = f", and {self._named(h, motion)}" if motion.by.max() > 0 else ""
@@ -163,7 +217,9 @@ class Unrest:
     def _moves_on(self, h: Memory, motion: Motion) -> tuple[str, str]:
         moved = self._named(h, motion)
         slipping = at_strength(h)
-        far = motion.by.max() >= FAR * h.cr[g.DTOL]
+        far, k = motion.by.max() >= FAR * h.cr[g.DTOL], int(motion.by.argmax())
+        if far and motion.now[k] < STOPPED * motion.by[k] and h.ci[g.LREST] != g.KINETIC:
+            return "settles", f"{moved}, and what moved most has come to a stop; take more cycles (LIMIT)"
         if (far or motion.growth > FASTER) and self._falls(h, motion):
             return "collapse", f"{moved}, and nothing holds what moves most; a support would"
         if not len(slipping) and not far:
@@ -182,7 +238,7 @@ class Unrest:
         if motion.growth < SLOWER:
             return "settles", (
                 f"it slows down: {moved}, {motion.growth:.2f} of the way of the {motion.cycles} "
-                f"before{slip}; take more cycles (LIMIT)"
+                f"before{slip}{self._in_all(h, motion)}; take more cycles (LIMIT)"
             )
         return "creep", (
             f"it creeps at a steady pace: {moved}{slip}; more cycles change nothing: the strength or a "
@@ -192,7 +248,7 @@ class Unrest:
     def _falls(self, h: Memory, motion: Motion) -> bool:
         """True if no contact bears what moves most."""
         ib = int(self._blocks[int(motion.by.argmax())])
-        contacts = _closed(h)[0]
+        contacts = closed(h)[0]
         return not any((integers(h, contacts, k) == ib).any() for k in (g.KB1, g.KB2))
 
     def _swings(self, array: MainArray, motion: Motion, wanted: float) -> tuple[str, str]:
@@ -211,14 +267,23 @@ class Unrest:
                 f"{round(tenth, -1):.0f} cycles; take more of them (LIMIT){self._static(h, wanted)}"
             )
         damping = "; ".join(what_damps(h)) or "nothing damps"
+        cure = "take DAMPING LOCAL 0.8, which damps at any frequency"
+        if h.ci[g.LREST]:
+            cure = "take more cycles (LIMIT)"
         return "swings", (
-            f"it swings about its place, and does not lose energy: {damping}; take DAMPING LOCAL 0.8, which "
-            f"damps at any frequency{self._static(h, wanted)}"
+            f"it swings about its place, and does not lose energy: {damping}; {cure}{self._static(h, wanted)}"
         )
 
     def _static(self, h: Memory, wanted: float) -> str:
         """A quicker way, unless this is it."""
         return "" if h.ci[g.LSCALE] else f", or SOLVE {wanted:g} STATIC"
+
+    def _in_all(self, h: Memory, motion: Motion) -> str:
+        """How far what moves most has come since the beginning, if that is much more."""
+        x, y = self._seen(h)
+        k, first = int(motion.by.argmax()), self.looks[0]
+        far = math.hypot(x[k] - first.x[k], y[k] - first.y[k])
+        return f"; it has come {far:.2g} m in all" if far > 2 * motion.by[k] else ""
 
     def _named(self, h: Memory, motion: Motion) -> str:
         """How many blocks move, which do most, and how far they came in the last quarter."""
@@ -234,15 +299,19 @@ class Unrest:
 
     # ---- reached
 
-    def _still(self, h: Memory, motion: Motion) -> str:
+    def _still(self, h: Memory, motion: Motion, goes_on: GoesOn) -> str:
         """What is said if blocks go on as fast as before, and would get somewhere."""
         usual = overlap(h)
         if motion.steady < 0.9 or motion.growth < 0.9 or motion.share < ONE_WAY:
             return ""
-        if not float(motion.by.max()) * AHEAD / motion.cycles > usual:
+        k = int(motion.by.argmax())
+        if not float(motion.by[k]) * AHEAD / motion.cycles > usual:
             return ""
-        named = self._named(h, motion)
-        return f"and yet it moves on, as fast as before: {named}; a smaller ratio would not be reached"
+        speed = float(motion.by[k]) / motion.cycles
+        n = min(max((self.looks[-1].cycle - self.looks[0].cycle) // 4, TRIED[0]), TRIED[1])
+        if not goes_on(int(self._blocks[k]), speed, n):
+            return ""
+        return f"and yet it moves on, as fast as before: {self._named(h, motion)}; that is no rest"
 
     def _slipped(self, h: Memory) -> str:
         """What is said if friction and opening contacts have taken much since the last rest."""
@@ -256,19 +325,6 @@ class Unrest:
             f"took {taken:.3g} J/m, {share:.2%} of what joints and blocks hold now, and where all rests may "
             "depend on the way; load in steps, and compare"
         )
-
-
-def _closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
-    """Contacts that bear a force: addresses, normal and shear forces, places of their materials.
-
-    springs: only those of constitutive number 1, whose strength is known: a law of the user's has its own.
-    """
-    contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
-    contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
-    if springs:
-        contacts = contacts[integers(h, contacts, g.KCC) == 1]
-    fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
-    return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
 
 
 def driven(h: Memory) -> str:
@@ -291,33 +347,3 @@ def driven(h: Memory) -> str:
         f"and yet BOUNDARY moves {kind_of(h, int(np.where(of_point, points, blocks)[k]))} at {speed[k]:.3g} "
         "m/s: what is at rest now will not stay so; BOUNDARY ... XVEL=0 YVEL=0 stops it"
     )
-
-
-def overlap(h: Memory) -> float:
-    """Mean overlap of the contacts that bear a force; 0 if none does."""
-    _, fn, _, m = _closed(h)
-    return float(np.mean(fn / h.cr[g.AKN + m])) if len(fn) else 0.0
-
-
-def at_strength(h: Memory) -> Any:
-    """Contacts of springs and friction whose shear force is their strength, the most loaded one first."""
-    contacts, fn, fs, m = _closed(h, springs=True)
-    slipping = np.abs(fs) >= 0.999 * (h.cr[g.COH + m] + h.cr[g.AMU + m] * fn)
-    order = np.argsort(-fn[slipping], kind="stable")
-    return contacts[slipping][order]
-
-
-def slipped_farthest(h: Memory) -> str:
-    """The contact that has slipped farthest since it closed: what its spring does not hold of its shear.
-
-    Nothing if none has slipped by more than what its spring has rounded.
-    """
-    contacts, _, fs, m = _closed(h, springs=True)
-    if not len(contacts):
-        return ""
-    held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
-    slip = np.abs(np.asarray(getr(h, contacts, g.KCS), np.float64) - held)
-    k = int(slip.argmax())
-    if slip[k] < ROUNDED * np.abs(held).max():
-        return ""
-    return f", {place_of(h, int(contacts[k]))} by {slip[k]:.2g} m in all"

@@ -1,0 +1,57 @@
+"""What contacts bear, how far they have come to their strength, and how far they have slipped."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.ops.run.chatter import place_of
+
+ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
+
+
+def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
+    """Contacts that bear a force: addresses, normal and shear forces, places of their materials.
+
+    springs: only those of constitutive number 1, whose strength is known: a law of the user's has its own.
+    """
+    contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
+    contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+    if springs:
+        contacts = contacts[integers(h, contacts, g.KCC) == 1]
+    fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
+    return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
+
+
+def overlap(h: Memory) -> float:
+    """Mean overlap of the contacts that bear a force; 0 if none does."""
+    _, fn, _, m = closed(h)
+    return float(np.mean(fn / h.cr[g.AKN + m])) if len(fn) else 0.0
+
+
+def at_strength(h: Memory) -> Any:
+    """Contacts of springs and friction whose shear force is their strength, the most loaded one first."""
+    contacts, fn, fs, m = closed(h, springs=True)
+    slipping = np.abs(fs) >= 0.999 * (h.cr[g.COH + m] + h.cr[g.AMU + m] * fn)
+    order = np.argsort(-fn[slipping], kind="stable")
+    return contacts[slipping][order]
+
+
+def slipped_farthest(h: Memory) -> str:
+    """The contact that has slipped farthest since it closed: what its spring does not hold of its shear.
+
+    Nothing if none has slipped by more than what its spring has rounded.
+    """
+    contacts, _, fs, m = closed(h, springs=True)
+    if not len(contacts):
+        return ""
+    held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
+    slip = np.abs(np.asarray(getr(h, contacts, g.KCS), np.float64) - held)
+    k = int(slip.argmax())
+    if slip[k] < ROUNDED * np.abs(held).max():
+        return ""
+    return f", {place_of(h, int(contacts[k]))} by {slip[k]:.2g} m in all"
