@@ -352,6 +352,22 @@ def test_the_note_gives_the_resultant_force() -> None:
     frame.add(snapshot(h, contacts=True))
     notes = "".join(text.get_text() for text in frame.figure().texts)
     assert "largest contact force (resultant): 5 N/m" in notes
+    assert "in cycle" not in notes
+    h.ci[g.MCTOT] = 7
+    frame.add(snapshot(h))
+    notes = "".join(text.get_text() for text in frame.figure().texts)
+    assert "largest contact force (resultant): 5 N/m, in cycle 0" in notes  # whose forces the arrows are
+
+
+def test_name_and_cycle_stand_above_each_other_where_the_picture_is_narrow() -> None:
+    frame = Frame("a name that is longer than the picture is wide")
+    frame.add(snapshot(two_blocks().h))
+    narrow = frame.figure().axes[0]
+    frame.name = "deck"
+    wide = frame.figure().axes[0]
+    assert narrow.get_title(loc="left").endswith("\n")
+    assert wide.get_title(loc="left") == "deck"
+    assert wide.get_title(loc="right") == narrow.get_title(loc="right") == "cycle 0, t = 0 s"
 
 
 def test_only_two_kinds_of_plot(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ LARGEST = 40.0  # inches that they may fill at any plot scale
 MARGINS = (0.75, 0.25, 0.55, 0.45)  # left, right, bottom, top, in inches
 KEY_STATES = 10  # states that the key names; of more, an even selection
 POINT = 1.0 / 72.0  # inch
+LETTER = 0.08  # inches that one takes in a title, about
 INK = "#33302b"
 HATCH = "#b7ab93"
 HATCH_WIDTH = 0.4
@@ -81,9 +82,16 @@ def paper(
     return figure, axes
 
 
-def title(axes: Axes, name: str) -> None:
-    """Write the name of the run over the picture, as it stands: a $ in it begins no formula."""
-    axes.set_title(drawable(name), loc="left", fontsize=10, color=INK, parse_math=False)
+def title(axes: Axes, name: str, when: str = "") -> None:
+    """Write the name of the run over the picture, as it stands: a $ in it begins no formula.
+
+    when: what stands at the right of it, or below it if there is no room for both.
+    """
+    inches = axes.bbox.width / axes.figure.dpi
+    above = "\n" if when and inches < LETTER * (len(name) + len(when)) else ""
+    axes.set_title(drawable(name) + above, loc="left", fontsize=10, color=INK, parse_math=False)
+    if when:
+        axes.set_title(when, loc="right", fontsize=9, color=INK)
 
 
 def drawable(name: str) -> str:

@@ -206,8 +206,7 @@ class Frame:
         key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour))
         figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
         last = self.states[-1]
-        title(axes, self.name)
-        axes.set_title(f"cycle {last.cycle}, t = {last.time:.4g} s", loc="right", fontsize=9, color=INK)
+        title(axes, self.name, f"cycle {last.cycle}, t = {last.time:.4g} s")
         draw_blocks(axes, self.states, inches)
         for state in self.states:
             draw_domains(axes, state.domains, inches)
@@ -241,8 +240,9 @@ class Frame:
     def _notes(self) -> list[str]:
         """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""
         outer = [f"outer domain: {domain.address}" for domain in self.states[-1].domains if domain.outer]
-        contacts = [state.contacts for state in self.states if state.contacts is not None]
-        if not contacts:
+        shown = [state for state in self.states if state.contacts is not None]
+        if not shown or shown[-1].contacts is None:
             return outer
-        force = np.hypot(*contacts[-1].force.T).max(initial=0.0)
-        return [*outer, f"largest contact force (resultant): {force:.4g} N/m"]
+        force = np.hypot(*shown[-1].contacts.force.T).max(initial=0.0)
+        then = f", in cycle {shown[-1].cycle}" if shown[-1] is not self.states[-1] else ""
+        return [*outer, f"largest contact force (resultant): {force:.4g} N/m{then}"]
