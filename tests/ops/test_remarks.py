@@ -12,7 +12,7 @@ from scenes import play
 from udec_ia import Model
 from udec_ia.heap.accessors import puti
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.unrest import at_strength
+from udec_ia.ops.run.bearing import at_strength
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.dat"))
 
@@ -313,3 +313,23 @@ def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None
     assert text.startswith(
         "materials 1 and 2 meet and differ in KN and FRICTION: a contact between them takes"
     )
+
+
+@pytest.mark.parametrize(("stress", "warned"), [((4e6, 0, -1e6), True), ((-4e6, 1e6, -1e6), False)])
+def test_initial_tension_is_remarked(
+    stress: tuple[float, float, float], warned: bool, tmp_path: Path
+) -> None:
+    m = soft(tmp_path, bulk=1e9, g=5e8)
+    said = told(m)
+    m.insitu(0, 1, 1, 2, *stress)
+    assert said == ["INSITU: 4e+06 is tension, which joints do not bear; compression is negative"] * warned
+
+
+def test_a_tiny_fraction_is_remarked(tmp_path: Path) -> None:
+    m = soft(tmp_path)
+    said = told(m)
+    m.fraction(0.01)
+    assert said == []
+    m.fraction(1e-300)
+    assert len(said) == 1
+    assert "FRACTION 1e-300: it takes 1e+300 cycles" in said[0]

@@ -27,6 +27,7 @@ from udec_ia.ops.commands.split import split
 from udec_ia.ops.commands.uncut import why_uncut
 from udec_ia.ops.common.limits import real, reals, rows, whole
 from udec_ia.ops.common.ranges import limits_turned, why_no_block
+from udec_ia.ops.run.remarks import on_tension
 from udec_ia.transaction import command
 
 P = ParamSpec("P")
@@ -192,7 +193,9 @@ class Blocks(State):
         """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
         self._ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-        return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
+        many = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
+        self.remark(on_tension((s11, s12, s22), (*xgrad, *ygrad)))
+        return many
 
     @command
     def round(self, d: float) -> None:

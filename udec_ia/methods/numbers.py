@@ -10,9 +10,7 @@ from udec_ia.layout.material import Properties
 from udec_ia.methods.state import State
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.energy import Balance, balance, switch
-from udec_ia.ops.run.remarks import (
-    on_properties,
-)
+from udec_ia.ops.run.remarks import on_fraction, on_properties
 from udec_ia.transaction import looking, numbers, steady
 
 
@@ -90,6 +88,7 @@ class Numbers(State):
         """
         self._ready(sound=False)
         settings.set_fraction(self.array, f, safe, scaled)
+        self.remark(on_fraction(f))
 
     @steady
     def scale(self, s: float) -> None:

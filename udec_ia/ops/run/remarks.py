@@ -7,7 +7,7 @@ material that lacks a modulus, a wait for rest that nothing brings about.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,6 +35,7 @@ SLIVER = 40  # the mean edge over the shortest, from which on it is said
 SLENDER = 100  # length over mean width of a block, from which on it is a sliver
 Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of what a block puts on a contact: force of a last digit from which on it is said
+TINY = 1e-4  # fraction of the critical time-step that is hardly meant
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
 
@@ -59,6 +60,23 @@ def on_properties(array: MainArray, material: int, values: dict[str, float | Non
                 f"{name.replace('_', ' ')} {value:g} of material {material} is a tangent, of {angle:.3g} "
                 f"degrees: if an angle of {value:g} degrees is meant, give {tangent:.3g}"
             )
+
+
+def on_fraction(f: float) -> Iterator[str]:
+    """FRACTION: a step in which nothing happens."""
+    if f < TINY:
+        yield (
+            f"FRACTION {f:g}: it takes {1 / f:.2g} cycles until blocks do what they can do in one critical "
+            "time-step; 0.1 is usual"
+        )
+
+
+def on_tension(stress: Sequence[float], gradients: Sequence[float]) -> Iterator[str]:
+    """INSITU: tension in all of the range. stress: 11, 12, 22, Pa; gradients: their growth per metre."""
+    s11, _, s22 = stress
+    if max(s11, s22) > 0 and not any(gradients):
+        largest = max(s11, s22)
+        yield f"INSITU: {largest:g} is tension, which joints do not bear; compression is negative"
 
 
 def on_moduli(array: MainArray, own_laws: Collection[int]) -> Iterator[str]:
