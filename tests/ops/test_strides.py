@@ -106,3 +106,7 @@ def test_what_rests_on_its_springs_is_not_told(tmp_path: Path) -> None:
     """Its velocity is less than a digit in a cycle, and it need not go anywhere."""
     text = PUSHED.replace("ROUND 0.1", "ROUND 0.1\nGRAVITY 0,-10\nDAMP 0.5 100 MASS")
     assert run(text, "i32r32", tmp_path)[0] == []
+
+
+def test_where_all_is_fixed_nothing_is_told(tmp_path: Path) -> None:
+    assert run(f"{PUSHED}FIX 0 20 0 3\n", "i32r32", tmp_path, (300, 300))[0] == []

@@ -134,7 +134,7 @@ class Strides:
     def look(self, array: MainArray, every: int = EVERY) -> None:
         """Note where all are, and what was lost since the last time, if that is `every` cycles ago."""
         h, before = array.h, self._last
-        if array.scheme.real_bits > 32 or (before and h.ci[g.MCTOT] < before.cycle + every):
+        if not len(self._bodies.at) or (before and h.ci[g.MCTOT] < before.cycle + every):
             return
         now = self._seen(h)
         self._last = now
