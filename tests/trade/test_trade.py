@@ -18,12 +18,13 @@ from udec_ia.layout import offsets as g
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.blame import Blame
+from udec_ia.trade.changes import changes
 from udec_ia.trade.digits import measure
 from udec_ia.trade.judge import Row, recommended
 from udec_ia.trade.levers import Fraction, Numbers, Setting
 from udec_ia.trade.noise import Noisy
 from udec_ia.trade.parting import parting
-from udec_ia.trade.report import changes, half_step, sentences, shown
+from udec_ia.trade.report import half_step, sentences, shown
 from udec_ia.trade.shop import SURVEYED, Options
 from udec_ia.trade.surveyed import segments
 from udec_ia.trade.trade import Price, trade

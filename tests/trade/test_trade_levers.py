@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from udec_ia.errors import UdecError
-from udec_ia.trade.levers import Deck, Fraction, Numbers, Setting
+from udec_ia.trade.deck import Deck
+from udec_ia.trade.levers import Fraction, Numbers, Setting
 
 DECK = """\
 START

@@ -14,6 +14,11 @@ from udec_ia.trade.levers import Numbers, Setting
 from udec_ia.trade.steps import to_rest
 from udec_ia.trade.surveyed import Segment
 
+GAINS = {
+    False: 3.5,
+    True: 2.1,
+}  # medians of STATIC over the best damping, without and with SAFE (docs/rest.md)
+
 
 @dataclass(frozen=True)
 class Rates:
@@ -49,5 +54,11 @@ def cycles_of(survey: Sequence[Segment], numbers: Numbers, setting: Setting) -> 
     """Cycles of each CYCLE and SOLVE, the latter as far as can be known."""
     found: list[float] = []
     for one, n, longer in zip(survey, numbers.cycles, numbers.longer, strict=True):
-        found.append(to_rest(one, longer, setting) if n is None else float(n))
+        cycles = to_rest(one, longer, setting) if n is None else float(n)
+        found.append(cycles / _gain(one) if setting.static and one.solve and not one.static else cycles)
     return found
+
+
+def _gain(one: Segment) -> float:
+    """How many times fewer cycles SOLVE ... STATIC is expected to take."""
+    return GAINS[one.safe]

@@ -22,7 +22,8 @@ from udec_ia.heap.words import scheme
 from udec_ia.study.many import run_all
 from udec_ia.study.progress import Told
 from udec_ia.study.runs import ENDED, Result
-from udec_ia.trade.levers import Deck, Setting
+from udec_ia.trade.deck import Deck
+from udec_ia.trade.levers import Setting
 from udec_ia.trade.noise import KICKS, Noisy
 from udec_ia.trade.shop import Options, Shop
 from udec_ia.trade.significant import FEWEST, Digits, digits
@@ -53,37 +54,49 @@ class Ensemble:
     results: dict[str, list[Result]] = field(default_factory=dict)
     said: list[str] = field(default_factory=list)
 
+    @property
+    def narrow(self) -> str:
+        """The word scheme with shorter reals, "" if it cannot run the deck."""
+        return next(iter([*self.results][1:]), "")
+
     def digits(self, build: str, name: str) -> Digits | None:
         """Of one quantity."""
         values = [one.quantities[name] for one in self.results[build] if one.status == ENDED]
         return digits(values, _bits(build))
 
     def step(self, name: str) -> float:
-        """Digits that a run with half the step shares."""
-        if self.plain is None or self.half is None or self.half.status != ENDED:
+        """Digits that a run with half the step shares, NaN if there is none."""
+        if self.plain is None or self.half is None:
             return math.nan
         a, b = self.plain.quantities[name], self.half.quantities[name]
         return math.inf if a == b else -math.log10(abs(a - b) / abs(b)) if b else 0.0
 
     def rows(self) -> list[tuple[object, ...]]:
         """A line for each quantity."""
-        wide, narrow = self.results
         found: list[tuple[object, ...]] = []
         for name in self.names:
-            one, two = self.digits(wide, name), self.digits(narrow, name)
-            numbers = [
-                getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")
-            ]
-            shown = [round(number, 1) for number in (*numbers, self.step(name))]
-            value = one.mean if one else math.nan
-            found.append((name, value, *shown, verdict(one, two, self.step(name))))
+            one = self.digits(next(iter(self.results)), name)
+            two = self.digits(self.narrow, name) if self.narrow else None
+            parts = [getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")]
+            step = min(self.step(name), one.full) if one else math.nan  # equal numbers share all digits
+            cells = [_shown(number) for number in (*parts, step)]
+            found.append((name, one.mean if one else "", *cells, verdict(one, two, step, self.narrow)))
         return found
 
 
-def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
-    """What limits a quantity."""
-    if wide is None or narrow is None:
+def _shown(digits: float) -> float | str:
+    return "" if math.isnan(digits) else round(digits, 1)
+
+
+def verdict(wide: Digits | None, narrow: Digits | None, step: float, short: str) -> str:
+    """What limits a quantity. short: the word scheme with shorter reals, "" if there is none."""
+    if wide is None:
         return "too few runs have ended: see log.txt in their folders"
+    if narrow is None:
+        runs = f"too few runs of {short} have ended" if short else "no run has shorter reals"
+        sooner = "the time-step; " if step < wide.lower else ""
+        lost = f"noise takes {max(wide.full - wide.digits, 0):.1f} digits"
+        return f"{sooner}{lost}; whether that is rounding or chaos is not known, as {runs}"
     more, gained = wide.full - narrow.full, max(wide.digits - narrow.digits, 0.0)
     if gained < SHARE * more:
         sooner = "; the time-step takes more" if step < wide.lower else ""
@@ -115,7 +128,12 @@ def measure(
     found.names = [*found.plain.quantities][1:]
     row = shop.row(Setting(shop.wide, 0.5))
     shop.do([row])
-    found.half = row.result
+    if row.why:
+        found.said.append(f"no digits of the step: {row.why}")
+    elif not deck.is_stepped:
+        found.said.append("no digits of the step: SOLVE ... STATIC has one of its own, which FRACTION leaves")
+    elif row.ran:
+        found.half = row.result
     cycles = sum(one.done for one in shop.survey)
     seconds = found.plain.seconds + KICK * min(cycles, KICKS)
     runs = max(FEWEST, min(runs, int(shop.left * (options.jobs or 1) / (2 * seconds))))
@@ -124,6 +142,7 @@ def measure(
         found.results[build] = perturbed(shop, build, cycles, range(1, runs + 1))
     every = max(1, cycles // KICKS)
     kicks = "noise every " + ("cycle" if every == 1 else f"{every} cycles")
+    found.said += shop.said
     found.said.append(
         f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, {kicks}; "
         "confidence and probability 95 %"
@@ -135,12 +154,13 @@ def perturbed(
     shop: Shop, build: str, cycles: int, seeds: range, fields: tuple[str, ...] = (), label: str = "noise"
 ) -> list[Result]:
     """Perturbed runs of the deck as it is."""
-    text = shop.deck.written(Setting(build), None, shop.fraction)
+    text = shop.deck.written(Setting(build))
     asked, laws = shop.options.quantities, shop.options.constitutive
     runs = [
         Noisy(
             f"{build},{label}={seed}",
             text,
+            shop.deck.name,
             quantities=("end of time = time", *asked),
             build=build,
             constitutive=laws,

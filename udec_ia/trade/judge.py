@@ -20,7 +20,8 @@ class Row:
     """A setting, and what came of it.
 
     predicted: seconds. result: None for what was dropped. cost: seconds by the rates of the survey and the
-    cycles that it took. errors: share of the reference, by quantity.
+    cycles that it took. errors: share of the reference, by quantity. why: it was dropped, or is not compared
+    though it ran; "" if the budget has dropped it, or nothing has.
     """
 
     setting: Setting
@@ -29,6 +30,7 @@ class Row:
     result: Result | None = None
     cost: float = math.inf
     errors: dict[str, float] = field(default_factory=dict)
+    why: str = ""
 
     @property
     def ran(self) -> bool:
@@ -36,9 +38,14 @@ class Row:
         return self.result is not None and self.result.status == ENDED
 
     @property
+    def compared(self) -> bool:
+        """True if it came to its end, and is a run of the deck."""
+        return self.ran and not self.why
+
+    @property
     def error(self) -> float:
         """The greatest of its errors."""
-        return max(self.errors.values(), default=math.inf) if self.ran else math.inf
+        return max(self.errors.values(), default=math.inf) if self.compared else math.inf
 
     @property
     def memory(self) -> int:
@@ -52,6 +59,8 @@ def judge(
 ) -> list[str]:
     """Enter the errors of all rows. Returns the names of the quantities that can be compared.
 
+    If these tell nothing of the step, there are no errors.
+
     parted: the finest runs have parted for good. Then two numbers may still be near each other by chance, and
     only those that converge with an order, or are the same, are compared.
     """
@@ -62,11 +71,22 @@ def judge(
         and one.share <= SPREAD * tolerance
         and (not parted or math.isfinite(one.order) or one.error == 0)
     ]
+    choosing = known if tells(limits, known) else []
     for row in rows:
-        if row.result is not None:
+        if row.result is not None and not row.why:
             found = row.result.quantities
-            row.errors = {name: limits[name].error_of(found[name]) for name in known}  # type: ignore[union-attr]
+            row.errors = {name: limits[name].error_of(found[name]) for name in choosing}  # type: ignore[union-attr]
     return known
+
+
+def tells(limits: Mapping[str, Limit | None], known: Sequence[str]) -> bool:
+    """True if the known quantities are enough to choose a setting by.
+
+    One that is the same number at all steps, 0 above all, tells nothing of the step: it is not enough where
+    others are asked for and not known.
+    """
+    moves = any((one := limits[name]) is not None and one.error > 0 for name in known)
+    return moves or (bool(known) and len(known) == len(limits))
 
 
 def margin(limits: Mapping[str, Limit | None], known: Sequence[str]) -> dict[str, float]:
@@ -76,7 +96,7 @@ def margin(limits: Mapping[str, Limit | None], known: Sequence[str]) -> dict[str
 
 def within(row: Row, margins: Mapping[str, float], tolerance: float) -> bool:
     """True if all errors, with what they may be wrong by, are within the tolerance."""
-    if not row.ran or not row.errors:
+    if not row.compared or not row.errors:
         return False
     return all(error + margins[name] <= tolerance for name, error in row.errors.items())
 

@@ -57,11 +57,12 @@ class Segment:
 class Surveyed(Run):
     """A run that leaves a survey. rehearsed: seconds after which each CYCLE or SOLVE ends, 0 for never.
 
-    limits: ask for estimate and bound.
+    limits: ask for estimate and bound. lines: numbers that the lines of its deck have in the user's.
     """
 
     rehearsed: float = 0.0
     limits: bool = False
+    lines: tuple[int, ...] = ()
 
     @property
     def made_of(self) -> dict[str, str]:

@@ -11,11 +11,13 @@ from udec_ia.deck.variables import Values
 from udec_ia.study.many import RUNS
 from udec_ia.study.runs import ENDED
 from udec_ia.trade import candidates
-from udec_ia.trade.judge import Row, judge, margin, recommended
-from udec_ia.trade.levers import Deck, Fraction, Setting
+from udec_ia.trade.deck import Deck
+from udec_ia.trade.judge import Row, judge, margin, recommended, tells
+from udec_ia.trade.levers import Fraction, Setting
 from udec_ia.trade.limit import Limit, limit, shrinks
 from udec_ia.trade.parting import Parting, parting
-from udec_ia.trade.shop import Options, Shop
+from udec_ia.trade.sampling import samples
+from udec_ia.trade.shop import SURVEYED, Options, Shop
 
 WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
@@ -30,7 +32,8 @@ class Price:
 
     known: quantities that can be compared. levels: rows of the reference, the step halved from one to the
     next. best: what to take. fraction: that the deck begins with, None if that does not matter. parted: where
-    the finest runs part. said: sentences.
+    the finest runs part. solved: what SOLVE says in the deck as it is, "" for rest without a blemish. said:
+    sentences.
     """
 
     deck: Deck
@@ -43,12 +46,21 @@ class Price:
     best: Row | None = None
     fraction: Fraction | None = None
     parted: Parting | None = None
+    solved: str = ""
+    sampled: dict[str, int] = field(default_factory=dict)
     said: list[str] = field(default_factory=list)
 
     @property
     def margins(self) -> dict[str, float]:
         """See judge.margin."""
         return margin(self.limits, self.known)
+
+    @property
+    def astray(self) -> str:
+        """Why there is nothing to compare with, if no run with half the step is one of the deck; else ""."""
+        if len(self.levels) > 1:
+            return ""
+        return next((row.why for row in self.rows if row.ran and row.why), "")
 
     def path(self, row: Row) -> Path:
         """The folder of a run."""
@@ -80,18 +92,20 @@ def trade(
         price.said.append(f"the deck as it is gives nothing to compare: {reason}")
         return price
     shop.left -= result.seconds
-    price.fraction = shop.fraction
+    price.fraction, price.solved = shop.fraction, result.message
+    price.sampled = samples(options.quantities, folder / RUNS / SURVEYED)
     cycles = counted(sum(one.done for one in shop.survey), "cycle")
     options.tell(f"it has taken {result.seconds:.3g} s for {cycles}")
     if options.half_step:
         price.rows += (rows := [shop.row(Setting(shop.wide, step)) for step in (1.0, 0.5)])
         shop.do(rows)
-        price.levels = [row for row in rows if row.ran]
+        price.levels = [row for row in rows if row.compared]
         price.limits = dict.fromkeys(_names(price))
         return price
     _reference(price, shop)
-    _settings(price, shop)
-    price.said += _dropped(price)
+    if len(price.levels) > 1:
+        _settings(price, shop)
+    price.said += [*shop.said, *_dropped(price)]
     return price
 
 
@@ -110,7 +124,7 @@ def _reference(price: Price, shop: Shop) -> None:
         price.rows += wanted
         if shop.do(wanted):
             shop.options.tell("the budget does not allow a finer reference")
-        price.levels += [row for row in wanted if row.ran]
+        price.levels += [row for row in wanted if row.compared]
         price.parted = _parted(price)
         names = _names(price)
         values = {name: [row.result.quantities[name] for row in price.levels if row.result] for name in names}
@@ -122,7 +136,7 @@ def _reference(price: Price, shop: Shop) -> None:
             if one and one.share > WANTED * price.tolerance and shrinks(values[name])
         ]
         k = len(price.levels)
-        if not unknown or k > FINEST or any(not row.ran for row in wanted):
+        if not unknown or k > FINEST or any(not row.compared for row in wanted):
             return
         wanted = [shop.row(candidates.level(own, k, deck))]
         if shop.price(wanted) > shop.left / 2:
@@ -142,7 +156,7 @@ def _settings(price: Price, shop: Shop) -> None:
     done = {row.setting for row in price.rows}
     longer = candidates.longer(price.deck, shop.survey, shop.builds)
     _try(price, shop, [one for one in longer if one not in done])
-    if price.known and (price.best is None or price.best.setting.step < 1):
+    if tells(price.limits, price.known) and (price.best is None or price.best.setting.step < 1):
         steps = [row.setting.step for row in price.levels]
         finest = price.best.setting.step if price.best else min(steps, default=1.0)
         done = {row.setting for row in price.rows}
@@ -160,9 +174,10 @@ def _try(price: Price, shop: Shop, settings: Iterable[Setting]) -> None:
     price.rows += rows
     shop.do(rows)
     price.known = judge(price.rows, price.limits, price.tolerance, price.parted is not None)
-    price.best = recommended(price.rows, price.margins, price.tolerance)
+    if tells(price.limits, price.known):
+        price.best = recommended(price.rows, price.margins, price.tolerance)
 
 
 def _dropped(price: Price) -> list[str]:
-    names = [row.setting.name for row in price.rows if row.result is None]
+    names = [row.setting.name for row in price.rows if row.result is None and not row.why]
     return [f"not run, as they go beyond the budget: {', '.join(names)}"] if names else []

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +32,7 @@ def add_commands(commands: Any) -> None:
     for name, form, text in REPEATED:
         parser.add_argument(name, action="append", default=[], metavar=form, help=f"{text}; repeatable")
     parser.add_argument(
-        "--tolerance", type=float, metavar="SHARE", help="greatest relative error (default: 1e-3)"
+        "--tolerance", metavar="SHARE", help="greatest relative error, as 1e-3 or 0.1%% (default: 1e-3)"
     )
     parser.add_argument(
         "--budget", default="5m", metavar="TIME", help="time for all runs: 60s, 5m, 1h (default: 5m)"
@@ -63,22 +65,19 @@ def add_commands(commands: Any) -> None:
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.inspect.look.listing import Listing
-    from udec_ia.trade.report import COLUMNS, half_step, sentences, shown
+    from udec_ia.trade.report import COLUMNS, half_step, sentences, shown, without
     from udec_ia.trade.trade import trade
 
     if args.digits or args.blame:
         return _digits(args)
-    if args.levers:
+    if args.levers is not None:
         return _levers(args)
     price = trade(
         _text(args), args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent
     )
     if args.half_step:
         if len(price.levels) < 2:
-            failed = [row.result for row in price.rows if row.result and not row.ran]
-            return Listing(
-                [*price.said, *(f"{one.name} {one.status}: {one.message}" for one in failed)], status=1
-            )
+            return Listing([*price.said, *without(price)], status=1)
         return Listing(half_step(price))
     files = _files(price, args)
     written = [f"written: {', '.join(map(str, files))}"] if files else []
@@ -112,20 +111,18 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
 def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.inspect.look.listing import Listing
     from udec_ia.trade import model
-    from udec_ia.trade.levers import Deck
+    from udec_ia.trade.deck import Deck
     from udec_ia.trade.shop import Shop
 
-    levers = [one.strip() for one in args.levers.split(",")]
-    unknown = [one for one in levers if one not in model.LEVERS]
-    if unknown:
-        raise ValueError(f"--levers {unknown[0]}: choose from {', '.join(model.LEVERS)}")
+    levers = _names("--levers", args.levers, model.LEVERS)
     deck = Deck(_text(args), args.deck.name, given(args.set), args.deck.parent)
     shop = Shop(deck, _options(args), _folder(args))
     result = shop.look()
     if result.status != "ended" or not shop.survey:
         return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
-    rows = [row for lever in levers for row in model.refine(shop, lever)]
-    return Listing([], model.COLUMNS, rows)
+    found = [model.refine(shop, lever) for lever in levers]
+    said, rows = ([one for part in parts for one in part] for parts in zip(*found, strict=True))
+    return Listing(said, model.COLUMNS, rows)
 
 
 def _files(price: Price, args: argparse.Namespace) -> list[Path]:
@@ -147,17 +144,13 @@ def _folder(args: argparse.Namespace) -> Path:
 
 
 def _options(args: argparse.Namespace) -> Options:
-    from udec_ia.heap.words import scheme
+    from udec_ia.heap.words import ALL_SCHEMES
     from udec_ia.trade.shop import Options
 
-    if args.tolerance is not None and not args.tolerance > 0:
-        raise ValueError(f"--tolerance {args.tolerance:g}: give more than 0")
-    builds = tuple(one.strip() for one in (args.builds or "").split(",") if one.strip())
-    for build in builds:
-        scheme(build)
+    builds = tuple(_names("--builds", args.builds, ALL_SCHEMES))
     named: dict[str, Any] = {
         "quantities": tuple(args.quantity),
-        "tolerance": args.tolerance,
+        "tolerance": _share(args.tolerance),
         "budget": seconds("--budget", args.budget),
         "build": args.build,
         "builds": builds,
@@ -169,6 +162,31 @@ def _options(args: argparse.Namespace) -> Options:
     return Options(**{name: value for name, value in named.items() if value not in (None, ())})
 
 
+def _share(text: str | None) -> float | None:
+    """The share that is written as a number or in per cent; None without one. ValueError for what is none."""
+    if text is None:
+        return None
+    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
+    try:
+        share = float(number) / (100 if percent else 1)
+    except ValueError:
+        share = math.nan
+    if not 0 < share < math.inf:
+        raise ValueError(f"--tolerance {text}: give a relative error above 0, as in 1e-3 or 0.1%")
+    return share
+
+
+def _names(option: str, text: str | None, known: Collection[str]) -> list[str]:
+    """The names that are written one after the other; [] without the option. ValueError for unknown ones."""
+    if text is None:
+        return []
+    names = [one.strip() for one in text.split(",")]
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{option} {name or repr(text)}: choose from {', '.join(known)}")
+    return [*dict.fromkeys(names)]
+
+
 def _script(args: argparse.Namespace) -> str:
     asked = f", quantities={tuple(args.quantity)!r}" if args.quantity else ""
     where = f"{given(args.set)!r}, Path({str(_folder(args))!r}), options"
@@ -177,7 +195,7 @@ def _script(args: argparse.Namespace) -> str:
         "from udec_ia.trade.report import sentences\n"
         "from udec_ia.trade.shop import Options\n"
         "from udec_ia.trade.trade import trade\n\n"
-        f"options = Options(tolerance={args.tolerance or 1e-3!r}{asked})\n"
+        f"options = Options(tolerance={_share(args.tolerance) or 1e-3!r}{asked})\n"
         f"deck = Path({str(args.deck)!r})\n"
         f"price = trade(deck.read_text(), deck.name, {where}, deck.parent)\n"
         "print(*sentences(price), sep='\\n')"
