@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from mechanics import box, model
 
@@ -49,9 +51,19 @@ def test_a_block_that_is_thrown_up_is_told_of_before_and_stopped_with_a_cure() -
     m = resting(ks=1e6, d=0.45)
     said = told(m)
     m.fraction(0.9, safe=True)
-    with pytest.raises(UdecError, match=r"more energy than was put in(.|\n)*take FRACTION 0\.45"):
+    with pytest.raises(UdecError, match=r"more energy than was put in(.|\n)*take FRACTION 0\.45 SAFE"):
         m.cycle(3000)
     assert any(IMPACTS in one for one in said)
+
+
+@pytest.mark.parametrize("damp", [{"fcrit": 0.3, "freq": 30, "only": "stiffness"}, {"local": 0.8}])
+def test_a_safe_step_is_told_as_the_share_that_was_asked_for(damp: dict[str, Any]) -> None:
+    """The bound is what damping leaves of it."""
+    m = resting()
+    m.damping(**damp)
+    m.fraction(0.9, safe=True)
+    m.cycle(1)
+    assert ", 0.9 of the safe bound with its damping" in m.step_limits()
 
 
 def test_a_step_that_is_hardly_shorter_is_not_told() -> None:

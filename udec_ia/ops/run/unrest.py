@@ -221,7 +221,7 @@ class Unrest:
         if far and motion.now[k] < STOPPED * motion.by[k] and h.ci[g.LREST] != g.KINETIC:
             return "settles", f"{moved}, and what moved most has come to a stop; take more cycles (LIMIT)"
         if (far or motion.growth > FASTER) and self._falls(h, motion):
-            return "collapse", f"{moved}, and nothing holds what moves most; a support would"
+            return "collapse", f"{moved}, and nothing holds what moves most; a support would hold it"
         if not len(slipping) and not far:
             return "settles", f"it settles: {moved}, and no joint slips; take more cycles (LIMIT)"
         slip = (
@@ -319,10 +319,11 @@ class Unrest:
         stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
         if taken <= SLIPPED * stored:
             return ""
-        share = taken / stored if stored else np.inf
+        share = taken / stored if stored else math.inf
+        of = f"{share:.2%} of" if share < 1 else f"{share:.3g} times"
         return (
             f"joints have slipped on the way{slipped_farthest(h)}, or opened and lost their shear: that "
-            f"took {taken:.3g} J/m, {share:.2%} of what joints and blocks hold now, and where all rests may "
+            f"took {taken:.3g} J/m, {of} what joints and blocks hold now, and where all rests may "
             "depend on the way; load in steps, and compare"
         )
 
