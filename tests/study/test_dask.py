@@ -15,8 +15,8 @@ from studies import PILE, ROOT, piles, wait_until
 
 from udec_ia import UdecError
 from udec_ia.cli import main
+from udec_ia.study.folders import UNNAMED
 from udec_ia.study.many import RUNS, run_all
-from udec_ia.study.obeying import UNNAMED
 from udec_ia.study.runs import Result
 
 FRICTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
@@ -93,9 +93,25 @@ def test_an_address_where_nobody_is(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("udec_ia.study.many.CONNECT", 1)
     Path("pile.dat").write_text(PILE)
-    for wrong in ("tcp://127.0.0.1:9", "nonsense://x"):
-        assert main(["sweep", "pile.dat", "--set", "F=0.1,0.2", "--dask", wrong]) == 2
-        assert f"udec sweep: no dask scheduler at {wrong}" in capsys.readouterr().err
+    assert main(["sweep", "pile.dat", "--set", "F=0.1,0.2", "--dask", "tcp://127.0.0.1:9"]) == 2
+    assert "udec sweep: no dask scheduler at tcp://127.0.0.1:9" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "wrong", ["nonsense", "nonsense://x:1", "tcp://:9", "tcp://host", "host:99999", "host:port", "[::1:9"]
+)
+def test_what_can_be_no_address_is_refused_at_once(
+    wrong: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without asking dask, which would try, and leave a client behind that complains when it goes."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ValueError, match="it needs a host and a port; give the address") as caught:
+        run_all(piles(0.1), tmp_path / "out", dask=wrong)
+    assert wrong in str(caught.value)
+    assert not (tmp_path / "out").exists()
+    for good in ("host:8786", "tls://10.0.0.1:8786", "tcp://[::1]:8786", "inproc://10.0.0.1/1/2"):
+        with pytest.raises(UdecError, match="needs dask"):
+            run_all(piles(0.1), tmp_path, dask=good)
 
 
 def test_without_dask_it_is_said_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,10 @@ from studies import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
 
 from udec_ia.cli import main
 from udec_ia.counting import counted
+from udec_ia.study.folders import RESULT
+from udec_ia.study.holding import LOCK
 from udec_ia.study.many import RUNS, run_all
-from udec_ia.study.runs import RESULT, Result
+from udec_ia.study.runs import Result
 
 FRICTIONS = (0.1, 0.3, 0.5, -1)
 SWEEP = ("sweep", "pile.dat", "--set", "F=0.1:0.6:6", "--set", "N=8000", "--jobs", "2")
@@ -56,8 +58,11 @@ def test_a_run_that_kills_its_process_is_a_result(tmp_path: Path) -> None:
     results = run_all(runs, tmp_path, jobs=2)
     assert [one.status for one in results] == ["ended", "died", "ended"]
     assert "memory ran out" in results[1].message
-    assert sorted(os.listdir(tmp_path / RUNS)) == [run.name for run in runs]
-    assert outcomes(run_all(runs[1:2], tmp_path, jobs=1)) == outcomes(results[1:2])  # kept, as all are
+    assert sorted(os.listdir(tmp_path / RUNS)) == [LOCK, *(run.name for run in runs)]
+    told: list[str] = []
+    again = run_all(runs, tmp_path, jobs=1, told=lambda _, why: told.append(why))
+    assert outcomes(again) == outcomes(results)
+    assert sorted(told) == ["kept", "kept", "the process had died"]
 
 
 def whole(folder: Path) -> int:
@@ -98,7 +103,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
     printed = capsys.readouterr().out
     assert printed.count("(kept)") == done
     assert f"{counted(done, 'run')} kept, as the input is the same" in printed
-    assert whole(runs) == len(os.listdir(runs)) == 6
+    assert whole(runs) == len(os.listdir(runs)) - 1 == 6
     reference = run_all(piles(*(0.1, 0.6), cycles=8000), tmp_path / "reference", jobs=0)
     rows = (tmp_path / "pile-sweep" / "pile.csv").read_text().splitlines()
     for row, result in zip((rows[1], rows[6]), reference, strict=True):

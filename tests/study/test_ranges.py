@@ -58,11 +58,17 @@ def test_what_is_said_of_others(text: str, reason: str) -> None:
 def test_values_from_python() -> None:
     assert values_of("F", 0.5) == [0.5]
     assert values_of("F", np.array([1, 2])) == [1, 2]
+    assert values_of("F", np.int64(3)) == [3]
     for wrong in ([], [None], [float("inf")], [True]):
         with pytest.raises(ValueError, match="F"):
             values_of("F", wrong)
     with pytest.raises(ValueError, match="not the name of a variable"):
         values_of("2F", 1)
+    with pytest.raises(ValueError, match="1 is not the name of a variable"):
+        grid({1: [2]})  # type: ignore[dict-item]
+    for huge in ([10**400], "1" + "0" * 400, [-(10**5000)]):
+        with pytest.raises(ValueError, match=r"F cannot be greater than 1\.8e\+308"):
+            values_of("F", huge)
 
 
 @given(st.decimals(-1000, 1000, places=3), st.decimals(-1000, 1000, places=3), st.integers(2, 40))

@@ -14,9 +14,12 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.layout.offsets import MCTOT, MFREE
+from udec_ia.study.holding import LOCK
+from udec_ia.study.keeping import kept, write
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.obeying import obey, rehearse
-from udec_ia.study.runs import Result, Run, kept, write
+from udec_ia.study.reading import read
+from udec_ia.study.runs import Result, Run
 
 SLIDE = (Path(__file__).parents[2] / "examples" / "incline.dat").read_text().replace("PLOT 0 CONTACTS\n", "")
 SLIDE = SLIDE.replace("HISTORY 20", "HISTORY 10")  # so the last cycle is among those that are recorded
@@ -171,7 +174,8 @@ def test_laws_restart_files_and_limits_count_too(tmp_path: Path) -> None:
     state.write_text("one")
     (tmp_path / "run").mkdir()
     run = Run("run", f"RESTART {state}\n", constitutive=(str(law),), limit=5.0)
-    late = Result("run", {}, "timed out", made_of=run.made_of, limit=5.0)
+    found = dict.fromkeys((one.name for one in read(run.quantities)), 0.5)
+    late = Result("run", {}, "timed out", quantities=found, made_of=run.made_of, limit=5.0)
     write(late, tmp_path / "run")
     assert kept(run, tmp_path) == (late, "")
     assert kept(replace(run, limit=4.0), tmp_path) == (late, "")
@@ -189,6 +193,8 @@ def test_what_cannot_be_a_run() -> None:
         {"every": 0},
         {"limit": 0.0},
         {"limit": math.nan},
+        {"limit": math.inf},
+        {"build": "i9r9"},
         {"stop": ("time",)},
         {"quantities": ("x",)},
     ):
@@ -213,7 +219,7 @@ def test_an_interrupted_run_leaves_no_folder(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr("udec_ia.study.watching.Observer.begin", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_all([of({})], tmp_path, jobs=0)
-    assert os.listdir(tmp_path / RUNS) == []
+    assert os.listdir(tmp_path / RUNS) == [LOCK]
 
 
 def test_the_result_in_the_folder_is_plain_json(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import shutil
 from pathlib import Path
 
 import h5py
@@ -34,7 +33,8 @@ def test_the_table_in_all_its_forms(pile: Path) -> None:
     table = found.table
     assert [*table.columns] == [
         *("run", "F", "N", "time", "v", "solve.ratio"),
-        *("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory", "message"),
+        *("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory"),
+        *("warnings", "message"),
     ]
     assert table.columns["F"].tolist() == [0.1, 0.1, -1, -1]
     assert table.columns["N"].tolist() == [10, 20, 10, 20]
@@ -138,7 +138,6 @@ def test_a_rule_and_a_limit(pile: Path, capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("arguments", "status", "told"),
     [
-        ([], 2, "give at least one variable its values"),
         (["--set", "F"], 2, "--set F: give a name and a value"),
         (["--set", "F=1:2"], 2, "a range is first:last:number"),
         (["--set", "F=1", "--quantity", "KYD"], 2, "KYD of which block?"),
@@ -149,6 +148,11 @@ def test_a_rule_and_a_limit(pile: Path, capsys: pytest.CaptureFixture[str]) -> N
         (["--set", "F=1", "--limit", "soon"], 2, "give a time as in 60s, 5m or 1h"),
         (["--set", "F=1", "--every", "0"], 2, "every 0 cycles"),
         (["--set", "F=1", "--jobs", "-2"], 2, "-2 jobs"),
+        (
+            ["--set", "F=1", "--dask", "nonsense"],
+            2,
+            "no dask scheduler at nonsense: it needs a host and a port",
+        ),
         (["--set", "FX=1"], 1, "pile.dat has no $FX\ndid you mean F?"),
     ],
 )
@@ -161,13 +165,35 @@ def test_what_is_refused_before_anything_runs(
 
 
 def test_files_that_are_not_there_or_not_ours(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What stands in the place of a table or a picture is refused before any run."""
     assert main(["sweep", "no.dat", "--set", "F=1"]) == 1
     assert "udec: no.dat: No such file or directory" in capsys.readouterr().err
     (pile / "pile-sweep").mkdir()
-    (pile / "pile-sweep" / "pile.csv").write_text("a table of mine\n")
-    with pytest.raises(UdecError, match="31"):
-        sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0)
-    assert (pile / "pile-sweep" / "pile.csv").read_text() == "a table of mine\n"
+    for kind in ("csv", "h5", "png", "svg"):
+        file = pile / "pile-sweep" / f"pile.{kind}"
+        file.write_text("something of mine\n")
+        with pytest.raises(UdecError, match=f"31: file cannot be written: pile-sweep/pile.{kind} exists"):
+            sweep("pile.dat", {"F": [0.1, 0.2], "N": 5}, jobs=0)
+        assert file.read_text() == "something of mine\n"
+        assert not (pile / "pile-sweep" / "runs").exists()
+        file.unlink()
+    (pile / "pile-sweep" / "pile.png").write_text("mine, and in nobody's way")
+    assert sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0).results[0].status == "ended"
+
+
+def test_pictures_of_an_earlier_sweep_go(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """They would show other runs than the table beside them; what the program has not drawn stays."""
+    folder = pile / "here"
+    sweep("pile.dat", {"F": [0.1, 0.2], "N": 5}, jobs=0, out=folder)
+    (folder / "pile.svg").write_text("<?xml of mine>")
+    found = sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0, out=folder)
+    assert found.said[-1] == f"removed, as of an earlier sweep: {folder / 'pile.png'}"
+    assert not (folder / "pile.png").exists()
+    assert (folder / "pile.svg").read_text() == "<?xml of mine>"
+    (folder / "pile.csv").unlink()  # without our table beside it, a picture may be anybody's
+    (folder / "pile.png").write_bytes(b"\x89PNG\r\n Matplotlib")
+    sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0, out=folder)
+    assert (folder / "pile.png").exists()
 
 
 def test_names_of_folders() -> None:
@@ -188,20 +214,33 @@ def test_what_solve_has_to_say_stands_in_the_table(pile: Path, capsys: pytest.Ca
     assert "SOLVE 1e-06 NOT REACHED" in capsys.readouterr().out
 
 
-def test_a_file_in_the_place_of_a_run_goes(pile: Path) -> None:
-    """What stands in the folder of runs is ours: the run is done again."""
-    values = {"F": 0.5, "N": [10, 20]}
-    first = sweep("pile.dat", values, quantities=("time",), jobs=0)
-    here = pile / "pile-sweep" / "runs" / "F=0.5,N=10"
-    shutil.rmtree(here)
-    here.write_text("something else")
-    again = sweep("pile.dat", values, quantities=("time",), jobs=0)
-    assert [one.outcome for one in again.results] == [one.outcome for one in first.results]
-    assert here.is_dir()
+def test_a_deck_as_it_is(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Without values there is one run, in a folder with the name of the deck."""
+    assert main(["sweep", "pile.dat", "--jobs", "0", "--quantity", "v = block(1, 2.5).KYD"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("1 run: the deck as it is\n1 of 1: pile ended, 200 cycles")
+    with (pile / "pile-sweep" / "pile.csv").open(newline="") as file:
+        rows = [*csv.DictReader(file)]
+    (one,) = sweep("pile.dat", {"F": 0.5, "N": 200}, quantities=("v = block(1, 2.5).KYD",), jobs=0).results
+    assert [(row["run"], float(row["v"])) for row in rows] == [("pile", one.quantities["v"])]
+    assert [result.name for result in sweep(PILE, {}, jobs=0).results] == ["deck"]
 
 
-def test_a_sweep_of_nothing_is_refused(pile: Path) -> None:
-    with pytest.raises(ValueError, match="no variable is given a value"):
-        sweep("pile.dat", {}, jobs=0)
+def test_the_exit_status_is_1_if_no_run_has_a_result(pile: Path) -> None:
+    command = ["sweep", "pile.dat", "--jobs", "0", "--set", "N=5", "--set"]
+    assert main([*command, "F=-1,-2"]) == 1
+    assert main([*command, "F=-1,0.1"]) == 0
+    assert main([*command, "F=0.1", "--stop", "cycles >= 1", "--every", "1"]) == 0
+
+
+def test_what_cannot_be_swept(pile: Path) -> None:
     with pytest.raises(ValueError, match="F has the value 1000000 twice"):
         sweep("pile.dat", {"F": "1e6,1000000", "N": 10}, jobs=0)
+    with pytest.raises(ValueError, match="unknown word scheme 'x': choose one of"):
+        sweep("pile.dat", {"F": 0.1}, build="x", jobs=0)
+    assert not (pile / "pile-sweep").exists()
+
+
+def test_whole_numbers_beyond_a_column_of_integers_are_reals(pile: Path) -> None:
+    found = sweep(PILE.replace("KN=1E8", "KN=$KN"), {"KN": [10**8, 10**20], "N": 1}, jobs=0)
+    assert found.table.columns["KN"].dtype == np.float64

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "sweep.md").read_text()
 SHOWN = re.findall(r"^    \$ udec (.*)\n((?:    .*\n)*)", TEXT, re.M)
 (PYTHON,) = re.findall(r"^```python\n(.*?)^```", TEXT, re.M | re.S)
-SECONDS = re.compile(r"(?<=cycles, )[\d.]+ s|(?<=\d)  +[\d.]+$| {2,}(?=(cycles|seconds))")
+SECONDS = re.compile(r"(?<=cycles, )[\d.]+ s|(?<=\d)  +[\d.]+(?=  +\d+$)| {2,}(?=(cycles|seconds))")
 
 
 def without_seconds(text: str) -> list[str]:

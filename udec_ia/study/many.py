@@ -13,19 +13,24 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import ExitStack, contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 from time import sleep
 from urllib.parse import urlsplit
 
 from udec_ia.errors import UdecError
-from udec_ia.study.obeying import begun, bury, clear, obey, rehearse
-from udec_ia.study.runs import Result, Run, kept
+from udec_ia.study.folders import begun, check_replaceable, clear
+from udec_ia.study.holding import held
+from udec_ia.study.keeping import kept
+from udec_ia.study.obeying import bury, obey, rehearse
+from udec_ia.study.runs import Result, Run
 
 RUNS = "runs"  # folder of the folders of runs
 WATCHED = 1.0  # seconds between two looks whether the sweep is still there
 CONNECT = 30  # seconds to wait for a scheduler
+SCHEMES = ("", "tcp", "tls", "ucx", "ws", "wss")  # of its address
+PRINTED = "give the address that the scheduler prints when it starts, as in tcp://10.0.0.1:8786"
 Told = Callable[[Result, str], None]
 
 
@@ -44,8 +49,9 @@ def run_all(
     dask: address of a scheduler; `folder` must be one that its workers have as well. timed: the seconds of
     results are to be compared, so each process rehearses its first run before. told: takes each result, and
     why it is what it is: "" if it is new, "kept" if it was there, or what has changed since it was made.
-    Raises ValueError if two runs have one name or jobs is below 0, UdecError 31 if the folder cannot be
-    written. Whatever ends it, what is done stays.
+    Raises ValueError if two runs have one name, jobs is below 0 or dask is no address; UdecError 31, before
+    any run, if the folder cannot be written or is in use by another process, or if something stands in the
+    place of a run that the program has not made. Whatever ends it, what is done stays.
     """
     names = [run.name for run in runs]
     if len({*names}) < len(names):
@@ -53,24 +59,38 @@ def run_all(
         raise ValueError(f"two runs are called {twice}: give each a name of its own")
     if jobs is not None and jobs < 0:
         raise ValueError(f"{jobs} jobs: give 1 or more, or 0 for this process")
+    if dask:
+        _check_address(dask)
     here = Path(folder).absolute() / RUNS
-    try:
-        here.mkdir(parents=True, exist_ok=True)
-        clear(here)
-    except OSError as error:
-        raise UdecError(31, f"{here}: {error.strerror or error}") from error
-    done, why, rest = dict[str, Result](), dict[str, str](), list[Run]()
-    for run in runs:
-        result, why[run.name] = kept(run, here)
-        if result is None:
-            rest.append(run)
-        else:
-            done[run.name] = result
+    done: dict[str, Result] = {}
+    with _prepared(here):
+        rest, why = list[Run](), dict[str, str]()
+        for run in runs:
+            result, why[run.name] = kept(run, here)
+            if result is None:
+                check_replaceable(here / run.name)
+                rest.append(run)
+            else:
+                done[run.name] = result
+        for result in done.values():
             told(result, "kept")
-    for result in _pool(rest, here, jobs, dask, timed) if rest else ():
-        done[result.name] = result
-        told(result, why[result.name])
+        for result in _pool(rest, here, jobs, dask, timed) if rest else ():
+            done[result.name] = result
+            told(result, why[result.name])
     return [done[name] for name in names]
+
+
+@contextmanager
+def _prepared(folder: Path) -> Iterator[None]:
+    """The folder of runs is there, and nobody else's, and nothing in it is half done. Error 31."""
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(held(folder))
+            clear(folder)
+        except OSError as error:
+            raise UdecError(31, f"{folder}: {error.strerror or error}") from error
+        yield
 
 
 def _pool(runs: list[Run], folder: Path, jobs: int | None, dask: str, timed: bool) -> Iterator[Result]:
@@ -94,7 +114,7 @@ def _in_processes(runs: list[Run], folder: Path, jobs: int, timed: bool) -> Iter
                 del left[result.name]
                 yield result
         except BrokenProcessPool:
-            suspects = [run for run in left.values() if begun(run, folder)] or [*left.values()][:1]
+            suspects = [run for run in left.values() if begun(run.name, folder)] or [*left.values()][:1]
             clear(folder)
             for run in suspects:
                 yield _alone(run, folder, timed)
@@ -143,6 +163,20 @@ def _outlive_nobody(parent: int) -> None:
 # ---- dask
 
 
+def _check_address(address: str) -> None:
+    """ValueError for what can be the address of no scheduler: to try it takes long."""
+    scheme, _, place = address.rpartition("://")
+    if scheme == "inproc":  # a scheduler in this process, which has no port
+        return
+    try:
+        parts = urlsplit(f"//{place}")
+        good = scheme in SCHEMES and bool(parts.hostname) and bool(parts.port)
+    except ValueError:
+        good = False
+    if not good:
+        raise ValueError(f"no dask scheduler at {address}: it needs a host and a port; {PRINTED}")
+
+
 def _on_dask(runs: list[Run], folder: Path, address: str, timed: bool) -> Iterator[Result]:
     """The same by the workers of a scheduler. One that dies is made up for by the others."""
     try:
@@ -154,8 +188,7 @@ def _on_dask(runs: list[Run], folder: Path, address: str, timed: bool) -> Iterat
     try:
         client = Client(address, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
-        advice = "give the address that the scheduler prints when it starts, as in tcp://10.0.0.1:8786"
-        raise ValueError(f"no dask scheduler at {address}: {error}; {advice}") from error
+        raise ValueError(f"no dask scheduler at {address}: {error}; {PRINTED}") from error
     with client:
         machines = {urlsplit(worker).hostname: worker for worker in client.nthreads()}
         first = [client.submit(rehearse, runs[0], workers=[one], pure=False) for one in machines.values()]

@@ -1,14 +1,12 @@
 """One run of a study is run: on a new model, in a folder of its own, watched.
 
-Nothing of what it writes names the place where it was run. The folder gets its name when all is in it: one
-that has the name of a run is whole, whatever has become of the process.
+Nothing of what it writes names the place where it was run.
 """
 
 from __future__ import annotations
 
 import logging
 import os
-import secrets
 import shutil
 import tempfile
 import threading
@@ -23,16 +21,16 @@ from typing import TextIO
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Variables
 from udec_ia.errors import UdecError
-from udec_ia.model import Model
 from udec_ia.ops.run.solution import in_short
+from udec_ia.study.folders import BEGUN, begun, new, publish
+from udec_ia.study.keeping import write
 from udec_ia.study.memory import peak_memory, restart_peak
 from udec_ia.study.reading import read
-from udec_ia.study.runs import DECK, DIED, ENDED, ERROR, Result, Run, write
-from udec_ia.study.watching import Observer
+from udec_ia.study.runs import DECK, DIED, ENDED, ERROR, Result, Run
+from udec_ia.study.watching import Heard, Observer
 
 LOG = "log.txt"
-BEGUN = "begun"  # file in the folder of a run that is not whole yet
-UNNAMED = ".run-"  # what the name of such a folder begins with
+NOT_OF_DECK = (23, 31)  # a package is missing, a file cannot be written
 log = logging.getLogger("udec_ia")
 
 
@@ -48,21 +46,21 @@ _one = _Process()
 
 
 def obey(run: Run, folder: Path, timed: bool = False) -> Result:
-    """Run `run`, and leave all that it writes in its folder in `folder`; what stood there goes.
+    """Run `run`, and leave all that it writes in its folder in `folder`; a former one of the program goes.
 
     timed: in a process that has done no run yet it is rehearsed first, so that its seconds are those of the
     run, and not those of loading the program. Whatever is wrong with the run is told by its result. OSError
-    if nothing can be written there.
+    if nothing can be written there, error 31 if what stands there is not ours.
     """
     if timed and not _one.warm:
         rehearse(run)
     with _one.run:
-        here = _new(folder, run.name)
+        here = new(folder, run.name)
         try:
             (here / BEGUN).touch()
             result = _result(run, here)
             write(result, here)
-            _publish(here, folder / run.name)
+            publish(here, folder / run.name)
             _one.warm = True
         except BaseException:
             shutil.rmtree(here, ignore_errors=True)
@@ -89,61 +87,29 @@ def bury(run: Run, folder: Path) -> Result:
         quantities=dict.fromkeys(names, float("nan")),
         made_of=run.made_of,
         limit=run.limit,
+        of_system=True,
     )
-    left = begun(run, folder)
-    here = left[0] if left else _new(folder, run.name)
+    left = begun(run.name, folder)
+    here = left[0] if left else new(folder, run.name)
     write(result, here)
     (here / BEGUN).touch()
-    _publish(here, folder / run.name)
+    publish(here, folder / run.name)
     return result
-
-
-def begun(run: Run, folder: Path) -> list[Path]:
-    """Folders in which `run` was begun and not ended."""
-    return [path for path in folder.glob(f"{UNNAMED}*") if path.name.startswith(_hidden(run.name))]
-
-
-def clear(folder: Path) -> None:
-    """Take away what was begun in `folder` and not ended; who is still at it will not publish it."""
-    for path in folder.glob(f"{UNNAMED}*"):
-        shutil.rmtree(path, ignore_errors=True)
-
-
-def _hidden(name: str) -> str:
-    """What the name of a folder begins with before it gets the name of its run."""
-    return f"{UNNAMED}{name}~"
-
-
-def _new(folder: Path, name: str) -> Path:
-    """A new folder, without a name yet."""
-    here = folder / f"{_hidden(name)}{secrets.token_hex(4)}"
-    here.mkdir()
-    return here
-
-
-def _publish(here: Path, there: Path) -> None:
-    """Give the folder of a run its name. FileNotFoundError if somebody has cleared it away meanwhile."""
-    (here / BEGUN).unlink()
-    if there.is_dir() and not there.is_symlink():
-        old = _new(there.parent, there.name)
-        os.replace(there, old)
-        shutil.rmtree(old)
-    else:
-        there.unlink(missing_ok=True)
-    os.replace(here, there)
 
 
 def _result(run: Run, here: Path, rehearsal: bool = False) -> Result:
     """What comes of `run`, whose files go to the folder `here`."""
     clock, observer = perf_counter(), None
-    status, error, message = ENDED, 0, ""
+    status, error, message, of_system = ENDED, 0, "", False
+    warnings: list[str] = []
     found, remarks = dict.fromkeys((one.name for one in read(run.quantities)), float("nan")), list[str]()
     restart_peak()
     with _Log(here) as out, _logged(out):
         (here / DECK).write_text(_with_values(run), encoding="utf-8")
         try:
             name = Path(run.file or DECK).stem
-            model = Model(run.build, out=here, constitutive=run.constitutive or None, name=name)
+            laws = run.constitutive or None
+            model = Heard(warnings.append, run.build, out=here, constitutive=laws, name=name)
             observer = Observer(run, model, rehearsal)
             observer.obey(out)
             status, message = observer.over or ENDED, observer.why or "; ".join(in_short(model.solutions()))
@@ -151,9 +117,10 @@ def _result(run: Run, here: Path, rehearsal: bool = False) -> Result:
         except UdecError as failure:
             print(failure, file=out)
             status, error, message = ERROR, failure.number, str(failure).partition("\n")[0]
+            of_system = error in NOT_OF_DECK or isinstance(failure.__cause__, OSError | MemoryError)
         except Exception as failure:  # of the system, or of ours: it ends this run, and no other
             traceback.print_exc(file=out)
-            status, message = ERROR, f"{type(failure).__name__}: {failure}"
+            status, message, of_system = ERROR, f"{type(failure).__name__}: {failure}", True
         print(*(f"{remark}\n" for remark in remarks), sep="", end="", file=out)
     cycles, time, words = observer.size if observer else (0, 0.0, 0)
     return Result(
@@ -172,6 +139,8 @@ def _result(run: Run, here: Path, rehearsal: bool = False) -> Result:
         peak_memory=peak_memory(),
         made_of=run.made_of,
         limit=run.limit,
+        warnings=tuple(dict.fromkeys(map(out.freed, warnings))),
+        of_system=of_system,
     )
 
 

@@ -5,13 +5,15 @@ A run without a value, one that ended in an error for instance, is a cross at th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from udec_ia.deck.variables import Values
 from udec_ia.output.draw import INK, drawable
-from udec_ia.output.picture import write
+from udec_ia.output.picture import TYPES, write
 from udec_ia.study.table import Table
 
 if TYPE_CHECKING:
@@ -23,14 +25,21 @@ LINE, FAILED = "#1f6f8b", "#c8553d"
 MANY_DECADES = 50  # greatest over least value, from which on an axis is logarithmic
 
 
-def draw(table: Table, variables: list[str], quantities: list[str], title: str, base: Path) -> list[Path]:
-    """Write base.png and base.svg; returns their names, none if there is nothing that can be drawn.
+def axes_of(points: Sequence[Values], quantities: Sequence[str]) -> list[str]:
+    """The variables that a picture of runs with the values `points` is drawn over; [] if there is none."""
+    changing = [name for name in points[0] if len({str(point[name]) for point in points}) > 1]
+    numbers = all(isinstance(point[name], int | float) for point in points for name in changing)
+    return changing if quantities and numbers and len(changing) in (1, 2) else []
 
-    variables: those with more than one value. Error 31 if they cannot be written.
-    """
+
+def pictures_of(base: Path) -> list[Path]:
+    """base.png and base.svg."""
+    return [base.with_name(f"{base.name}{kind}") for kind in TYPES]
+
+
+def draw(table: Table, variables: list[str], quantities: list[str], title: str, base: Path) -> list[Path]:
+    """Write base.png and base.svg; returns their names. variables: see axes_of. Error 31."""
     axes = [table.columns[name] for name in variables]
-    if not quantities or len(axes) not in (1, 2) or not all(isinstance(one, np.ndarray) for one in axes):
-        return []
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -10,6 +10,7 @@ The steps of a range are worked out in fractions and rounded once, so 0.3:0.9:7 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from itertools import product
@@ -21,21 +22,23 @@ from udec_ia.errors import UdecError
 DIGITS = 12  # of the values of a logarithmic range between its ends
 LONGEST = 1_000_000  # values of a range
 FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
+GREATEST = int(sys.float_info.max)
 Given = Value | Iterable[Value]
 
 
 def values_of(name: str, given: Given) -> list[Value]:
     """The values of the variable `name`: one, several, or a text as above. ValueError for others."""
-    if not NAME.fullmatch(name):
+    if not (isinstance(name, str) and NAME.fullmatch(name)):
         raise ValueError(f"{name!r} is not the name of a variable: use a letter, then letters, digits and _")
     found: list[Value]
     if isinstance(given, str):
         texts = [part.strip() for part in given.split(",")]
         found = _range(name, given) if ":" in given else [_read(text) for text in texts]
-    elif isinstance(given, Iterable):
-        found = [one.item() if hasattr(one, "item") else one for one in given]
     else:
-        found = [given]
+        several = given if isinstance(given, Iterable) else [given]
+        found = [one.item() if hasattr(one, "item") else one for one in several]
+    if any(isinstance(one, int) and abs(one) > GREATEST for one in found):
+        raise ValueError(f"{name} cannot be greater than {float(GREATEST):.2g}, which no real number is")
     try:
         spellings = [spelt(name, value) for value in found]
     except UdecError as error:
@@ -52,10 +55,10 @@ def values_of(name: str, given: Given) -> list[Value]:
 
 def grid(values: Mapping[str, Given]) -> list[dict[str, Value]]:
     """All combinations of the values of several variables, the last of which changes first."""
+    columns = [values_of(name, given) for name, given in values.items()]
     names = [name.upper() for name in values]
     if len({*names}) < len(names):
         raise ValueError(f"a variable is given twice: {', '.join(names)}")
-    columns = [values_of(name.upper(), given) for name, given in values.items()]
     return [dict(zip(names, row, strict=True)) for row in product(*columns)]
 
 

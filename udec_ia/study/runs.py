@@ -1,7 +1,7 @@
 """One run of a study: what goes into it, and what comes out.
 
 What comes out depends on nothing but what has gone in, and on the program. So a result that was kept stands
-for the run, as long as it says of itself that it was made of the same things (`Run.made_of`).
+for the run, as long as it says of itself that it was made of the same things (`Run.made_of`): keeping.py.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,14 +21,15 @@ from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops.run.watch import Watch
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.version import __version__
 
-RESULT, DECK = "result.json", "deck.dat"  # in the folder of a run
+DECK = "deck.dat"  # in the folder of a run
 EVERY = 100  # cycles between two looks whether to stop
 ENDED, ERROR, STOPPED, LATE, DIED = "ended", "error", "stopped", "timed out", "died"
+STATUSES = (ENDED, ERROR, STOPPED, LATE, DIED)
 PACKAGE = Path(__file__).parent.parent
 
 
@@ -40,7 +41,8 @@ class Run:
     it they name deck.dat in the folder of the run. values: of variables. quantities: as they are written
     (reading.py). build, constitutive: as for Model; laws are files or names. stop: rules, looked at
     every `every` cycles: the run ends with the first that holds. limit: processor seconds without compiling,
-    after which the run is ended. Raises ValueError for quantities and rules that cannot be understood.
+    after which the run is ended. Raises ValueError for quantities and rules that cannot be understood, and
+    for a word scheme, looks and limits that are none.
     """
 
     name: str
@@ -55,13 +57,14 @@ class Run:
     limit: float | None = None
 
     def __post_init__(self) -> None:
+        scheme(self.build)
         read(self.quantities)
         for rule in self.stop:
             read_rule(rule)
         if self.every < 1:
             raise ValueError(f"every {self.every} cycles: give 1 or more")
-        if self.limit is not None and not self.limit > 0:
-            raise ValueError(f"a limit of {self.limit} s: give more than 0")
+        if self.limit is not None and not 0 < self.limit < math.inf:
+            raise ValueError(f"a limit of {self.limit} s: give a number above 0")
         laws = tuple(str(Path(law).absolute()) if Path(law).is_file() else law for law in self.constitutive)
         object.__setattr__(self, "constitutive", laws)
 
@@ -94,7 +97,9 @@ class Result:
     run that ended what its SOLVEs have to say, "" for nothing. quantities: in the order of the run's, NaN for
     those without a value. remarks: why they have none. cycles, time (s): done until then. words: of IA() in
     use. seconds: of processor time without compiling; wall_seconds: of the clock, with it. peak_memory: bytes
-    that the process had at most, 0 where that is not known. made_of: see Run. limit: of the run.
+    that the process had at most, 0 where that is not known. made_of: see Run. limit: of the run. warnings:
+    that the program has told, in order. of_system: something else than the deck has ended it: a file that
+    cannot be written, no memory, a package that is missing, a process that has died.
     """
 
     name: str
@@ -112,44 +117,22 @@ class Result:
     peak_memory: int = 0
     made_of: dict[str, str] = field(default_factory=dict)
     limit: float | None = None
+    warnings: tuple[str, ...] = ()
+    of_system: bool = False
 
     @property
     def outcome(self) -> dict[str, Any]:
         """All of it that does not depend on the machine, with numbers as they are written."""
         machine = ("seconds", "wall_seconds", "peak_memory", "limit")
-        return {name: value for name, value in _plain(asdict(self)).items() if name not in machine}
+        return {name: value for name, value in plain(asdict(self)).items() if name not in machine}
 
 
-def write(result: Result, folder: Path) -> None:
-    """Leave the result in the folder of its run, which is there."""
-    (folder / RESULT).write_text(json.dumps(_plain(asdict(result)), indent=1) + "\n", encoding="utf-8")
-
-
-def kept(run: Run, folder: Path) -> tuple[Result | None, str]:
-    """The result of `run` in its folder in `folder`, or None and why it is not taken, "" if there is none."""
-    try:
-        found = json.loads((folder / run.name / RESULT).read_text(encoding="utf-8"))
-        found["quantities"] = {name: float(value) for name, value in found["quantities"].items()}
-        result = Result(**found)
-    except FileNotFoundError:
-        return None, ""
-    except (OSError, ValueError, TypeError, KeyError):
-        return None, "the result cannot be read"
-    made_of = run.made_of
-    changed = [name for name in made_of if result.made_of.get(name) != made_of[name]]
-    if result.status == LATE and (run.limit is None or run.limit > (result.limit or 0)):
-        changed.append("limit")
-    if changed:
-        return None, f"{' and '.join(changed)} changed"
-    return replace(result, remarks=tuple(result.remarks)), ""
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """What JSON has: a number that is none, or infinite, as text."""
     if isinstance(value, Mapping):
-        return {name: _plain(one) for name, one in value.items()}
+        return {name: plain(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [plain(one) for one in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 

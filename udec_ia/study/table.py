@@ -18,7 +18,11 @@ from udec_ia.files import put_in_place
 from udec_ia.study.runs import Result
 
 BEFORE = ("run",)
-BEHIND = ("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory", "message")
+BEHIND = (
+    *("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory"),
+    *("warnings", "message"),
+)
+GREATEST = 2**63  # in absolute value, of integers that are not
 FIRST = b"run,"  # what a CSV file of ours begins with
 
 
@@ -35,6 +39,7 @@ class Table:
         columns |= {name: [one.values[name] for one in results] for name in variables}
         columns |= {name: [one.quantities[name] for one in results] for name in quantities}
         columns |= {name: [getattr(one, name) for one in results] for name in BEHIND}
+        columns["warnings"] = [len(one.warnings) for one in results]
         return cls(columns)
 
     def listed(self, name: str) -> list[Any]:
@@ -48,10 +53,10 @@ class Table:
 
     def write(self, base: Path, attributes: Mapping[str, str]) -> list[Path]:
         """Write base.csv and base.h5, with attributes for the latter. Returns both names. UdecError 31."""
-        paths = [base.with_name(f"{base.name}.{kind}") for kind in ("csv", "h5")]
-        put_in_place(paths[0], self._csv(), _judge, force=False)
-        put_in_place(paths[1], self._hdf5(attributes), force=False)
-        return paths
+        files = files_of(base)
+        put_in_place(files[0], self._csv(), _judge, force=False)
+        put_in_place(files[1], self._hdf5(attributes), force=False)
+        return files
 
     def _csv(self) -> bytes:
         text = io.StringIO(newline="")
@@ -74,9 +79,15 @@ class Table:
         return image.getvalue()
 
 
+def files_of(base: Path) -> list[Path]:
+    """base.csv and base.h5."""
+    return [base.with_name(f"{base.name}.{kind}") for kind in ("csv", "h5")]
+
+
 def _column(values: Sequence[Any]) -> Any:
-    """Integers as int64, other numbers as 64-bit reals, anything else as text."""
-    if all(isinstance(one, int | np.integer) and not isinstance(one, bool) for one in values):
+    """Integers as int64 if all can be, other numbers as 64-bit reals, anything else as text."""
+    whole = all(isinstance(one, int | np.integer) and not isinstance(one, bool) for one in values)
+    if whole and all(abs(one) < GREATEST for one in values):
         return np.array(values, np.int64)
     if all(isinstance(one, int | float | np.number) for one in values):
         return np.array(values, np.float64)

@@ -5,19 +5,23 @@ That changes no digit of the run: how a CYCLE is cut into pieces has no influenc
 
 from __future__ import annotations
 
-from time import thread_time
+import math
+from collections.abc import Callable
 from typing import Any, TextIO
 
+from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import Statement
 from udec_ia.errors import UdecError
-from udec_ia.heap.compiling import compile_seconds
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.study.clock import Clock
 from udec_ia.study.observed import NoValue, Start, State
 from udec_ia.study.reading import read, read_rule
 from udec_ia.study.runs import DECK, LATE, STOPPED, Run
+
+SHOWING = ("dump", "end", "help", "plot", "print", "save", "stop")  # commands that change nothing
 
 
 class Observer:
@@ -35,7 +39,7 @@ class Observer:
         self._start = Start(frozenset(one.place for one in asked if one.place is not None))
         self._watched = run.watcher(model)
         self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
-        self._clock, self._compiled = thread_time(), compile_seconds()
+        self._clock = Clock()
 
     def obey(self, out: TextIO) -> None:
         """Obey the deck of the run, whose output goes to `out`."""
@@ -54,7 +58,7 @@ class Observer:
     @property
     def seconds(self) -> float:
         """Processor seconds until now, without compiling."""
-        return max(thread_time() - self._clock - (compile_seconds() - self._compiled), 0.0)
+        return self._clock.seconds
 
     @property
     def size(self) -> tuple[int, float, int]:
@@ -79,7 +83,13 @@ class Observer:
     def obeyed(self) -> None:
         """A command was obeyed."""
         self._start.look(self.model.array)
-        self._look_at_clock()
+
+    def is_over(self) -> bool:
+        """True if nothing more is to be done: a rule holds, or the time is up."""
+        limit = math.inf if self.run.limit is None else self.run.limit
+        if self.seconds > limit and not self.over:
+            self.over, self.why = LATE, f"after {limit:g} s"
+        return bool(self.over)
 
     def begin(self) -> None:
         """A CYCLE or SOLVE begins."""
@@ -94,7 +104,6 @@ class Observer:
 
     def ran(self) -> None:
         """A piece of a CYCLE or SOLVE is over."""
-        self._look_at_clock()
         h = self.model.array.h
         whole = h.ci[g.JPHASE] == g.AT_BLOCKS and h.ci[g.NERR] == 0
         if self._rules and whole and h.ci[g.MCTOT] % self.run.every == 0:
@@ -112,16 +121,34 @@ class Observer:
             if holds and not self.over:
                 self.over, self.why = STOPPED, rule.text
 
-    def _look_at_clock(self) -> None:
-        if self.run.limit is not None and self.seconds > self.run.limit and not self.over:
-            self.over, self.why = LATE, f"after {self.run.limit:g} s"
-
     def _state(self) -> State:
         return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
 
 
 def _said(reason: Exception) -> str:
     return reason.detail if isinstance(reason, UdecError) else str(reason)
+
+
+class Heard(Model):
+    """A model that has `hear` hear each of its warnings, whoever takes them besides."""
+
+    def __init__(self, hear: Callable[[str], None], *args: Any, **named: Any) -> None:
+        self.hear = hear
+        super().__init__(*args, **named)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """A monitor, and whoever takes back a command, sets `tell` to what takes warnings from then on."""
+        heard = name == "tell" and not isinstance(value, _Ear)
+        super().__setattr__(name, _Ear(self.hear, value) if heard else value)
+
+
+class _Ear:
+    def __init__(self, hear: Callable[[str], None], tell: Callable[[str], None]) -> None:
+        self.hear, self.tell = hear, tell
+
+    def __call__(self, warning: str) -> None:
+        self.hear(warning)
+        self.tell(warning)
 
 
 class _Monitor(Monitor):
@@ -132,7 +159,12 @@ class _Monitor(Monitor):
         self._observer = observer
 
     def obey(self, statement: Statement) -> None:
-        """As Monitor.obey."""
+        """As Monitor.obey, but nothing that takes long is begun when the time is up."""
+        command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+        if statement.tokens and (command is None or command.name not in SHOWING):
+            self.ended = self._observer.is_over()
+        if self.ended:
+            return
         super().obey(statement)
         self._observer.obeyed()
         if self._observer.over:
@@ -152,7 +184,7 @@ class _Eye(Watch):
     def reached(self) -> bool:  # type: ignore[override]
         """True when there are to be no more cycles."""
         rehearsed = self.observer.rehearsal and self.done > 0
-        return self.inner.reached or bool(self.observer.over) or rehearsed
+        return rehearsed or self.inner.reached or self.observer.is_over()
 
     def begin(self) -> None:
         """The run is prepared."""

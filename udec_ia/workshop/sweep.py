@@ -25,7 +25,7 @@ REPEATED = (
     ("--stop", "RULE", 'a run ends when this holds, as in "max block.KXD > 1"'),
     ("--constitutive", "LAW", "as for udec run"),
 )
-SHOWN = ("status", "cycles", "seconds", "message")  # columns that are printed, beside values and quantities
+SHOWN = ("status", "cycles", "seconds", "warnings", "message")  # columns printed beside the others
 
 
 def add_commands(commands: Any) -> None:
@@ -49,21 +49,22 @@ def add_commands(commands: Any) -> None:
 def _sweep(args: argparse.Namespace) -> Listing:
     from udec_ia.inspect.look import Listing
     from udec_ia.study.ranges import grid
+    from udec_ia.study.runs import DIED, ERROR
     from udec_ia.study.sweep import sweep
 
     values, options = given(args.set), _options(args)
-    if not values:
-        raise ValueError("give at least one variable its values: --set F=0.3:0.9:7")
     stream = sys.stderr if args.json else sys.stdout
     counts = [f"{len(grid({name: text}))} of {name}" for name, text in values.items()]
-    print(f"{counted(len(grid(values)), 'run')}: {', '.join(counts)}", file=stream, flush=True)
+    of = ", ".join(counts) or "the deck as it is"
+    print(f"{counted(len(grid(values)), 'run')}: {of}", file=stream, flush=True)
     found = sweep(args.deck, values, stream=stream, **options)
     columns = [
         name for name in found.table.columns if name in values or name in SHOWN or name in _asked(found)
     ]
     rows = zip(*(found.table.listed(name) for name in columns), strict=True)
     written = f"written: {', '.join(str(path) for path in found.files)}"
-    return Listing([*found.said, written], tuple(columns), [*rows])
+    failed = all(result.status in (ERROR, DIED) for result in found.results)
+    return Listing([*found.said, written], tuple(columns), [*rows], status=int(failed))
 
 
 def _asked(found: Any) -> set[str]:
