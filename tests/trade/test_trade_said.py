@@ -133,3 +133,16 @@ def test_a_tolerance_in_per_cent(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main(["trade", str(deck), "--tolerance", "1%", *asked]) == 0
     assert "recommended for 0.01" in capsys.readouterr().out
     assert Setting().name in {path.name for path in (tmp_path / "out" / "runs").iterdir()}
+
+
+def test_a_file_of_somebody_else_is_seen_before_anything_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck, out = tmp_path / "deck.dat", tmp_path / "out"
+    deck.write_text(FALL)
+    out.mkdir()
+    (out / "deck-trade.csv").write_text("mine")
+    assert main(["trade", str(deck), "--out", str(out), "--jobs", "0"]) == 1
+    assert "error 31" in capsys.readouterr().err
+    assert [one.name for one in out.iterdir()] == ["deck-trade.csv"]
+    assert (out / "deck-trade.csv").read_text() == "mine"

@@ -65,6 +65,9 @@ def add_commands(commands: Any) -> None:
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.inspect.look.listing import Listing
+    from udec_ia.study import standing
+    from udec_ia.study.pictures import pictures_of
+    from udec_ia.study.table import files_of
     from udec_ia.trade.report import COLUMNS, half_step, sentences, shown, without
     from udec_ia.trade.trade import trade
 
@@ -72,6 +75,8 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         return _digits(args)
     if args.levers is not None:
         return _levers(args)
+    if not args.half_step:
+        standing.check([*files_of(_base(args)), *pictures_of(_base(args))])
     price = trade(
         _text(args), args.deck.name, given(args.set), _folder(args), _options(args), args.deck.parent
     )
@@ -133,7 +138,7 @@ def _files(price: Price, args: argparse.Namespace) -> list[Path]:
     rows = table(price)
     if not rows:
         return []
-    base = _folder(args) / f"{args.deck.stem}-trade"
+    base = _base(args)
     columns = dict(zip(("run", *COLUMNS[1:]), zip(*rows, strict=True), strict=True))
     files = Table(columns).write(base, {"deck": price.deck.text})
     return files + draw(price, f"{args.deck.name}: what accuracy costs", base)
@@ -141,6 +146,11 @@ def _files(price: Price, args: argparse.Namespace) -> list[Path]:
 
 def _folder(args: argparse.Namespace) -> Path:
     return args.out or Path(f"{args.deck.stem}-trade")
+
+
+def _base(args: argparse.Namespace) -> Path:
+    """What the names of the table and its pictures begin with."""
+    return _folder(args) / f"{args.deck.stem}-trade"
 
 
 def _options(args: argparse.Namespace) -> Options:
