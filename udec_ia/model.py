@@ -16,6 +16,7 @@ import io
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from math import inf
 from pathlib import Path
 from typing import TextIO
 
@@ -34,7 +35,7 @@ from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
 from udec_ia.ops.common.limits import not_negative, whole
 from udec_ia.ops.common.soft import soft_or_loaded_in
-from udec_ia.ops.run.aside import goes_on
+from udec_ia.ops.run.aside import speed_after
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.damped import UNDAMPED, damping
 from udec_ia.ops.run.remarks import (
@@ -152,7 +153,7 @@ class Model(Files, Blocks, Numbers, Looks):
         worst, lively = (
             kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
         )
-        state, why = unrest.explain(self.array, reached, ratio, self._guard, self._goes_on)
+        state, why = unrest.explain(self.array, reached, ratio, self._guard, self._speed_after)
         solution = Solution(
             reached,
             ratio,
@@ -171,8 +172,8 @@ class Model(Files, Blocks, Numbers, Looks):
             self._guard.rested = float(h.cd[WFRIC])
         return solution
 
-    def _goes_on(self, ib: int, speed: float, n: int) -> bool:
-        return bool(self.laws.given) or goes_on(self.array, ib, speed, n)  # a law may remember cycles
+    def _speed_after(self, ib: int, n: int) -> float:
+        return inf if self.laws.given else speed_after(self.array, ib, n)  # a law may remember cycles
 
     def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
         """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were.
@@ -186,7 +187,6 @@ class Model(Files, Blocks, Numbers, Looks):
         if moved is not None:
             self.renumber(moved)
         self._guard.drift.begin(self.array)
-        self._guard.strides.begin(self.array)
         self._guard.since_rest(self.array)
         watch = self.around(watch)
         report = self.report(self.array, n)
@@ -239,6 +239,7 @@ class Model(Files, Blocks, Numbers, Looks):
     def _judge(self) -> None:
         """Judge the time-step and the materials of a CYCLE; explain the step if that is asked for."""
         self._guard.runaway.judge(self.array, self.explain_step)
+        self._guard.strides.begin(self.array)
         if self.explain_step:
             self.inform(describe(self.array, self._guard.runaway.safe))
             self.remark([damping(self.array.h)], self.inform)

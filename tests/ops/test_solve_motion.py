@@ -19,6 +19,19 @@ FIX 0,2 0,1
 ROUND 0.1
 GRAVITY 0,-10
 """
+SLOPE = """START
+PROP MAT=1 DENSITY=2000 KN=1E8 KS=1E8 FRICTION=0.49
+BLOCK 0,0 0,8 10,8 10,0
+SPLIT -1,0.5 11,6.5
+SPLIT 5,3 5,9
+SPLIT 7,4 7,9
+SPLIT 4,6 8,6
+DELETE 0,10 6,8
+DELETE 0,5 3,8
+FIX 0,10 0,4
+ROUND 0.1
+GRAVITY 0,-10
+"""
 HANGS = """START
 PROP MAT=1 DENSITY=2600 KN=2E9 KS=1E9 FRICTION=0.5
 BLOCK 0,0 0,10 10,10 10,0
@@ -114,3 +127,52 @@ def test_joints_too_soft_for_the_rounding_are_told_of_before_and_after(static: b
     assert refused.value.number == 15
     assert "a greater KN" in str(refused.value)
     assert any("bears it at an overlap of 0.06 m; more than 0.005 m is error 15" in one for one in told)
+
+
+def test_a_block_that_falls_at_its_terminal_speed_does_not_settle(tmp_path: Path) -> None:
+    """Mass damping holds its speed down, and it moves by less than a tenth of the rounding length."""
+    m = made(
+        COLUMN.replace("GRAVITY 0,-10", "DELETE 0,2 1,7\nGRAVITY 0,-1").replace("ROUND 0.1", "ROUND 0.3"),
+        tmp_path,
+    )
+    m.damping(0.5, 5, "mass")
+    solution = m.solve(1e-4, limit=800)
+    assert solution.state == "collapse"
+    assert "nothing holds what moves most" in solution.why
+
+
+def test_what_a_law_lets_creep_does_not_settle(tmp_path: Path) -> None:
+    """Its shear force fades by a thousandth in a cycle; the pace is the same after twice as many cycles."""
+    law = tmp_path / "law.py"
+    law.write_text("def clj2(fn, fs, dun, dus, un, us, m):\n    return m.kn * dun, m.ks * dus - 0.001 * fs\n")
+    m = Model(out=tmp_path, constitutive=str(law))
+    m.tell = m.inform = lambda _: None
+    m.run(COLUMN.replace("GRAVITY 0,-10", "CHANGE 0 2 0 10 CONS=2\nGRAVITY 3,-10"))
+    m.damping(0.5, 5, "mass")
+    found = [m.solve(1e-6, limit=4000) for _ in range(2)]
+    assert [one.state for one in found] == ["creep", "creep"]
+    assert all("the law of its contacts lets it" in one.why for one in found)
+
+
+@pytest.mark.parametrize(("local", "state"), [(0.8, "settles"), (0.0, "swings")])
+def test_whether_it_loses_energy_is_told_by_energy(local: float, state: str, tmp_path: Path) -> None:
+    """And not by the kinetic energy of some moments of the swing."""
+    text = COLUMN.replace("FIX 0,2 0,1", "CHANGE 0 2 1 10 SDEF\nFIX 0,2 0,1").replace(
+        "FRICTION", "BULK 1E9 G 6E8 FRICTION"
+    )
+    m = made(text, tmp_path)
+    if local:
+        m.damping(local=local)
+    solution = m.solve(1e-9, limit=1000)
+    assert not solution
+    assert solution.state == state
+
+
+def test_what_slips_on_slower_than_before_is_no_rest(tmp_path: Path) -> None:
+    """A slope steeper than friction bears, heavily damped: the ratio is reached, and it goes on."""
+    m = made(SLOPE, tmp_path)
+    m.damping(adaptive=0.99)
+    m.cycle(300)
+    solution = m.solve(0.05, limit=60_000)
+    assert solution
+    assert solution.state == "still moves"

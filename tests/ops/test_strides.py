@@ -110,3 +110,18 @@ def test_what_rests_on_its_springs_is_not_told(tmp_path: Path) -> None:
 
 def test_where_all_is_fixed_nothing_is_told(tmp_path: Path) -> None:
     assert run(f"{PUSHED}FIX 0 20 0 3\n", "i32r32", tmp_path, (300, 300))[0] == []
+
+
+@pytest.mark.parametrize(("turn", "told"), [(1e-5, True), (1.0, False)])
+def test_a_block_that_turns_by_few_digits_is_told(turn: float, told: bool, tmp_path: Path) -> None:
+    """Its corners go whole digits or none, and it is out of shape."""
+    text = HANGS.replace("GRAVITY 0,-10", "CYCLE 0")
+    m, said = Model("i32r32", out=tmp_path), list[str]()
+    m.inform = lambda _: None
+    m.run(text)
+    m.tell = said.append
+    block = m.table("block")[int(m.table("block")["KY"].argmax())]
+    m.patch(f"block@{block['address']}.KTD = {turn}")
+    m.cycle(1000)
+    assert [one for one in said if "as it turns" in one] == said
+    assert bool(said) == told

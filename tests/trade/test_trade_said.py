@@ -53,8 +53,9 @@ def test_a_recommendation_says_what_it_does_not_hold_for(tmp_path: Path) -> None
 
 def test_which_quantities_are_enough_to_choose_by() -> None:
     same, moves = Limit(0.0, 0.0), Limit(1.0, 1e-6, 1.0)
-    assert tells({"a": same}, ["a"])
+    assert tells({"a": moves}, ["a"])
     assert tells({"a": moves, "b": None}, ["a"])
+    assert not tells({"a": same}, ["a"])
     assert not tells({"a": same, "b": None}, ["a"])
     assert not tells({"a": moves}, [])
 

@@ -82,11 +82,9 @@ def judge(
 def tells(limits: Mapping[str, Limit | None], known: Sequence[str]) -> bool:
     """True if the known quantities are enough to choose a setting by.
 
-    One that is the same number at all steps, 0 above all, tells nothing of the step: it is not enough where
-    others are asked for and not known.
+    One that is the same number at all steps, 0 above all, tells nothing of the step.
     """
-    moves = any((one := limits[name]) is not None and one.error > 0 for name in known)
-    return moves or (bool(known) and len(known) == len(limits))
+    return any((one := limits[name]) is not None and one.error > 0 for name in known)
 
 
 def margin(limits: Mapping[str, Limit | None], known: Sequence[str]) -> dict[str, float]:

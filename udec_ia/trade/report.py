@@ -194,6 +194,11 @@ def _of_none(price: Price, without: list[str]) -> str:
             "with; see the table, or give a greater --budget"
         )
     cure = "ask for another --quantity, give a greater --tolerance or --budget, or see what --digits says"
+    if not without:
+        return (
+            f"no recommendation: {_all(price.known)} {_is(price.known)} the same at all these steps, which "
+            "tells nothing of the step; ask for another --quantity"
+        )
     same = (
         f"; {_all(price.known)} {_is(price.known)} the same at all of them, which tells nothing of the step"
     )

@@ -10,13 +10,11 @@ from udec_ia.heap.array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.cycle import cycle
 
-AS_FAST = 0.5  # of the speed before
 
+def speed_after(array: MainArray, ib: int, n: int) -> float:
+    """Metres that block `ib` moves by in a cycle in the second half of `n` more cycles.
 
-def goes_on(array: MainArray, ib: int, speed: float, n: int) -> bool:
-    """True if block `ib` moves by `speed` or more metres in a cycle, or half of it, after `n` more cycles.
-
-    It is measured in the second half of them. What ends in an error has not come to rest.
+    Infinite if they end in an error: that has not come to rest.
     """
     trial = array.copy()
     try:
@@ -24,6 +22,6 @@ def goes_on(array: MainArray, ib: int, speed: float, n: int) -> bool:
         x, y = (float(getr(trial.h, ib, k)) for k in (g.KX, g.KY))
         cycle(trial, n - n // 2)
     except UdecError:
-        return True
+        return math.inf
     way = math.hypot(float(getr(trial.h, ib, g.KX)) - x, float(getr(trial.h, ib, g.KY)) - y)
-    return way > AS_FAST * speed * (n - n // 2)
+    return way / (n - n // 2)

@@ -27,6 +27,11 @@ def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
     return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
 
 
+def own_laws(h: Memory) -> bool:
+    """True if a contact that bears a force follows a law of the user's."""
+    return bool((integers(h, closed(h)[0], g.KCC) != 1).any())
+
+
 def overlap(h: Memory) -> float:
     """Mean overlap of the contacts that bear a force; 0 if none does."""
     _, fn, _, m = closed(h)

@@ -56,8 +56,20 @@ class Bodies(NamedTuple):
         return self.read(h, (g.KX, g.KY), (g.KXG, g.KYG))
 
     def velocities(self, h: Memory) -> Any:
-        """Velocities of the last half of a cycle."""
-        return self.read(h, (g.KXD, g.KYD), (g.KXDG, g.KYDG))
+        """Velocities of the last half of a cycle, or those that conditions give from now on."""
+        found = self.read(h, (g.KXD, g.KYD), (g.KXDG, g.KYDG))
+        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+        points = integers(h, bounds, g.KUG)
+        targets, flags = (
+            np.where(points > 0, points, integers(h, bounds, g.KUB)),
+            integers(h, bounds, g.KUFIX),
+        )
+        order = np.argsort(self.at)
+        for axis, (along, speed) in enumerate(((g.ALONG_X, g.KUVX), (g.ALONG_Y, g.KUVY))):
+            given = (flags & along > 0) & (integers(h, bounds, g.KUS) == 0) & np.isin(targets, self.at)
+            at = order[np.searchsorted(self.at, targets[given], sorter=order)]
+            found[at, axis] = getr(h, bounds[given], speed)
+        return found
 
 
 def bodies_of(h: Memory) -> Bodies:
@@ -102,12 +114,16 @@ def given(array: MainArray) -> Iterator[str]:
 
 
 class Look(NamedTuple):
-    """Places and velocities in a cycle, (n, 2), and what the next cycle would lose of the way."""
+    """Places and velocities in a cycle, (n, 2), and what the next cycle would lose of the way.
+
+    turns: angular velocities of the blocks that move as one, rad/s.
+    """
 
     cycle: int
     places: Any
     velocities: Any
     lost: Any
+    turns: Any
 
 
 class Strides:
@@ -120,27 +136,30 @@ class Strides:
         self._last: Look | None = None
         self._lost: Any = np.zeros((0, 2))
         self._cycles: Any = np.zeros((0, 2))  # in which so much was lost
+        self._turned: Any = np.zeros(0)  # cycles in which blocks turned on at one speed
 
     def begin(self, array: MainArray) -> None:
-        """A run begins."""
+        """A run begins, whose time-step is known, with the velocities that commands may have given."""
         if array.scheme.real_bits > 32:
             return
-        h, last, bodies = array.h, self._last, bodies_of(array.h)
-        if last and last.cycle <= h.ci[g.MCTOT] and np.array_equal(bodies.at, self._bodies.at):
-            return
-        self._bodies, self._last = bodies, None
-        self._lost, self._cycles = (np.zeros((len(bodies.at), 2)) for _ in range(2))
+        bodies, last = bodies_of(array.h), self._last
+        known = last is not None and last.cycle <= array.h.ci[g.MCTOT]
+        self._last = None
+        if not known or not np.array_equal(bodies.at, self._bodies.at):
+            self._bodies, self._first = bodies, None
+            self._lost, self._cycles = (np.zeros((len(bodies.at), 2)) for _ in range(2))
+            self._turned = np.zeros(bodies.points)
+        if len(bodies.at):
+            self._last = self._seen(array.h)
+            self._first = self._first or self._last
 
     def look(self, array: MainArray, every: int = EVERY) -> None:
         """Note where all are, and what was lost since the last time, if that is `every` cycles ago."""
         h, before = array.h, self._last
-        if not len(self._bodies.at) or (before and h.ci[g.MCTOT] < before.cycle + every):
+        if before is None or h.ci[g.MCTOT] < before.cycle + every:
             return
         now = self._seen(h)
         self._last = now
-        if before is None:
-            self._first = now
-            return
         n = now.cycle - before.cycle
         first = before.velocities + (now.velocities - before.velocities) / n  # a velocity is half a cycle old
         moved = now.places - before.places
@@ -152,24 +171,29 @@ class Strides:
             counts = goes_on & self._free(h, moved) & (np.abs(lost - thought) < AGREED * np.abs(thought))
         self._lost += np.where(counts, lost, 0.0)
         self._cycles += np.where(counts, n, 0)
+        self._turned += np.where(np.abs(now.turns - before.turns) < SAME * np.abs(now.turns), n, 0)
 
     def _seen(self, h: Memory) -> Look:
-        """What there is now. In the first cycle of a model the time-step may be another one than before."""
+        """What there is now."""
         x, v, dt = self._bodies.places(h), self._bodies.velocities(h), h.cr[g.TDEL]
         wide, speed = x.astype(float), v.astype(float)
+        turns = np.asarray(getr(h, self._bodies.at[: self._bodies.points], g.KTD), float)
         with np.errstate(over="ignore", invalid="ignore"):
-            return Look(int(h.ci[g.MCTOT]), wide, speed, ((x + v * dt) - wide) - speed * float(dt))
+            lost = ((x + v * dt) - wide) - speed * float(dt)
+        return Look(int(h.ci[g.MCTOT]), wide, speed, lost, turns)
 
     def told(self, array: MainArray) -> Iterator[str]:
         """A run has ended: which body has gone too far or not far enough by most, if by much."""
-        self.look(array, ENOUGH)
+        self.look(array, 1)
         first, last, h = self._first, self._last, array.h
         if first is None or last is None or last.cycle - first.cycle < ENOUGH:
             return
         many, moved = last.cycle - first.cycle, last.places - first.places
         lost = np.where(2 * self._cycles > many, self._lost, 0.0)
         k, axis = np.unravel_index(int(np.abs(lost).argmax()), lost.shape)
-        if not abs(lost[k, axis]) > LOST * np.hypot(*(moved - lost).T).max():
+        way = float(np.hypot(*(moved - lost).T).max())
+        if not abs(lost[k, axis]) > LOST * way:
+            yield from self._turning(h, moved, many, way)
             return
         gone, digit = moved[k, axis], float(np.spacing(np.abs(self._bodies.places(h)[k, axis])))
         stride = abs(last.velocities[k, axis]) * float(h.cr[g.TDEL])
@@ -180,6 +204,23 @@ class Strides:
             f"{gone:.4g} m instead of {gone - lost[k, axis]:.4g} m; take reals of 64 bits, a greater "
             "FRACTION, or an origin within the model"
         )
+
+    def _turning(self, h: Memory, moved: Any, many: int, way: float) -> Iterator[str]:
+        """What is said of a block that turns by few last digits in a cycle. way: the farthest of any body."""
+        n, digits = self._bodies.points, np.spacing(np.abs(self._bodies.places(h)).max(axis=1))
+        whole, digits = self._bodies.at[:n], digits[:n].astype(float)
+        reach = np.asarray(getr(h, whole, g.KBRO), float)
+        stride = np.abs(np.asarray(getr(h, whole, g.KTD), float)) * float(h.cr[g.TDEL]) * reach
+        free = self._free(h, moved)[:n].any(axis=1) & (2 * self._turned > many)
+        counts = free & (stride < SHORT * digits) & (stride * many > np.maximum(LOST * way, HELD * digits))
+        if counts.any():
+            k = int(np.where(counts, stride, 0.0).argmax())
+            yield (
+                f"reals of 32 bits are too short for the strides of block@{whole[k]} as it turns: its "
+                f"farthest corner goes {stride[k]:.2g} m in a cycle, {stride[k] / digits[k]:.2g} last "
+                "digits, and so whole ones or none, each corner by itself: its shape may change; take reals "
+                "of 64 bits, a greater FRACTION, or an origin within the model"
+            )
 
     def _free(self, h: Memory, moved: Any) -> Any:
         """Which bodies go where their velocities take them, in x and y: springs hold none of these there.
@@ -193,6 +234,7 @@ class Strides:
         bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
         ib, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
         at, blocks, first = self._bodies
+        swings = np.isin(blocks, ib[integers(h, bounds, g.KUS) > 0])  # and may be where it was by the way
         fixed = integers(h, at[first:], g.KGFIX) > 0
         held = np.concatenate(
             [
@@ -206,4 +248,4 @@ class Strides:
         far[first:] = False
         given, targets = integers(h, bounds, g.KUFIX), np.where(points > 0, points, ib)
         driven = [np.isin(at, targets[given & along > 0]) for along in (g.ALONG_X, g.ALONG_Y)]
-        return np.stack([far | ~np.isin(blocks, held) | one for one in driven], axis=1)
+        return np.stack([(far | ~np.isin(blocks, held) | one) & ~swings for one in driven], axis=1)

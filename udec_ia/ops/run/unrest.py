@@ -1,23 +1,15 @@
 """What keeps a SOLVE from rest, or has spoilt the rest that it found: told from where blocks were on the way.
 
-On the way the places of all blocks are noted, evenly spread and KEPT times at most. The last two quarters of
-them are compared. With d the displacements in a quarter, d' those in the one before, sums over blocks
-weighted with their masses,
-
-    share     of the kinetic energy in displacement, (sum m d d/2)/T T over it: 1 for what moves one way
-    steady    (sum m d d')/sqrt(sum m d d  sum m d' d'): 1 for what goes on in the same direction
-    growth    sqrt(sum m d d/sum m d' d'): above 1 for what moves ever faster
-
-tell what moves on from what swings about its place. What moves on collapses, creeps, or settles; of what
-swings, contacts may chatter, the energy may fall or not, or the last digit of the coordinates is all that
-moves.
+Where blocks were in the last two quarters of the run (noted.py) tells what moves on from what swings about
+its place. What moves on collapses, creeps, or settles; of what swings, contacts may chatter, the energy may
+fall or not, or the last digit of the coordinates is all that moves.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,26 +18,26 @@ from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.drive.unbalanced import carried
-from udec_ia.kernels.energy.stored import liveliest, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft_in
-from udec_ia.ops.run.bearing import at_strength, closed, overlap, slipped_farthest
+from udec_ia.ops.run.bearing import at_strength, closed, overlap, own_laws, slipped_farthest
 from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
 from udec_ia.ops.run.damped import damped, what_damps
 from udec_ia.ops.run.guard import Guard
+from udec_ia.ops.run.noted import Motion, Noted
 from udec_ia.ops.run.remarks import digit_force
 from udec_ia.ops.run.timestep import kind_of
 
-FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
-ENOUGH = 8  # looks, without which nothing is said of what goes on
 ONE_WAY, STEADY = 0.3, 0.5  # share and steady from which on blocks move on
 FASTER, SLOWER = 1.15, 0.87  # growth of what collapses, and of what settles
 FAR = 0.1  # of the rounding length: what moves less and does not slip has not lost its hold
-FALLS = 0.8  # kinetic energy over that of the quarter before, of what settles
+FALLS = 0.8  # energy that swings over that of the quarter before, of what settles
 SLIPPED = 0.0015  # of the strain energy: work of friction, and shear that contacts lost as they opened, from
 # which on the way is said to matter. Slip of a hundredth of the elastic shear takes a fiftieth of the energy
 # of shear, which may be a tenth of all (tools/studies/ways.py)
 AHEAD = 10_000  # cycles for which what still moves at rest is judged
+KEEPS = 0.1  # of its speed at the end: what has so much after the cycles on the copy goes on
 STOPPED = 0.1  # of its speed in the last quarter: what has no more than that has come to a stop
 TRIED = 500, 2000  # cycles, at least and at most, that are tried on a copy to see whether it goes on
 NAMED = 3  # blocks that are named
@@ -61,103 +53,25 @@ STATES = (
     "still moves",
     "joints slipped",
 )
+SpeedAfter = Callable[[int, int], float]  # of a block, after some cycles, in metres a cycle: see aside.py
 
 
-GoesOn = Callable[[int, float, int], bool]  # block, speed in metres a cycle, cycles: see aside.py
-
-
-class Look(NamedTuple):
-    """cycle; x, y: centroids of all blocks; moving: kinetic energy in J/m."""
-
-    cycle: int
-    x: Any
-    y: Any
-    moving: float
-
-
-class Motion(NamedTuple):
-    """The last two quarters of what was noted; see above. by: how far each block has moved in the last."""
-
-    cycles: int
-    by: Any
-    share: float
-    steady: float
-    growth: float
-    fall: float  # kinetic energy over that of the quarter before
-    now: Any  # what each block would move by in as many cycles with its present velocity
-
-
-class Unrest:
-    """Notes the way of one SOLVE. rested: work of friction until the model was at rest last, in J/m."""
+class Unrest(Noted):
+    """Judges the way of one SOLVE. rested: work of friction until the model was at rest last, in J/m."""
 
     def __init__(self, rested: float) -> None:
+        super().__init__()
         self.rested = rested
-        self.looks: list[Look] = []
-        self.every = FIRST
-        self._blocks: Any = np.zeros(0, np.int64)
-
-    def begin(self, array: MainArray) -> None:
-        """The state before the first cycle, blocks being where they will stay."""
-        self._blocks = addresses(array.h, int(array.h.ci[g.IBPNT]), g.KB)
-        self.looks, self.every = [], FIRST
-        self.note(array)
-
-    def ahead(self, h: Memory) -> int:
-        """Cycles until the next look."""
-        return self.every - (int(h.ci[g.MCTOT]) - self.looks[0].cycle) % self.every
-
-    def note(self, array: MainArray) -> None:
-        """Look, if it is time to."""
-        h = array.h
-        cycle = int(h.ci[g.MCTOT])
-        if self.looks and (cycle == self.looks[-1].cycle or self.ahead(h) != self.every):
-            return
-        x, y = self._seen(h)
-        moving = float(liveliest(h, soft_in(h))[0])
-        self.looks.append(Look(cycle, x, y, moving))
-        if len(self.looks) > KEPT:
-            self.looks, self.every = self.looks[::2], 2 * self.every
-
-    def _seen(self, h: Memory) -> tuple[Any, Any]:
-        """Where all blocks are."""
-        x, y = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KX, g.KY))
-        return x, y
-
-    def motion(self, h: Memory) -> Motion | None:
-        """The last two quarters; None if there are too few looks."""
-        n = len(self.looks) - 1
-        if n < ENOUGH:
-            return None
-        q = n // 4
-        a, b, c = (self.looks[k] for k in (n - 2 * q, n - q, n))
-        free = integers(h, self._blocks, g.KBFIX) != g.FIXED
-        m = np.where(free, np.asarray(getr(h, self._blocks, g.KBM), np.float64), 0.0)
-        (dx, dy), (ex, ey) = ((two.x - one.x, two.y - one.y) for one, two in ((b, c), (a, b)))
-        now, before, both = (float((m * s).sum()) for s in (dx**2 + dy**2, ex**2 + ey**2, dx * ex + dy * ey))
-        energy, earlier = (
-            float(np.mean([one.moving for one in self.looks[k : k + q]])) for k in (n + 1 - q, n + 1 - 2 * q)
-        )
-        time = (c.cycle - b.cycle) * float(h.cr[g.TDEL])
-        vx, vy = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KXD, g.KYD))
-        return Motion(
-            c.cycle - b.cycle,
-            np.where(free, np.hypot(dx, dy), 0.0),
-            now / time**2 / 2 / energy if energy > 0 else 0.0,
-            both / math.sqrt(now * before) if now * before > 0 else 0.0,
-            math.sqrt(now / before) if before > 0 else math.inf,
-            energy / earlier if earlier > 0 else 1.0,
-            np.hypot(vx, vy) * time,
-        )
 
     def explain(
-        self, array: MainArray, reached: bool, wanted: float, guard: Guard, goes_on: GoesOn
+        self, array: MainArray, reached: bool, wanted: float, guard: Guard, speed_after: SpeedAfter
     ) -> tuple[str, str]:
         """One of STATES and a sentence; two empty ones if there is nothing to be said."""
         motion = self.motion(array.h)
         if reached and (integers(array.h, self._blocks, g.KBFIX) == g.FIXED).all():
             return "", "all blocks are fixed, and nothing can move: FREE some"
         if reached:
-            said = driven(array.h) or (self._still(array.h, motion, goes_on) if motion else "")
+            said = driven(array.h) or (self._still(array.h, motion, speed_after) if motion else "")
             if said:
                 return "still moves", said
             said = self._slipped(array.h)
@@ -220,9 +134,10 @@ class Unrest:
         far, k = motion.by.max() >= FAR * h.cr[g.DTOL], int(motion.by.argmax())
         if far and motion.now[k] < STOPPED * motion.by[k] and h.ci[g.LREST] != g.KINETIC:
             return "settles", f"{moved}, and what moved most has come to a stop; take more cycles (LIMIT)"
-        if (far or motion.growth > FASTER) and self._falls(h, motion):
+        if (far or motion.growth > SLOWER) and self._falls(h, motion):
             return "collapse", f"{moved}, and nothing holds what moves most; a support would hold it"
-        if not len(slipping) and not far:
+        steady = SLOWER <= motion.growth <= FASTER
+        if not len(slipping) and not far and not (steady and own_laws(h)):
             return "settles", f"it settles: {moved}, and no joint slips; take more cycles (LIMIT)"
         slip = (
             f", and joints slip at their strength in {counted(len(slipping), 'contact')}, "
@@ -238,11 +153,25 @@ class Unrest:
         if motion.growth < SLOWER:
             return "settles", (
                 f"it slows down: {moved}, {motion.growth:.2f} of the way of the {motion.cycles} "
-                f"before{slip}{self._in_all(h, motion)}; take more cycles (LIMIT)"
+                f"before{slip}{self._in_all(h, motion)}; {self._slower(h)}"
             )
-        return "creep", (
-            f"it creeps at a steady pace: {moved}{slip}; more cycles change nothing: the strength or a "
-            "support is lacking, and damping alone holds the speed down"
+        return "creep", f"it creeps at a steady pace: {moved}{slip}; {self._steady(h, slipping)}"
+
+    def _slower(self, h: Memory) -> str:
+        """What to do about what slows down."""
+        if h.ci[g.LREST] == g.KINETIC:
+            return "KINETIC damping has stopped it on the way, and it may go on: take more cycles (LIMIT)"
+        return "take more cycles (LIMIT)"
+
+    def _steady(self, h: Memory, slipping: Any) -> str:
+        """What there is to be said of a steady pace."""
+        if not what_damps(h):
+            return "nothing damps, and contacts open as they swing: DAMPING LOCAL 0.8 shows what holds"
+        if not len(slipping) and own_laws(h):
+            return "more cycles change nothing: the law of its contacts lets it"
+        return (
+            "more cycles change nothing: the strength or a support is lacking, and damping alone holds the "
+            "speed down"
         )
 
     def _falls(self, h: Memory, motion: Motion) -> bool:
@@ -260,19 +189,20 @@ class Unrest:
                 f"the last digit of coordinates, {digit:.2g} m, is a force of {force:.3g} N/m in stiff "
                 f"joints: the precision allows no smaller ratio; take {wider}a nearer origin"
             )
-        if motion.fall < FALLS:
+        if motion.fall < FALLS and what_damps(h):
             tenth = motion.cycles * math.log(10) / -math.log(max(motion.fall, 1e-9))
             return "settles", (
                 f"it is on its way to rest: the kinetic energy falls to a tenth in about "
                 f"{round(tenth, -1):.0f} cycles; take more of them (LIMIT){self._static(h, wanted)}"
             )
         damping = "; ".join(what_damps(h)) or "nothing damps"
+        loses = "and does not lose energy"
+        if motion.fall < FALLS:
+            loses = "and friction alone takes energy, which it may cease to"
         cure = "take DAMPING LOCAL 0.8, which damps at any frequency"
         if h.ci[g.LREST]:
             cure = "take more cycles (LIMIT)"
-        return "swings", (
-            f"it swings about its place, and does not lose energy: {damping}; {cure}{self._static(h, wanted)}"
-        )
+        return "swings", (f"it swings about its place, {loses}: {damping}; {cure}{self._static(h, wanted)}")
 
     def _static(self, h: Memory, wanted: float) -> str:
         """A quicker way, unless this is it."""
@@ -299,19 +229,22 @@ class Unrest:
 
     # ---- reached
 
-    def _still(self, h: Memory, motion: Motion, goes_on: GoesOn) -> str:
+    def _still(self, h: Memory, motion: Motion, speed_after: SpeedAfter) -> str:
         """What is said if blocks go on as fast as before, and would get somewhere."""
         usual = overlap(h)
-        if motion.steady < 0.9 or motion.growth < 0.9 or motion.share < ONE_WAY:
+        as_before = motion.growth >= 0.9 or len(at_strength(h))  # what slips slows down, and may never stop
+        if motion.steady < 0.9 or motion.share < ONE_WAY or not as_before:
             return ""
         k = int(motion.by.argmax())
-        if not float(motion.by[k]) * AHEAD / motion.cycles > usual:
+        way = motion.by[k] if h.ci[g.LREST] == g.KINETIC else min(motion.by[k], motion.now[k])
+        speed = float(way) / motion.cycles
+        if not speed * AHEAD > usual:
             return ""
-        speed = float(motion.by[k]) / motion.cycles
         n = min(max((self.looks[-1].cycle - self.looks[0].cycle) // 4, TRIED[0]), TRIED[1])
-        if not goes_on(int(self._blocks[k]), speed, n):
+        later = speed_after(int(self._blocks[k]), n)
+        if later * AHEAD <= usual or later < KEEPS * speed:
             return ""
-        return f"and yet it moves on, as fast as before: {self._named(h, motion)}; that is no rest"
+        return f"and yet it moves on: {self._named(h, motion)}; that is no rest"
 
     def _slipped(self, h: Memory) -> str:
         """What is said if friction and opening contacts have taken much since the last rest."""
