@@ -193,7 +193,7 @@ class Strides:
         k, axis = np.unravel_index(int(np.abs(lost).argmax()), lost.shape)
         way = float(np.hypot(*(moved - lost).T).max())
         if not abs(lost[k, axis]) > LOST * way:
-            yield from self._turning(h, moved, many, way)
+            yield from self._turning(h, many, way)
             return
         gone, digit = moved[k, axis], float(np.spacing(np.abs(self._bodies.places(h)[k, axis])))
         stride = abs(last.velocities[k, axis]) * float(h.cr[g.TDEL])
@@ -205,13 +205,13 @@ class Strides:
             "FRACTION, or an origin within the model"
         )
 
-    def _turning(self, h: Memory, moved: Any, many: int, way: float) -> Iterator[str]:
+    def _turning(self, h: Memory, many: int, way: float) -> Iterator[str]:
         """What is said of a block that turns by few last digits in a cycle. way: the farthest of any body."""
         n, digits = self._bodies.points, np.spacing(np.abs(self._bodies.places(h)).max(axis=1))
         whole, digits = self._bodies.at[:n], digits[:n].astype(float)
         reach = np.asarray(getr(h, whole, g.KBRO), float)
         stride = np.abs(np.asarray(getr(h, whole, g.KTD), float)) * float(h.cr[g.TDEL]) * reach
-        free = self._free(h, moved)[:n].any(axis=1) & (2 * self._turned > many)
+        free = ~self._held(h)[:n] & (2 * self._turned > many)
         counts = free & (stride < SHORT * digits) & (stride * many > np.maximum(LOST * way, HELD * digits))
         if counts.any():
             k = int(np.where(counts, stride, 0.0).argmax())
@@ -222,30 +222,30 @@ class Strides:
                 "of 64 bits, a greater FRACTION, or an origin within the model"
             )
 
-    def _free(self, h: Memory, moved: Any) -> Any:
-        """Which bodies go where their velocities take them, in x and y: springs hold none of these there.
-
-        A condition says how they move, or they bear no force and no point of theirs is held, or they have
-        gone farther than springs give, those of a mesh left out.
-        """
+    def _held(self, h: Memory) -> Any:
+        """Which bodies springs hold where they are: they bear a force, or a point of theirs is held."""
         contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
         contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
         bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+        bounds = bounds[(integers(h, bounds, g.KUFIX) > 0) & (integers(h, bounds, g.KUG) > 0)]
+        at, blocks, first = self._bodies
+        fixed = blocks[first:][integers(h, at[first:], g.KGFIX) > 0]
+        bearing = [integers(h, contacts, g.KB1), integers(h, contacts, g.KB2)]
+        return np.isin(blocks, np.concatenate([*bearing, integers(h, bounds, g.KUB), fixed]))
+
+    def _free(self, h: Memory, moved: Any) -> Any:
+        """Which bodies go where their velocities take them, in x and y.
+
+        A condition says how they move, or springs do not hold them, or they have gone farther than springs
+        give, those of a mesh left out.
+        """
+        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
         bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
-        ib, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
+        ib, points, flags = (integers(h, bounds, k) for k in (g.KUB, g.KUG, g.KUFIX))
         at, blocks, first = self._bodies
         swings = np.isin(blocks, ib[integers(h, bounds, g.KUS) > 0])  # and may be where it was by the way
-        fixed = integers(h, at[first:], g.KGFIX) > 0
-        held = np.concatenate(
-            [
-                integers(h, contacts, g.KB1),
-                integers(h, contacts, g.KB2),
-                blocks[first:][fixed],
-                ib[points > 0],
-            ]
-        )
         far = np.hypot(*moved.T) > max(overlap(h), HELD * float(np.spacing(self._bodies.places(h)).max()))
         far[first:] = False
-        given, targets = integers(h, bounds, g.KUFIX), np.where(points > 0, points, ib)
-        driven = [np.isin(at, targets[given & along > 0]) for along in (g.ALONG_X, g.ALONG_Y)]
-        return np.stack([(far | ~np.isin(blocks, held) | one) & ~swings for one in driven], axis=1)
+        targets, free = np.where(points > 0, points, ib), far | ~self._held(h)
+        driven = [np.isin(at, targets[flags & along > 0]) for along in (g.ALONG_X, g.ALONG_Y)]
+        return np.stack([(free | one) & ~swings for one in driven], axis=1)
