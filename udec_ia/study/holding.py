@@ -7,6 +7,7 @@ one or lets go. Where the system, or the file system, has no such locks, nobody 
 
 from __future__ import annotations
 
+import atexit
 import os
 import socket
 import threading
@@ -37,6 +38,12 @@ class _Holder:
 
 
 _ours = _Holder()
+
+
+@atexit.register
+def _let_go_of_all() -> None:
+    for lock in _ours.locks.values():
+        lock.close()
 
 
 @contextmanager

@@ -42,14 +42,11 @@ class Bodies(NamedTuple):
 
     def read(self, h: Memory, of_block: tuple[Any, Any], of_point: tuple[Any, Any]) -> Any:
         """Two fields of all, (n, 2), in reals of the array."""
-        one, two = self.at[: self.points], self.at[self.points :]
-        return np.stack(
-            [
-                np.concatenate([np.asarray(getr(h, one, a)), np.asarray(getr(h, two, b))])
-                for a, b in zip(of_block, of_point, strict=True)
-            ],
-            axis=1,
-        )
+        found = np.empty((len(self.at), 2), h.cr.dtype)
+        for part, fields in ((slice(self.points), of_block), (slice(self.points, None), of_point)):
+            for axis, field in enumerate(fields):
+                found[part, axis] = getr(h, self.at[part], field)
+        return found
 
     def places(self, h: Memory) -> Any:
         """Coordinates."""
@@ -58,6 +55,8 @@ class Bodies(NamedTuple):
     def velocities(self, h: Memory) -> Any:
         """Velocities of the last half of a cycle, or those that conditions give from now on."""
         found = self.read(h, (g.KXD, g.KYD), (g.KXDG, g.KYDG))
+        if h.ci[g.IBNPNT] == 0:
+            return found
         bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
         points = integers(h, bounds, g.KUG)
         targets, flags = (
@@ -168,7 +167,9 @@ class Strides:
             thought = n * (before.lost + now.lost) / 2
             fastest = np.maximum(np.abs(before.velocities), np.abs(now.velocities))
             goes_on = (np.abs(now.velocities - before.velocities) < SAME * fastest) | (moved == 0)
-            counts = goes_on & self._free(h, moved) & (np.abs(lost - thought) < AGREED * np.abs(thought))
+            counts = goes_on & (np.abs(lost - thought) < AGREED * np.abs(thought))
+        if counts.any():
+            counts &= self._free(h, moved)
         self._lost += np.where(counts, lost, 0.0)
         self._cycles += np.where(counts, n, 0)
         self._turned += np.where(np.abs(now.turns - before.turns) < SAME * np.abs(now.turns), n, 0)
@@ -212,7 +213,8 @@ class Strides:
         reach = np.asarray(getr(h, whole, g.KBRO), float)
         stride = np.abs(np.asarray(getr(h, whole, g.KTD), float)) * float(h.cr[g.TDEL]) * reach
         free = ~self._held(h)[:n] & (2 * self._turned > many)
-        counts = free & (stride < SHORT * digits) & (stride * many > np.maximum(LOST * way, HELD * digits))
+        at_worst = np.minimum(stride, digits / 2) * many
+        counts = free & (stride < SHORT * digits) & (at_worst > np.maximum(LOST * way, HELD * digits))
         if counts.any():
             k = int(np.where(counts, stride, 0.0).argmax())
             yield (
