@@ -240,9 +240,10 @@ class Frame:
     def _notes(self) -> list[str]:
         """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""
         outer = [f"outer domain: {domain.address}" for domain in self.states[-1].domains if domain.outer]
-        shown = [state for state in self.states if state.contacts is not None]
-        if not shown or shown[-1].contacts is None:
+        shown = [(state.cycle, state.contacts) for state in self.states if state.contacts is not None]
+        if not shown:
             return outer
-        force = np.hypot(*shown[-1].contacts.force.T).max(initial=0.0)
-        then = f", in cycle {shown[-1].cycle}" if shown[-1] is not self.states[-1] else ""
+        cycle, contacts = shown[-1]
+        force = np.hypot(*contacts.force.T).max(initial=0.0)
+        then = f", in cycle {cycle}" if cycle != self.states[-1].cycle else ""
         return [*outer, f"largest contact force (resultant): {force:.4g} N/m{then}"]

@@ -26,7 +26,7 @@ class Progress:
     """Progress of one CYCLE command.
 
     stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
-    total: cycles of the command. tdel: time-step in s; its share: of the estimate, or what else it is of.
+    total: cycles of the command. tdel: time-step in s. share: which part it is, and of what.
     started: reading of `working_time` when the command began; None for now.
     """
 

@@ -27,6 +27,12 @@ def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
     return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
 
 
+def borne(h: Memory) -> Any:
+    """Addresses of blocks that a contact bears, or that bear on one; some of them twice."""
+    contacts = closed(h)[0]
+    return np.concatenate([integers(h, contacts, k) for k in (g.KB1, g.KB2)])
+
+
 def own_laws(h: Memory) -> bool:
     """True if a contact that bears a force follows a law of the user's."""
     return bool((integers(h, closed(h)[0], g.KCC) != 1).any())

@@ -33,13 +33,13 @@ ENOUGH = 8  # looks, without which nothing is said of what goes on
 
 
 class Look(NamedTuple):
-    """cycle; x, y: centroids of all blocks; moving: kinetic energy; all: every energy, less work; J/m."""
+    """cycle; x, y: centroids of all blocks; moving: kinetic energy; energy: all of it, less work; J/m."""
 
     cycle: int
     x: Any
     y: Any
     moving: float
-    all: float
+    energy: float
 
 
 class Motion(NamedTuple):
@@ -102,7 +102,7 @@ class Noted:
         (dx, dy), (ex, ey) = ((two.x - one.x, two.y - one.y) for one, two in ((b, c), (a, b)))
         now, before, both = (float((m * s).sum()) for s in (dx**2 + dy**2, ex**2 + ey**2, dx * ex + dy * ey))
         energy = float(np.mean([one.moving for one in self.looks[n + 1 - q :]]))
-        lost = max(b.all - c.all, 0.0)
+        lost = max(b.energy - c.energy, 0.0)
         time = (c.cycle - b.cycle) * float(h.cr[g.TDEL])
         vx, vy = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KXD, g.KYD))
         return Motion(

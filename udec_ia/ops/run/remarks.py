@@ -247,17 +247,11 @@ def on_resolution(array: MainArray) -> Iterator[str]:
 
     It is compared with what free blocks put on a contact.
     """
-    h, usual = array.h, usual_force(array.h)
-    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
-    x, y, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO))
-    materials = np.unique(integers(h, blocks, g.KMAT)) - 1
-    stiffness = float(max(h.cr[g.AKN + materials].max(), h.cr[g.AKS + materials].max()))
-    digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
-    force = stiffness * digit
+    usual, (force, digit) = usual_force(array.h), digit_force(array)
     if force > RESOLVED * usual > 0:
         yield (
             f"the last digit of coordinates, {digit:.2g} m with {array.scheme.real_bits}-bit reals, is a "
-            f"force of {force:.3g} N/m in joints of {stiffness:.3g} N/m2, {force / usual:.1%} of the "
+            f"force of {force:.3g} N/m in joints of {force / digit:.3g} N/m2, {force / usual:.1%} of the "
             f"{usual:.3g} N/m that a block puts on a contact: forces are off by so much, by several times "
             "as much after many cycles, and SOLVE reaches no smaller ratio; take reals of 64 bits, a smaller "
             "KN, or an origin within the model"

@@ -21,7 +21,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.heap.array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.bearing import overlap
+from udec_ia.ops.run.bearing import borne, overlap
 from udec_ia.ops.run.timestep import kind_of
 
 EVERY = 1000  # cycles from one look to the next, at least
@@ -31,6 +31,32 @@ AGREED = 0.2  # share by which the two ways to know what was lost may differ
 LOST = 0.004  # of the farthest way, from which on it is said
 SHORT = 20  # last digits: a given stride that is shorter is told of, as it may be off by a fortieth
 HELD = 4  # last digits: what bears a force may move by as much while springs hold it
+
+
+class Conditions(NamedTuple):
+    """Velocities that conditions give: to what, a block or grid-point, and of which block.
+
+    along, speeds: in x and y, whether it is given, and what, m/s. constant: no signal multiplies it.
+    """
+
+    at: Any
+    blocks: Any
+    along: tuple[Any, Any]
+    speeds: tuple[Any, Any]
+    constant: Any
+
+
+def _conditions(h: Memory) -> Conditions:
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
+    blocks, points, flags = (integers(h, bounds, k) for k in (g.KUB, g.KUG, g.KUFIX))
+    return Conditions(
+        np.where(points > 0, points, blocks),
+        blocks,
+        (flags & g.ALONG_X > 0, flags & g.ALONG_Y > 0),
+        (getr(h, bounds, g.KUVX), getr(h, bounds, g.KUVY)),
+        integers(h, bounds, g.KUS) == 0,
+    )
 
 
 class Bodies(NamedTuple):
@@ -57,17 +83,10 @@ class Bodies(NamedTuple):
         found = self.read(h, (g.KXD, g.KYD), (g.KXDG, g.KYDG))
         if h.ci[g.IBNPNT] == 0:
             return found
-        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
-        points = integers(h, bounds, g.KUG)
-        targets, flags = (
-            np.where(points > 0, points, integers(h, bounds, g.KUB)),
-            integers(h, bounds, g.KUFIX),
-        )
-        order = np.argsort(self.at)
-        for axis, (along, speed) in enumerate(((g.ALONG_X, g.KUVX), (g.ALONG_Y, g.KUVY))):
-            given = (flags & along > 0) & (integers(h, bounds, g.KUS) == 0) & np.isin(targets, self.at)
-            at = order[np.searchsorted(self.at, targets[given], sorter=order)]
-            found[at, axis] = getr(h, bounds[given], speed)
+        conditions, order = _conditions(h), np.argsort(self.at)
+        for axis, (along, speeds) in enumerate(zip(conditions.along, conditions.speeds, strict=True)):
+            given = along & conditions.constant & np.isin(conditions.at, self.at)
+            found[order[np.searchsorted(self.at, conditions.at[given], sorter=order)], axis] = speeds[given]
         return found
 
 
@@ -84,30 +103,25 @@ def bodies_of(h: Memory) -> Bodies:
 
 def given(array: MainArray) -> Iterator[str]:
     """CYCLE: a velocity that BOUNDARY gives, its factor being 1, and that reals of 32 bits cannot follow."""
-    h = array.h
-    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
-    bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
-    if array.scheme.real_bits > 32 or not len(bounds):
+    h, found = array.h, _conditions(array.h)
+    if array.scheme.real_bits > 32 or not len(found.at):
         return
-    blocks, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
-    at = np.where(points > 0, points, blocks)
-    some: Any = np.where(points > 0, points, 1)
+    whole = found.at == found.blocks
+    some: Any = np.where(whole, 1, found.at)
     digits = []
-    for flag, speed, of_block, of_point in (
-        (g.ALONG_X, g.KUVX, g.KX, g.KXG),
-        (g.ALONG_Y, g.KUVY, g.KY, g.KYG),
+    for along, speeds, of_block, of_point in zip(
+        found.along, found.speeds, (g.KX, g.KY), (g.KXG, g.KYG), strict=True
     ):
-        place = np.where(points > 0, getr(h, some, of_point), getr(h, blocks, of_block))
-        stride = np.abs(getr(h, bounds, speed)) * h.cr[g.TDEL]
-        here = (integers(h, bounds, g.KUFIX) & flag > 0) & (stride > 0)
+        place = np.where(whole, getr(h, found.blocks, of_block), getr(h, some, of_point))
+        stride = np.abs(speeds) * h.cr[g.TDEL]
         with np.errstate(over="ignore"):  # at the origin
-            digits.append(np.where(here, stride / np.spacing(np.abs(place)), np.inf))
+            digits.append(np.where(along & (stride > 0), stride / np.spacing(np.abs(place)), np.inf))
     shortest = np.minimum(*digits)
     k = int(shortest.argmin())
     if shortest[k] < SHORT:
         yield (
-            f"BOUNDARY moves {kind_of(h, int(at[k]))} by {shortest[k]:.2g} last digits of its coordinates in "
-            f"a cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take "
+            f"BOUNDARY moves {kind_of(h, int(found.at[k]))} by {shortest[k]:.2g} last digits of its coordinates "
+            f"in a cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take "
             "reals of 64 bits, a greater FRACTION, or an origin within the model"
         )
 
@@ -226,14 +240,10 @@ class Strides:
 
     def _held(self, h: Memory) -> Any:
         """Which bodies springs hold where they are: they bear a force, or a point of theirs is held."""
-        contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
-        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
-        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
-        bounds = bounds[(integers(h, bounds, g.KUFIX) > 0) & (integers(h, bounds, g.KUG) > 0)]
-        at, blocks, first = self._bodies
+        conditions, (at, blocks, first) = _conditions(h), self._bodies
+        of_points = conditions.blocks[conditions.at != conditions.blocks]
         fixed = blocks[first:][integers(h, at[first:], g.KGFIX) > 0]
-        bearing = [integers(h, contacts, g.KB1), integers(h, contacts, g.KB2)]
-        return np.isin(blocks, np.concatenate([*bearing, integers(h, bounds, g.KUB), fixed]))
+        return np.isin(blocks, np.concatenate([borne(h), of_points, fixed]))
 
     def _free(self, h: Memory, moved: Any) -> Any:
         """Which bodies go where their velocities take them, in x and y.
@@ -241,13 +251,12 @@ class Strides:
         A condition says how they move, or springs do not hold them, or they have gone farther than springs
         give, those of a mesh left out.
         """
-        bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
-        bounds = bounds[integers(h, bounds, g.KUFIX) > 0]
-        ib, points, flags = (integers(h, bounds, k) for k in (g.KUB, g.KUG, g.KUFIX))
-        at, blocks, first = self._bodies
-        swings = np.isin(blocks, ib[integers(h, bounds, g.KUS) > 0])  # and may be where it was by the way
+        conditions, (at, blocks, first) = _conditions(h), self._bodies
+        swings = np.isin(
+            blocks, conditions.blocks[~conditions.constant]
+        )  # and may be where it was by the way
         far = np.hypot(*moved.T) > max(overlap(h), HELD * float(np.spacing(self._bodies.places(h)).max()))
         far[first:] = False
-        targets, free = np.where(points > 0, points, ib), far | ~self._held(h)
-        driven = [np.isin(at, targets[flags & along > 0]) for along in (g.ALONG_X, g.ALONG_Y)]
+        free = far | ~self._held(h)
+        driven = [np.isin(at, conditions.at[along]) for along in conditions.along]
         return np.stack([(free | one) & ~swings for one in driven], axis=1)

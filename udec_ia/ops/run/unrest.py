@@ -21,7 +21,7 @@ from udec_ia.kernels.drive.unbalanced import carried
 from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft_in
-from udec_ia.ops.run.bearing import at_strength, closed, overlap, own_laws, slipped_farthest
+from udec_ia.ops.run.bearing import at_strength, borne, overlap, own_laws, slipped_farthest
 from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
 from udec_ia.ops.run.damped import damped, what_damps
 from udec_ia.ops.run.guard import Guard
@@ -107,8 +107,7 @@ class Unrest(Noted):
     def _falling(self, h: Memory, motion: Motion) -> str:
         """What is said if a block that no contact bears has fallen far; that of most speed."""
         pull = math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
-        bearing = np.concatenate([integers(h, closed(h)[0], k) for k in (g.KB1, g.KB2)])
-        loose = ~np.isin(self._blocks, bearing) & (integers(h, self._blocks, g.KBFIX) != g.FIXED)
+        loose = ~np.isin(self._blocks, borne(h)) & (integers(h, self._blocks, g.KBFIX) != g.FIXED)
         vx, vy = (np.asarray(getr(h, self._blocks, k), np.float64) for k in (g.KXD, g.KYD))
         height = np.where(loose, vx * vx + vy * vy, 0.0) / (2 * pull) if pull else np.zeros(len(loose))
         k = int(height.argmax()) if len(height) else 0
@@ -176,9 +175,7 @@ class Unrest(Noted):
 
     def _falls(self, h: Memory, motion: Motion) -> bool:
         """True if no contact bears what moves most."""
-        ib = int(self._blocks[int(motion.by.argmax())])
-        contacts = closed(h)[0]
-        return not any((integers(h, contacts, k) == ib).any() for k in (g.KB1, g.KB2))
+        return int(self._blocks[int(motion.by.argmax())]) not in borne(h)
 
     def _swings(self, array: MainArray, motion: Motion, wanted: float) -> tuple[str, str]:
         h = array.h
@@ -202,7 +199,7 @@ class Unrest(Noted):
         cure = "take DAMPING LOCAL 0.8, which damps at any frequency"
         if h.ci[g.LREST]:
             cure = "take more cycles (LIMIT)"
-        return "swings", (f"it swings about its place, {loses}: {damping}; {cure}{self._static(h, wanted)}")
+        return "swings", f"it swings about its place, {loses}: {damping}; {cure}{self._static(h, wanted)}"
 
     def _static(self, h: Memory, wanted: float) -> str:
         """A quicker way, unless this is it."""
