@@ -120,9 +120,9 @@ def given(array: MainArray) -> Iterator[str]:
     k = int(shortest.argmin())
     if shortest[k] < SHORT:
         yield (
-            f"BOUNDARY moves {kind_of(h, int(found.at[k]))} by {shortest[k]:.2g} last digits of its coordinates "
-            f"in a cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or none: take "
-            "reals of 64 bits, a greater FRACTION, or an origin within the model"
+            f"BOUNDARY moves {kind_of(h, int(found.at[k]))} by {shortest[k]:.2g} last digits of its "
+            f"coordinates in a cycle, and with reals of {array.scheme.real_bits} bits it goes whole ones or "
+            "none: take reals of 64 bits, a greater FRACTION, or an origin within the model"
         )
 
 
