@@ -252,9 +252,8 @@ class Strides:
         give, those of a mesh left out.
         """
         conditions, (at, blocks, first) = _conditions(h), self._bodies
-        swings = np.isin(
-            blocks, conditions.blocks[~conditions.constant]
-        )  # and may be where it was by the way
+        # what a signal moves may be where it was by chance, and its velocity the same
+        swings = np.isin(blocks, conditions.blocks[~conditions.constant])
         far = np.hypot(*moved.T) > max(overlap(h), HELD * float(np.spacing(self._bodies.places(h)).max()))
         far[first:] = False
         free = far | ~self._held(h)
