@@ -17,7 +17,7 @@ from pathlib import Path
 from time import monotonic
 
 ROOT = Path(__file__).parent.parent
-RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of tests/scenes.py, and of tests/soft_scenes.py
+RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of random_scenes and random_deformable_scenes of tests/support
 OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and keep accounts of the energy
 OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
 
@@ -26,9 +26,9 @@ def compile_for(build: str) -> str:
     """Play the scenes with the words of `build`; returns it."""
     sys.path.insert(0, str(ROOT / "tests"))
     logging.disable(logging.CRITICAL)
-    import scenes
-    import soft_scenes
-    from mechanics import on_base
+    from support import random_deformable_scenes as soft_scenes
+    from support import random_scenes as scenes
+    from support.mechanics_scenes import on_base
 
     from udec_ia import Model, UdecError
     from udec_ia.heap.interpreting import Sparing

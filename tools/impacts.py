@@ -1,10 +1,10 @@
 """A search for impacts that the program misses, and for errors 15 that nothing has deserved.
 
 Draws random scenes from a seed, plays them in processes of their own, and looks at them from outside
-(tests/stage.py, tests/naive/overlaps.py). Kinds of scenes: impacts of two bodies or three by their corners
-(acute, right, obtuse, concave, needles: tests/strikes.py), many blocks that move for long (long, extreme:
-tests/piles.py), corners of deformable blocks bent through the straight line (bends: tests/bends.py), and
-faces of slight bends that slide over one another (grazes: tests/grazes.py).
+(tests/support/watched_model.py, tests/naive/overlaps.py). Modules of tests/support draw the kinds of scenes:
+impacts of two bodies or three by their corners (acute, right, obtuse, concave, needles: random_impacts), many
+blocks that move for long (long, extreme: random_piles), corners of deformable blocks that bend (bends:
+random_corner_bends), and faces of slight bends that slide over one another (grazes: random_sliding_faces).
 
     python tools/impacts.py --count 1000 --jobs 2
     python tools/impacts.py --kinds concave --play 17
@@ -42,11 +42,11 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 import numpy as np
-from bends import bend
-from grazes import graze
-from piles import PILES, pile
-from stage import Over, Stage, Wrong
-from strikes import SHAPES, strike
+from support.random_corner_bends import bend
+from support.random_impacts import SHAPES, strike
+from support.random_piles import PILES, pile
+from support.random_sliding_faces import graze
+from support.watched_model import Over, Stage, Wrong
 
 SCHEMES = {"i16r32": 0.15, "i32r32": 0.1, "i16r64": 0.15, "i32r64": 0.5, "i64r64": 0.1}
 FACES = {"bends": bend, "grazes": graze}

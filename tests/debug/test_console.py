@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from debug_decks import PILE
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.cli import main

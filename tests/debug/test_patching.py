@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from debug_decks import PILE
+from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.debug import debug

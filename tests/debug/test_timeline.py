@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from debug_decks import PILE
+from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.debug.answers import last_hit

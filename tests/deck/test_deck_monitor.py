@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from recorder import Recorder
+from support.call_recorder import Recorder
 
 from udec_ia import Model
 from udec_ia.deck.interactive import converse, history, history_file

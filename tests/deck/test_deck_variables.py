@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from recorder import Recorder
+from support.call_recorder import Recorder
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main

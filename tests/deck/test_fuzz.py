@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mechanics import box, model
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

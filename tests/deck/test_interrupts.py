@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from interrupted.scene import SCENE, state
-from mechanics import side_by_side
+from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck

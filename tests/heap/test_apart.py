@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from unchecked import without_groups
+from support.checked_build_marks import without_groups
 
 from udec_ia.heap import plain
 from udec_ia.heap.accessors import Memory, iget, int64, puti

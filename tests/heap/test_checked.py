@@ -38,8 +38,8 @@ def run(*args: str, cwd: Path = ROOT, **more: str) -> subprocess.CompletedProces
 
 
 def planted(every: int, **more: str) -> list[str]:
-    """The lines of tests/planted.py."""
-    done = run(str(TESTS / "planted.py"), str(every), **more)
+    """The lines of tests/support/planted_pointers.py."""
+    done = run(str(TESTS / "support" / "planted_pointers.py"), str(every), **more)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
 

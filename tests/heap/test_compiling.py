@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from handmade import two_blocks
 from numba.core import config
+from support.handmade_map import two_blocks
 
 from udec_ia.heap import compiling
 from udec_ia.heap.jit import kernel

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 from naive.memory import Memory as NaiveMemory
-from unchecked import with_any_offset, without_groups
+from support.checked_build_marks import with_any_offset, without_groups
 
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scenes
-import soft_scenes
-from interpreted import both_ways
-from unchecked import without_groups
+from support import random_deformable_scenes as soft_scenes
+from support import random_scenes as scenes
+from support.checked_build_marks import without_groups
+from support.interpreted_kernels import both_ways
 
 from udec_ia import Model
 from udec_ia.heap.accessors import Memory, iget, int64, puti

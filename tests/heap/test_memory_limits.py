@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mechanics import colliding
+from support.mechanics_scenes import colliding
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.array import MainArray

@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 
 import pytest
-from mechanics import side_by_side
+from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck

@@ -14,11 +14,11 @@ from numba.core import config
 from udec_ia.heap import plain
 
 ROOT = Path(__file__).parents[2]
-ALONE = ROOT / "tests" / "alone.py"
+ALONE = ROOT / "tests" / "support" / "lone_block_script.py"
 
 
 def run(tmp_path: Path, **more: str) -> list[str]:
-    """The lines that tests/alone.py prints."""
+    """The lines that tests/support/lone_block_script.py prints."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), **more}
     python = [sys.executable, str(ALONE)]
     done = subprocess.run(python, env=env, cwd=tmp_path, check=True, stdout=subprocess.PIPE)

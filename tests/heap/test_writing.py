@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mechanics import side_by_side
+from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g

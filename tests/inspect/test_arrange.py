@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
 from naive import relocate as naive
 from naive.relocate import differences, essence
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.relocate import relocate

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scenes
-import soft_scenes
 from naive import census as naive
+from support import random_deformable_scenes as soft_scenes
+from support import random_scenes as scenes
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kinds import every_kind
 from naive.relocate import differences, essence
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from handmade import ROUNDING, SIDE, two_blocks
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.handmade_map import ROUNDING, SIDE, two_blocks
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr

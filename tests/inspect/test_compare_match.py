@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
 from naive.relocate import relocate
-from scenes import play
-from steps import blocks
+from support.every_group_kind import every_kind
+from support.random_scenes import play
+from support.replayable_steps import blocks
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget

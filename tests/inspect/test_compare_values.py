@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
 from naive.relocate import relocate
+from support.every_group_kind import every_kind
 from test_look_damage import spoiled
 
 from udec_ia import Model

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scenes
-import soft_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from kinds import every_kind
-from mechanics import colliding
 from naive.census import census
 from naive.convert import common, put_together, take_apart
 from naive.relocate import differences, essence
+from support import random_deformable_scenes as soft_scenes
+from support import random_scenes as scenes
+from support.every_group_kind import every_kind
+from support.mechanics_scenes import colliding
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
-from mechanics import on_base
 from naive.census import census
 from naive.layout import count_words
+from support.every_group_kind import every_kind
+from support.mechanics_scenes import on_base
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main

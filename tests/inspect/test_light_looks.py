@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from scenes import play
+from support.random_scenes import play
 
 from udec_ia import Model
 

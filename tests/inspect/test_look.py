@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
 from naive.census import census as naive_census
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget, puti

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from kinds import every_kind
 from rich.text import Text
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
+from support.every_group_kind import every_kind
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES

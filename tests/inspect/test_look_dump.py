@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
 from naive.names import names as naive_names
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget

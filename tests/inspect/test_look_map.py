@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
 from matplotlib.colors import to_hex
 from naive.names import names as naive_names
 from PIL import Image
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from kinds import GROUPS, every_kind
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from handmade import two_blocks
-from kinds import every_kind
+from support.every_group_kind import every_kind
+from support.handmade_map import two_blocks
 
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.array import MainArray

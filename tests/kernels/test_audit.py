@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scenes
-import soft_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Point, Polygon
+from support import random_deformable_scenes as soft_scenes
+from support import random_scenes as scenes
 
 from udec_ia import Model
 from udec_ia.heap import walks

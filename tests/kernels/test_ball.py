@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from mechanics import sound
+from support.mechanics_scenes import sound
 
 from udec_ia import Model
 from udec_ia.heap.words import ALL_SCHEMES

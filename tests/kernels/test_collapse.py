@@ -6,8 +6,8 @@ from math import exp
 from pathlib import Path
 
 import pytest
-from mechanics import G, sound
 from naive.relocate import differences, essence
+from support.mechanics_scenes import G, sound
 
 from udec_ia import Model
 from udec_ia.kernels.drive.unbalanced import unbalanced

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from interpreted import both_ways, unlike
 from naive.relocate import differences, essence, relocate
-from soft_scenes import play, types
-from steps import Scene, Step, replay
+from support.interpreted_kernels import both_ways, unlike
+from support.random_deformable_scenes import play, types
+from support.replayable_steps import Scene, Step, replay
 
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.layout.offsets import JUNK, MRIG, NSOFT

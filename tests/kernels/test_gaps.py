@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from stage import Over, Stage
+from support.watched_model import Over, Stage
 
 from udec_ia.model import Model
 

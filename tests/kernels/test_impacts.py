@@ -17,8 +17,8 @@ from pathlib import Path
 import impacts
 import numpy as np
 import pytest
-from stage import Over, Stage
-from strikes import SHAPES
+from support.random_impacts import SHAPES
+from support.watched_model import Over, Stage
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr

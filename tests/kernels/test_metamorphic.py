@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
 from naive.relocate import differences, essence, relocate
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.heap.words import scheme

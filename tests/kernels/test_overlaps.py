@@ -7,9 +7,9 @@ from math import hypot, pi, radians, sqrt, tan
 import numpy as np
 import pytest
 import shapely
-from mechanics import box, model
 from naive.overlaps import Body, bare, deeper, deepest, depth, outline, parts, touching, within
-from stage import Stage, Wrong
+from support.mechanics_scenes import box, model
+from support.watched_model import Stage, Wrong
 
 D = 0.1
 CLOSE = 2e-3 * D  # what chords and sampling cost

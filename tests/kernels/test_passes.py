@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from mechanics import on_base
+from support.mechanics_scenes import on_base
 
 from udec_ia import Model
 from udec_ia.kernels.drive import passes as module

@@ -6,7 +6,7 @@ from math import sqrt
 from pathlib import Path
 
 import pytest
-from mechanics import on_base, sound
+from support.mechanics_scenes import on_base, sound
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr

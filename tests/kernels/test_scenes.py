@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from interpreted import both_ways, unlike
 from naive.compare import disagreements
 from naive.relocate import differences, essence, relocate
-from scenes import play
-from steps import Scene, Step, blocks, outline, replay
+from support.interpreted_kernels import both_ways, unlike
+from support.random_scenes import play
+from support.replayable_steps import Scene, Step, blocks, outline, replay
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import ALL_SCHEMES

@@ -7,9 +7,9 @@ import sys
 from math import hypot
 
 import pytest
-from mechanics import sound
 from naive.geometry import Outline, Point, centroid
 from naive.geometry import split as naive_split
+from support.mechanics_scenes import sound
 
 from udec_ia import Model
 

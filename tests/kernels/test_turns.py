@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from mechanics import G
+from support.mechanics_scenes import G
 
 from udec_ia import Model, UdecError
 from udec_ia.output.turns import Turns

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bounds import CP, CS, EVERYWHERE, RHO, SKEW, TYPES, lone, tractions
-from mechanics import box, push, sound
 from naive.bodies import area_and_moments, momentum, points_of
+from support.lone_block_loads import CP, CS, EVERYWHERE, RHO, SKEW, TYPES, lone, tractions
+from support.mechanics_scenes import box, push, sound
 
 from udec_ia import Model
 from udec_ia.heap.accessors import putr

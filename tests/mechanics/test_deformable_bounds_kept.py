@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bounds import CP, EVERYWHERE, RHO, SKEW, D, G, K, lone, tractions
-from mechanics import block, box, model, sound
 from naive.bodies import area_and_moments, by_address, outlines
 from naive.relocate import differences, essence
+from support.lone_block_loads import CP, EVERYWHERE, RHO, SKEW, D, G, K, lone, tractions
+from support.mechanics_scenes import block, box, model, sound
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

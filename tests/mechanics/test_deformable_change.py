@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import at, block, box, model, push, sound
 from naive.bodies import (
     applied_stress,
     area_and_moments,
@@ -18,6 +17,7 @@ from naive.bodies import (
     points_of,
     zone_forces,
 )
+from support.mechanics_scenes import at, block, box, model, push, sound
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

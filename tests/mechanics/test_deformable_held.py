@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bounds import EVERYWHERE, TYPES, G, K, lone
-from mechanics import at, block, box, model, push, sound
 from naive.bodies import points_of
+from support.lone_block_loads import EVERYWHERE, TYPES, G, K, lone
+from support.mechanics_scenes import at, block, box, model, push, sound
 
 from udec_ia import Model
 from udec_ia.heap.accessors import putr

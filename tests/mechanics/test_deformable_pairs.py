@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import block, box, model, push, sound
 from naive.bodies import contact_forces, momentum, outlines
 from naive.contacts import contacts
+from support.mechanics_scenes import block, box, model, push, sound
 
 from udec_ia import Model
 from udec_ia.heap.accessors import putr

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import box, model, sound
 from naive.bodies import points_of
 from naive.stiffness import Scene
+from support.mechanics_scenes import box, model, sound
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import G, at, block, box, model, on_base, push, sound, step
+from support.mechanics_scenes import G, at, block, box, model, on_base, push, sound, step
 
 from udec_ia import Model
 from udec_ia.layout.offsets import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND, WFRIC

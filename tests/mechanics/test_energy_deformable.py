@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
-from mechanics import box, model
 from naive.relocate import differences, essence
+from support.every_group_kind import every_kind
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr

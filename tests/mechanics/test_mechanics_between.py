@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from mechanics import G, at, block, box, model, on_base, push, sound
+from support.mechanics_scenes import G, at, block, box, model, on_base, push, sound
 
 KN = 1e9
 EPS = np.finfo(float).eps

@@ -6,8 +6,8 @@ from math import atan, cos, pi, radians, sin, tan
 
 import numpy as np
 import pytest
-from mechanics import G, at, block, no_damping, on_base, sound, step
 from naive.dynamics import slide
+from support.mechanics_scenes import G, at, block, no_damping, on_base, sound, step
 
 from udec_ia import Model
 

@@ -11,7 +11,7 @@ from math import radians, tan
 
 import numpy as np
 import pytest
-from mechanics import G, at, block, box, model, no_damping, on_base, push, sound, step
+from support.mechanics_scenes import G, at, block, box, model, no_damping, on_base, push, sound, step
 
 from udec_ia import Model
 from udec_ia.layout.offsets import AKN, AKS, GRAVX, GRAVY, WFRIC

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from interpreted import both_ways
-from mechanics import G, at, block, no_damping, on_base, push, sound, step
 from naive.relocate import differences, essence
+from support.interpreted_kernels import both_ways
+from support.mechanics_scenes import G, at, block, no_damping, on_base, push, sound, step
 from test_mechanics_energy import cycle_and_energy
 
 from udec_ia import Model

@@ -6,8 +6,8 @@ from math import log, pi, sqrt
 
 import numpy as np
 import pytest
-from mechanics import G, at, block, box, model, on_base, push, sound, step
 from naive.dynamics import angle_between, bounce, peaks
+from support.mechanics_scenes import G, at, block, box, model, on_base, push, sound, step
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -8,8 +8,8 @@ the oracle knows, and the force is KN times the overlap.
 from __future__ import annotations
 
 import pytest
-from mechanics import at, block, box, model, push, sound, step
 from naive import contacts as naive
+from support.mechanics_scenes import at, block, box, model, push, sound, step
 
 from udec_ia import Model
 from udec_ia.layout.offsets import GTOL

@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from mechanics import G, Row, at, block, box, model, sound, step
 from naive.dynamics import slide, slide_two
+from support.mechanics_scenes import G, Row, at, block, box, model, sound, step
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
-from mechanics import G, block, box, model, on_base
 from naive.stiffness import Scene
 from safe_steps.scenes import draw
+from support.every_group_kind import every_kind
+from support.mechanics_scenes import G, block, box, model, on_base
 
 from udec_ia import Model, UdecError
 from udec_ia.kernels.energy.stored import kinetic

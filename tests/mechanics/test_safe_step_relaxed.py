@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import box, model
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from mechanics import box, model
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g

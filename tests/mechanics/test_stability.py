@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mechanics import G
+from support.mechanics_scenes import G
 
 from udec_ia import Model
 from udec_ia.kernels.drive.unbalanced import unbalanced

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics import block, model, sound
+from support.mechanics_scenes import block, model, sound
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from handmade import two_blocks
-from kinds import GROUPS, every_kind
-from mechanics import at, block, standing, value
+from support.every_group_kind import GROUPS, every_kind
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import at, block, standing, value
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import getr, iget, puti
@@ -97,7 +97,7 @@ SCHEMES = """
 import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
-from mechanics import on_base
+from support.mechanics_scenes import on_base
 for build in ("i16r32", "i32r32", "i16r64", "i32r64", "i64r64"):
     m = on_base(1.0, 1.0, 0.1, 4.0, build=build)
     m.out = Path(sys.argv[2]) / build

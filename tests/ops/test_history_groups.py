@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 
 import numpy as np
-from handmade import two_blocks
-from mechanics import block, push, standing, value
 from naive.relocate import relocate
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import block, push, standing, value
 
 from udec_ia import Model
 from udec_ia.heap.memory import find, lose

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import play
+from support.random_scenes import play
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import every_kind
-from mechanics import block, on_base, push
+from support.every_group_kind import every_kind
+from support.mechanics_scenes import block, on_base, push
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from interrupted.commands import interrupt_lines
 from interrupted.scene import state
-from mechanics import side_by_side
+from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
 from udec_ia.transaction import Undo

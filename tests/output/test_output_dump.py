@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from handmade import two_blocks
+from support.handmade_map import two_blocks
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, puti, putr

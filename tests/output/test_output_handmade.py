@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from handmade import two_blocks
+from support.handmade_map import two_blocks
 
 from udec_ia.heap.accessors import Memory, iget
 from udec_ia.heap.words import ALL_SCHEMES

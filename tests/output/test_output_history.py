@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from mechanics import block, push, standing
+from support.mechanics_scenes import block, push, standing
 
 from udec_ia import UdecError
 from udec_ia.layout import offsets as g

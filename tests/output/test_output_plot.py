@@ -12,11 +12,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from handmade import ROUNDING, two_blocks
 from matplotlib.figure import Figure
 from matplotlib.path import Path as Curve
 from matplotlib.quiver import Quiver
 from PIL import Image
+from support.handmade_map import ROUNDING, two_blocks
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from handmade import two_blocks
-from mechanics import box, model
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import box, model
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr

@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 
 import pytest
-from handmade import two_blocks
+from support.handmade_map import two_blocks
 
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.output import progress

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mechanics import sound
+from support.mechanics_scenes import sound
 
 from udec_ia import Model
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import h5py
 import pytest
-from handmade import two_blocks
-from mechanics import box, model
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
@@ -236,7 +236,7 @@ def test_pictures_and_tables_replace_their_own_kind_only(tmp_path: Path) -> None
 FULL = """
 import resource, sys
 sys.path.insert(0, sys.argv[2])
-from handmade import two_blocks
+from support.handmade_map import two_blocks
 from udec_ia.errors import UdecError
 from udec_ia.restart import save
 resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
@@ -248,7 +248,7 @@ except UdecError as error:
 OFTEN = """
 import sys
 sys.path.insert(0, sys.argv[2])
-from handmade import two_blocks
+from support.handmade_map import two_blocks
 from udec_ia.restart import load, save
 array = two_blocks()
 for i in range(12):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kinds import every_kind
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main

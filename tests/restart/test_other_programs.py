@@ -12,8 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from kinds import every_kind
 from naive.relocate import differences, essence
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.layout.table import TABLE, read_table

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from kinds import every_kind
 from naive.relocate import differences, essence
 from naive.retell import retell, write
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.errors import UdecError

@@ -13,9 +13,9 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from handmade import two_blocks
 from interrupted.saves import kill_saves
-from mechanics import box, model, on_base
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import box, model, on_base
 
 from udec_ia import Model
 from udec_ia.errors import MESSAGES, UdecError
@@ -169,8 +169,8 @@ def test_file_modes_follow_the_user(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 sys.path.insert(0, sys.argv[2])
-from handmade import two_blocks
-from mechanics import box, model
+from support.handmade_map import two_blocks
+from support.mechanics_scenes import box, model
 from udec_ia.restart import save
 os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)
 save(two_blocks(), sys.argv[1])

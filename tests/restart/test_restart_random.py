@@ -5,9 +5,9 @@ from __future__ import annotations
 from contextlib import suppress
 
 import pytest
-from forged import ARRAYS, SCHEMES, refusal
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.resealed_files import ARRAYS, SCHEMES, refusal
 
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g

@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from forged import ARRAYS, SCHEMES, Edit, edit, refusal
+from support.resealed_files import ARRAYS, SCHEMES, Edit, edit, refusal
 
 from udec_ia import Model, __version__
 from udec_ia.errors import UdecError

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from forged import ARRAYS, SCHEMES, Edit, edit, refusal
+from support.resealed_files import ARRAYS, SCHEMES, Edit, edit, refusal
 
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.array import MainArray

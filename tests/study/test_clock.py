@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from studies import PILE
+from support.study_decks import PILE
 
 from udec_ia.study import clock
 from udec_ia.study.obeying import obey

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from studies import PILE, ROOT, piles, wait_until
+from support.study_decks import PILE, ROOT, piles, wait_until
 
 from udec_ia import UdecError
 from udec_ia.cli import main

@@ -10,7 +10,7 @@ import threading
 from pathlib import Path
 
 import pytest
-from studies import PILE, ROOT, piles, started, wait_until
+from support.study_decks import PILE, ROOT, piles, started, wait_until
 
 from udec_ia import UdecError, sweep
 from udec_ia.study.folders import RESULT, UNNAMED, clear, new

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from studies import piles
+from support.study_decks import piles
 
 from udec_ia.study.keeping import kept, write
 from udec_ia.study.obeying import obey

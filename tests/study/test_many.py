@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from studies import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
+from support.study_decks import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
 
 from udec_ia.cli import main
 from udec_ia.counting import counted

@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from studies import PILE
+from support.study_decks import PILE
 
 from udec_ia import UdecError, sweep
 from udec_ia.cli import main

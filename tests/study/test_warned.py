@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 import pytest
-from studies import PILE, piles
+from support.study_decks import PILE, piles
 
 from udec_ia import Model
 from udec_ia.cli import main

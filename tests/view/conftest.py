@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from browser import Browser
-from pages import Told
+from support.headless_browser import Browser
+from support.view_page import Told
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
+from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import Browser
-from pages import Told, addresses, inked, needs_browser, on_picture, selected
+from support.headless_browser import Browser
+from support.view_page import Told, addresses, inked, needs_browser, on_picture, selected
 
 pytestmark = needs_browser
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from browser import Browser
-from pages import Told, arrived, needs_browser
+from support.headless_browser import Browser
+from support.view_page import Told, arrived, needs_browser
 
 from udec_ia.layout import offsets as g
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from browser import Browser
-from pages import Told, addresses, arrived, inked, needs_browser, on_map, on_picture, selected
+from support.headless_browser import Browser
+from support.view_page import Told, addresses, arrived, inked, needs_browser, on_map, on_picture, selected
 
 from udec_ia.inspect.look import Atlas, who
 from udec_ia.layout import offsets as g

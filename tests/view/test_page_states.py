@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Browser
-from pages import HOSTILE, Told, arrived, needs_browser, selected
+from support.headless_browser import Browser
+from support.view_page import HOSTILE, Told, arrived, needs_browser, selected
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g

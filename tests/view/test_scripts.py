@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kinds import GROUPS, every_kind
 from naive.contacts import rounded_polygon
 from shapely.geometry import Point, Polygon
-from steps import blocks, outline
+from support.every_group_kind import GROUPS, every_kind
+from support.replayable_steps import blocks, outline
 
 from udec_ia import Model
 from udec_ia.heap.array import MainArray

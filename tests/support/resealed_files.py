@@ -8,8 +8,8 @@ from typing import Any
 
 import h5py
 import pytest
-from handmade import two_blocks
 
+from support.handmade_map import two_blocks
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.restart import load

@@ -11,10 +11,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bends import Frame
-from stage import Stage
-from strikes import drive, edges, near
 
+from support.random_corner_bends import Frame
+from support.random_impacts import drive, edges, near
+from support.watched_model import Stage
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.layout.offsets import MFDEF
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 from naive.geometry import Point
-from outlines import random_outline
-from splits import box_of, point_in, split_somehow
-from steps import Numbers, Scene, blocks, outline
 
+from support.random_outlines import random_outline
+from support.random_splits import box_of, point_in, split_somehow
+from support.replayable_steps import Numbers, Scene, blocks, outline
 from udec_ia.heap.accessors import getr, iget
 from udec_ia.layout.offsets import DTOL, KBFIX, KBM, KBRO, KX, KY, NBLK, TDEL
 from udec_ia.model import Model

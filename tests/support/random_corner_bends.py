@@ -12,8 +12,9 @@ from math import cos, pi, sin
 from typing import Any
 
 import numpy as np
-from stage import Stage
-from strikes import drive
+
+from support.random_impacts import drive
+from support.watched_model import Stage
 
 Rng = np.random.Generator
 Vector = Any  # array of two

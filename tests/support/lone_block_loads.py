@@ -7,8 +7,8 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-from mechanics import model
 
+from support.mechanics_scenes import model
 from udec_ia import Model
 from udec_ia.verify.grids import fan
 

@@ -11,7 +11,7 @@ from time import monotonic, sleep
 
 from udec_ia.study.runs import Run
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PILE = """START
 DEFAULT F=0.5 N=200
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=$F

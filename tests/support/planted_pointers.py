@@ -1,6 +1,6 @@
 """Wrong pointers, planted one by one in a small model, and what a cycle says of each. A program of its own,
 
-    UDEC_CHECKED=1 python tests/planted.py 1
+    UDEC_CHECKED=1 python tests/support/planted_pointers.py 1
 
 for the build of the kernels is chosen when they are loaded. The first lines are the bits of the model before
 and after some cycles, and whether the kinds of groups that the build has noted are those that a census finds.

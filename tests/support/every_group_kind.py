@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from mechanics import box, model
-
+from support.mechanics_scenes import box, model
 from udec_ia import Model
 from udec_ia.layout.table import read_table
 

@@ -10,9 +10,9 @@ from math import cos, pi, radians, sin
 from typing import Any
 
 import numpy as np
-from stage import Stage
-from strikes import drive, edges, moved, near
 
+from support.random_impacts import drive, edges, moved, near
+from support.watched_model import Stage
 from udec_ia.heap.accessors import getr
 from udec_ia.layout.offsets import AKN, KBM
 

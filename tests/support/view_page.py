@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import BROWSER, Browser
-from kinds import every_kind
 
+from support.every_group_kind import every_kind
+from support.headless_browser import BROWSER, Browser
 from udec_ia.heap.array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.view import Page

@@ -6,8 +6,8 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 from naive.geometry import Point
-from steps import Scene, blocks, outline
 
+from support.replayable_steps import Scene, blocks, outline
 from udec_ia.layout.offsets import NBLK
 
 MAX_BLOCKS = 30

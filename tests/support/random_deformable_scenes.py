@@ -10,12 +10,12 @@ from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
-import scenes
 from naive.triangulate import triangulate
-from outlines import random_outline
-from splits import split_somehow
-from steps import Numbers, Scene, blocks, outline
 
+from support import random_scenes as scenes
+from support.random_outlines import random_outline
+from support.random_splits import split_somehow
+from support.replayable_steps import Numbers, Scene, blocks, outline
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.layout.offsets import DTOL, KBM, KX, KY, MFDEF, MRIG, NBLK, TDEL
 from udec_ia.model import Model

@@ -12,8 +12,8 @@ from math import cos, hypot, pi, radians, sin
 from typing import Any
 
 import numpy as np
-from stage import Stage
 
+from support.watched_model import Stage
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.layout.offsets import KBEX, KFG, KG, KXG, KYG, MFDEF
 

@@ -1,0 +1,1 @@
+"""What tests share: scenes, decks, models that are watched, a browser without a window."""
