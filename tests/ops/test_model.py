@@ -170,7 +170,7 @@ def test_a_number_that_32_bits_cannot_hold_is_refused(build: str, line: str, tmp
 def test_a_size_that_is_no_integer_is_refused(mtop: object) -> None:
     with pytest.raises(TypeError, match="mtop is a number of words, an integer, not "):
         Model(mtop=mtop)  # type: ignore[arg-type]
-    assert Model(mtop=np.int64(1000)).mtop == 1000  # type: ignore[arg-type]
+    assert Model(mtop=np.int64(1000)).session.mtop == 1000  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["nothere.dat", "no where/nothere.dat", "P.dat", "run-2.d"])

@@ -181,7 +181,7 @@ class Lines:
             other = [part for part in now if now[part] != state(after)[part]]
             if other and not between(kept, lambda: self.scene(line), line):
                 wrong = f"before: {differs}, after: {other}"
-        faults = [] if self.model._touched else self.model.check()
+        faults = [] if self.model.session.written else self.model.check()
         if now != before or faults:
             self.fresh(line)
         if faults:

@@ -31,7 +31,7 @@ HISTORY 3 UNBALANCED"""
 
 def state(model: Model) -> dict[str, Any]:
     """All that a command may change, bit for bit."""
-    h, plots = model.array.h, model._plots
+    h, plots = model.array.h, model.session.plots
     frame = None if plots is None or plots.frame is None else plots.frame
     return {
         "words": h.ia[: int(h.ci[MFREE]) - 1].tobytes(),
@@ -39,16 +39,16 @@ def state(model: Model) -> dict[str, Any]:
         "reals": h.cr.tobytes(),
         "doubles": h.cd.tobytes(),
         "size": (len(h.ia), model.array.scheme.name, model.array.fixed),
-        "deck": tuple(model.deck_log),
-        "series": tuple((str(one), one.lost, one.numbers.tobytes()) for one in model._recorder.series),
-        "solutions": tuple(model._recorder.solutions),
-        "files": tuple(model._files),
+        "deck": tuple(model.session.deck_log),
+        "series": tuple((str(one), one.lost, one.numbers.tobytes()) for one in model.session.recorder.series),
+        "solutions": tuple(model.session.recorder.solutions),
+        "files": tuple(model.session.files),
         "frame": None if plots is None else (plots.count, len(frame.states) if frame else -1),
-        "flags": (model.started, model._touched, model._unproved, model.explain_step),
+        "flags": (model.session.started, model.session.written, model.session.unproved, model.explain_step),
         "remarks": (
-            sorted(model._said),
-            model._guard.runaway._judged,
-            model._guard.runaway._warned,
-            model._guard.runaway._account,
+            sorted(model.session._remarks),
+            model.session.guard.runaway._judged,
+            model.session.guard.runaway._warned,
+            model.session.guard.runaway._account,
         ),
     }

@@ -93,7 +93,7 @@ class Monitor:
             return
         call = parse(statement)
         name = call.command.name
-        if not (call.command.opens or self.model.started):
+        if not (call.command.opens or self.model.session.started):
             raise at(UdecError(3, f"this is {name.upper()}"), call.head)
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
@@ -117,7 +117,7 @@ class Monitor:
 
         What cannot be written is told, and the summary written all the same, before the error is raised.
         """
-        if not self.model.started or self._stopped:
+        if not self.model.session.started or self._stopped:
             return
         self._stopped = True
         try:
@@ -133,7 +133,7 @@ class Monitor:
         result = self._call(call)
         lines = dict.fromkeys(token.line for token in statement.tokens)
         if call.command.name != "default":  # the lines that are logged have their values
-            self.model.log_lines([line.shown for line in lines])
+            self.model.session.log_lines([line.shown for line in lines])
         return result
 
     def _call(self, call: Call) -> object:
@@ -149,18 +149,18 @@ class Monitor:
         place = self.place(name, named.get("path"))
         if place is not None:
             named["path"] = place
-        model = self.model
-        before = model.tell, model.inform, model.explain_step, model.logs_calls
-        model.explain_step, model.logs_calls = True, False
-        model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
+        session = self.model.session
+        before = session.tell, session.inform, session.explain_step, session.logs_calls
+        session.explain_step, session.logs_calls = True, False
+        session.tell = session.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
-            return getattr(model, name)(*call.positional, **named)
+            return getattr(self.model, name)(*call.positional, **named)
         finally:
-            model.tell, model.inform, model.explain_step, model.logs_calls = before
+            session.tell, session.inform, session.explain_step, session.logs_calls = before
 
     def place(self, command: str, name: str | None) -> Path | None:
         """Where the file is that a command names: in the folder for files. None if it names none."""
-        return None if name is None else _in_folder(self.model.out, name)
+        return None if name is None else _in_folder(self.model.session.out, name)
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
@@ -183,7 +183,7 @@ class Monitor:
         here must not hide what has gone wrong before. However often Ctrl-C is pressed, the file is written;
         then only the pictures are left out.
         """
-        if not self.model.started:
+        if not self.model.session.started:
             return None
         saved = None
         with suppress(Exception, KeyboardInterrupt), hold():
@@ -198,7 +198,7 @@ class Monitor:
 
     def _save(self, sound: bool) -> Path:
         """Save the state for the rescue, by force if it is not sound."""
-        path = (self.model.out / RESCUE).absolute()
+        path = (self.model.session.out / RESCUE).absolute()
         if sound:
             try:
                 return self.model.save(path)

@@ -11,8 +11,8 @@ from udec_ia.heap.accessors import Memory
 R = TypeVar("R")
 
 
-class Obeying(Protocol):
-    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+class ObeyingSession(Protocol):
+    """What it needs of the session of the model: attributes as in model_session.Session."""
 
     started: bool
     tell: Callable[[str], None]
@@ -24,15 +24,23 @@ class Obeying(Protocol):
     def out(self) -> Path:
         """The folder for files."""
 
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+
+class Obeying(Protocol):
+    """A model; its commands are found by their names."""
+
+    @property
+    def session(self) -> ObeyingSession:
+        """Where warnings go, and what is logged."""
+
     @property
     def h(self) -> Memory:
         """The array."""
 
     def whole(self, action: Callable[[], R]) -> R:
         """Have all that `action` does done, or nothing of it."""
-
-    def log_lines(self, lines: Sequence[Any]) -> None:
-        """Log what was obeyed."""
 
     def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
         """Why a command has found nothing."""

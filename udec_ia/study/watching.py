@@ -46,7 +46,7 @@ class Observer:
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.around = self._around
+        self.model.session.around = self._around
         monitor.run(text.splitlines(), name)
         monitor.stop()
 
