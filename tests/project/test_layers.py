@@ -147,7 +147,7 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"counting", "errors", "heap", "layout", "ops", "printable", "signals"},
+    "deck": {"counting", "errors", "heap", "layout", "ops", "printable", "reader", "signals"},
 }
 
 
