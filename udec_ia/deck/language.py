@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.recordable import QUANTITIES, recordable
+from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
 
 MANY = 20  # choices that are told by the name of their argument, not one by one
 SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
@@ -416,8 +416,8 @@ COMMANDS = (
     Command(
         "SAve",
         "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
-        "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
-        "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
+        "for files (--out), outside of which no folder is created. The file may replace a restart file and "
+        "nothing else. FORCE also saves an unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
         "SAVE slope.h5",
         words=(BY_FORCE,),
         text="path",

@@ -18,6 +18,7 @@ from functools import update_wrapper, wraps
 from pathlib import Path
 from typing import Any, Concatenate, Generic, ParamSpec, Self, TextIO, TypeVar, Unpack, get_type_hints
 
+from udec_ia.checker import check, unjudged
 from udec_ia.counting import counted
 from udec_ia.deck.monitor import run_deck
 from udec_ia.deck.reference import explain, summary
@@ -26,9 +27,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import DEFAULT_SCHEME
-from udec_ia.inspect.change import patch
-from udec_ia.inspect.check import check, unjudged
-from udec_ia.inspect.table import table
+from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import DTOL, MCTOT
 from udec_ia.model.model_runs import run_cycles, solve_as_given, solve_statically
@@ -58,6 +57,7 @@ from udec_ia.ops.run.timestep import bound, describe
 from udec_ia.ops.run.watch import SOLVE_LIMIT, Series
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
+from udec_ia.reader.group_tables import table
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -71,8 +71,8 @@ class InSession(Generic[T]):
         self.name = name
 
     def __get__(self, model: Model | None, _: type | None = None) -> T:
-        value: T = self if model is None else getattr(model.session, self.name)
-        return value
+        value: Any = self if model is None else getattr(model.session, self.name)
+        return value  # type: ignore[no-any-return]
 
     def __set__(self, model: Model, value: T) -> None:
         setattr(model.session, self.name, value)
@@ -195,7 +195,8 @@ class Model:
         """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
 
         Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
-        It may replace a restart file; error 31 if anything else stands there, or if it cannot be written.
+        It may replace a restart file; error 31 if anything else stands there, or if it cannot be written. A
+        folder is created within `out` only.
         force: also a state that is unsound, whatever has made it so; the file is marked with the result of
         `check`, and RESTART takes it only by force.
         """
@@ -418,7 +419,7 @@ class Model:
     def patch(self, assignments: str) -> None:
         """PATCH: give words of the array other values by name, as in "block@88.KXD = 0.5, FRAC = 0.1".
 
-        All of them, and only if the state is sound with them (inspect.change.patch): else error 10, 28 or 30.
+        All of them, and only if the state is sound with them (patch_words.py): else error 10, 28 or 30.
         """
         self.session.ensure_ready(sound=False)
         patch(self.array, assignments)
@@ -592,7 +593,7 @@ class Model:
     # ---- tables, pictures, checks
 
     def table(self, kind: str) -> Any:
-        """One row a group: `address`, then the fields by the names of the table (see inspect.table)."""
+        """One row a group: `address`, then the fields by the names of the table (reader/group_tables.py)."""
         return table(self.array, kind)
 
     def check(self) -> list[Any]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TextIO
 
 import numpy as np
 
+from udec_ia.checker import check, check_shapes
 from udec_ia.errors import UdecError
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
@@ -23,9 +24,6 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import compile_seconds
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.inspect.check import check, check_shapes
-from udec_ia.inspect.table import table
-from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import CommandLog, Step
 from udec_ia.model.history_recorder import HistoryRecorder
@@ -38,6 +36,8 @@ from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.solution import in_short
 from udec_ia.ops.run.watch import Series, Watch
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.list_walks import Unsound
 from udec_ia.signals import hold
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from udec_ia.checker import check
 from udec_ia.counting import counted
 from udec_ia.deck.monitor import RESTART_FILE
-from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.inspect.check import check
+from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.memory import refit
@@ -26,6 +26,9 @@ def save_state(session: Session, path: str | Path | None, force: bool) -> Path:
         session.tell(f"the state is unsound, and the file is marked so: {broken[0]}")
     target = session.out / RESTART_FILE if path is None else Path(path)
     folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
+    if makes and not folder.resolve().is_relative_to(session.out.resolve()):
+        advice = "create it first, or give a name within the folder for files (--out)"
+        raise UdecError(31, f"{folder} does not exist, and is outside the folder for files", advice)
     recorded = session.recorder.series
     written = save(session.array, target, session.deck_log, session.laws.record(), recorded, broken)
     session.add_files([written])

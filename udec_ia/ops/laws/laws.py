@@ -47,7 +47,7 @@ class LawBook:
 
     def __init__(self, given: Given | Iterable[Given] | None = None) -> None:
         single = given is None or isinstance(given, str | Path | Mapping)
-        self._sources = given if single else list(given)
+        self._sources: Any = given if single else list(given)  # type: ignore[arg-type]
         self.given = read_laws(self._sources)
         self.recorded: Record = {}
         self._calls = np.zeros(len(RESULTS), np.int64)
