@@ -32,7 +32,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
 from udec_ia.inspect.change import convert, renumber
 from udec_ia.inspect.table import table
-from udec_ia.kernels.body.law_call_numba import MATERIAL_SIZE, _jump
+from udec_ia.kernels.constitutive.law_call_numba import MATERIAL_SIZE, _jump
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.ops.run.watch import run_unwatched

@@ -12,7 +12,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from udec_ia.kernels.body.law_call import call, is_given
+from udec_ia.kernels.constitutive.law_call import call, is_given
 from udec_ia.layout.material import Material
 
 MATERIAL_SIZE = 8 * len(Material._fields)  # bytes
