@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from udec_ia import Model
-from udec_ia.debug.answers import last_hit, wrote
+from udec_ia.debug.debugged_run import Debugger
 from udec_ia.debug.places import place
-from udec_ia.debug.probes import Changed
-from udec_ia.debug.session import Debugger
+from udec_ia.debug.stop_conditions import WordChange
+from udec_ia.debug.word_history import explain_write, find_last_hit
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
@@ -60,8 +60,8 @@ def seconds_back(debugger: Debugger, words: int, seed: int) -> dict[str, list[fl
         word = place(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
         jobs = (
             lambda event=event: timeline.at(event - 1),
-            lambda event=event, word=word: last_hit(timeline, event, Changed(word)),
-            lambda event=event, word=word: list(wrote(timeline, event, word)),
+            lambda event=event, word=word: find_last_hit(timeline, event, WordChange(word)),
+            lambda event=event, word=word: list(explain_write(timeline, event, word)),
         )
         for name, job in zip(found, jobs, strict=True):
             start = time.perf_counter()

@@ -1,7 +1,7 @@
-"""What a run is stopped for: contacts made, broken or re-coded, a condition that comes true, a changed word.
+"""Stop conditions of the debugger: contacts made, broken or re-coded, a comparison, a changed word.
 
-A probe looks at the states one after the other, after every cycle and command. It says what has happened
-since the state that it saw last, or nothing.
+A stop condition is shown the states one after the other, after every cycle and command. It reports what has
+happened since the state before.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ COMPARED: dict[str, Callable[[Any, Any], bool]] = {
 }
 
 
-class Probe(Protocol):
-    """text: what it is, as it was asked for."""
+class StopCondition(Protocol):
+    """text: the condition, as it was typed."""
 
     text: str
 
     def begin(self, array: MainArray) -> None:
-        """This is the state that is seen first."""
+        """Take this state as the first one."""
 
     def hit(self, array: MainArray) -> str:
-        """What has happened since the state before; "" if nothing has. This state is the one before then."""
+        """What has happened since the last state, or "". The next call compares with this one."""
 
 
-class Changed:
-    """A number that changes; with a comparison, one for which that comes true."""
+class WordChange:
+    """A number that changes, or for which a comparison becomes true."""
 
     def __init__(self, place: Place, sign: str = "", limit: float = 0.0) -> None:
         self.place, self.sign, self.limit = place, sign, limit
@@ -62,18 +62,18 @@ class Changed:
         if self.sign and (self._true(before) or not self._true(now)):
             return ""
         unit = f" {self.place.unit}" if self.place.unit else ""
-        return f"{self.place.name}: {shown(before)} -> {shown(now)}{unit}"
+        return f"{self.place.name}: {format_number(before)} -> {format_number(now)}{unit}"
 
     def _true(self, value: Any) -> bool:
         return value is not None and COMPARED[self.sign](value, self.limit)
 
 
-def shown(value: Any) -> str:
-    """A number as it is told; all digits of a real."""
+def format_number(value: Any) -> str:
+    """A number as text; all digits of a real."""
     return "no word" if value is None else repr(value)
 
 
-class Contacts:
+class ContactChange:
     """Contacts that are made, broken or re-coded. what: which of these.
 
     Those of blocks that come and go by commands count as well; a contact that becomes virtual is broken.
@@ -116,7 +116,7 @@ class Contacts:
 
 
 class Contact(NamedTuple):
-    """What a contact is known by: one that is given back may leave its address to another within a cycle."""
+    """Identity of a contact. An address alone is not enough: it may be reused within a cycle."""
 
     address: int
     blocks: frozenset[int]
@@ -133,8 +133,8 @@ def _codes(array: MainArray) -> dict[Contact, int]:
     return {Contact(iad, frozenset((one, two))): code for iad, one, two, code in zip(*columns, strict=True)}
 
 
-class Where:
-    """A condition that comes true for a group: `contact where KCN > 0.1`, as `udec find` takes it."""
+class GroupCondition:
+    """A condition that becomes true for a group: `contact where KCN > 0.1`, as `udec find` takes it."""
 
     def __init__(self, text: str) -> None:
         self.text = f"break {text}"
@@ -156,8 +156,8 @@ class Where:
         return f"{self.text}: {', '.join(f'{self.kind}@{iad}' for iad in sorted(new))}" if new else ""
 
 
-class Born:
-    """The group at an address comes to be, or goes. Looked for when groups have been made or given back."""
+class GroupBirth:
+    """The group at an address is created or given back. Examined only when such counts have changed."""
 
     def __init__(self, kind: str, address: int) -> None:
         self.kind, self.address = kind, address

@@ -13,10 +13,16 @@ import pytest
 from support.debugger_decks import PILE
 
 from udec_ia import Model
-from udec_ia.debug.answers import RENUMBERED, born, why, wrote, wrote_within
+from udec_ia.debug.cycle_trace import CycleTrace
+from udec_ia.debug.debugged_run import Debugger
 from udec_ia.debug.places import named, place
-from udec_ia.debug.session import Debugger
-from udec_ia.debug.tracing import Trace
+from udec_ia.debug.word_history import (
+    RENUMBERED,
+    explain_birth,
+    explain_value,
+    explain_write,
+    explain_write_within,
+)
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import getr
 from udec_ia.inspect.look.atlas import KINDS, Atlas
@@ -32,16 +38,16 @@ def debugger(tmp_path_factory: pytest.TempPathFactory) -> Debugger:
 
 
 @pytest.fixture
-def trace(debugger: Debugger) -> Trace:
+def trace(debugger: Debugger) -> CycleTrace:
     """Cycle 90."""
-    return Trace(debugger.timeline.at(debugger.timeline.event_of(89)), debugger.timeline.laws)
+    return CycleTrace(debugger.timeline.at(debugger.timeline.event_of(89)), debugger.timeline.laws)
 
 
 def used(array: Any) -> Any:
     return array.h.ia[: int(array.h.ci[g.MFREE]) - 1]
 
 
-def test_a_trace_leads_from_one_state_to_the_next(debugger: Debugger, trace: Trace) -> None:
+def test_a_trace_leads_from_one_state_to_the_next(debugger: Debugger, trace: CycleTrace) -> None:
     before, after = (debugger.timeline.at(debugger.timeline.event_of(cycle)) for cycle in (89, 90))
     assert np.array_equal(used(trace.state), used(after))
     trace.go(0)
@@ -54,21 +60,21 @@ def test_a_trace_leads_from_one_state_to_the_next(debugger: Debugger, trace: Tra
     assert np.array_equal(used(trace.state), middle)
 
 
-def test_within_a_cycle_its_own_writes_come_first(debugger: Debugger, trace: Trace) -> None:
+def test_within_a_cycle_its_own_writes_come_first(debugger: Debugger, trace: CycleTrace) -> None:
     event = debugger.timeline.event_of(89)
     done = len(trace.writes) // 2
     trace.go(done)
     last = trace.accesses[trace.writes[done - 1]]
     last_place = named(Atlas(trace.state.h), last.part, last.at)
-    lines = list(wrote_within(debugger.timeline, event, trace, last_place))
+    lines = list(explain_write_within(debugger.timeline, event, trace, last_place))
     assert lines
     assert all(line.startswith(f"{last_place.name}: ") for line in lines)
     assert last.place in lines[-1]
     trace.go(0)
-    assert list(wrote_within(debugger.timeline, event, trace, last_place)) == []
+    assert list(explain_write_within(debugger.timeline, event, trace, last_place)) == []
 
 
-def test_passes_and_groups_come_in_their_order(trace: Trace) -> None:
+def test_passes_and_groups_come_in_their_order(trace: CycleTrace) -> None:
     trace.go(0)
     passes, groups = [], []
     while (one := trace.here()) is not None:
@@ -96,7 +102,7 @@ def test_who_wrote_a_word(debugger: Debugger) -> None:
     atlas = Atlas(timeline.at(event).h)
     for block in atlas.groups["block"].tolist():
         word = place(atlas, f"block@{block}.KYD")
-        told = "\n".join(wrote(timeline, event, word))
+        told = "\n".join(explain_write(timeline, event, word))
         if place(atlas, f"block@{block}.KBFIX").value(atlas.h):
             continue
         found = re.search(r"-> (\S+) .* in (\w+) \((\w+\.py):(\d+)\), move_all, \w+ of block@(\d+)", told)
@@ -113,8 +119,10 @@ def test_who_wrote_what_no_cycle_has_written(debugger: Debugger) -> None:
     fixed = next(
         ib for ib in atlas.groups["block"].tolist() if place(atlas, f"block@{ib}.KBFIX").value(atlas.h)
     )
-    assert "FIX 0,4 0,1" in "\n".join(wrote(timeline, timeline.now, place(atlas, f"block@{fixed}.KBFIX")))
-    assert "PROPERTY" in "\n".join(wrote(timeline, timeline.now, place(atlas, "AKN")))
+    assert "FIX 0,4 0,1" in "\n".join(
+        explain_write(timeline, timeline.now, place(atlas, f"block@{fixed}.KBFIX"))
+    )
+    assert "PROPERTY" in "\n".join(explain_write(timeline, timeline.now, place(atlas, "AKN")))
 
 
 def test_why_a_force_sum_is_what_it_is(debugger: Debugger) -> None:
@@ -125,7 +133,7 @@ def test_why_a_force_sum_is_what_it_is(debugger: Debugger) -> None:
     atlas, summed = Atlas(h), 0
     for block in atlas.groups["block"].tolist():
         word = place(atlas, f"block@{block}.KBFY")
-        lines = list(why(timeline, event, word))
+        lines = list(explain_value(timeline, event, word))
         steps = [
             (float(found[1]), float(found[2]), found[3])
             for line in lines
@@ -152,17 +160,17 @@ def test_how_groups_came_to_be(debugger: Debugger) -> None:
         for iad in last.groups[kind].tolist()[:6]:
             there = [iad in one.groups[kind] for one in atlases]
             event = max(k for k in range(1, len(there)) if there[k] and not there[k - 1])
-            lines = list(born(timeline, timeline.now, iad))
-            stretch, cycle = timeline.place(event)
+            lines = list(explain_birth(timeline, timeline.now, iad))
+            span, cycle = timeline.place(event)
             assert lines[0].startswith(f"{kind}@{iad} is made after")
-            assert (f"cycle {cycle} of" in lines[0]) == stretch.runs
-            assert stretch.text in lines[0]
-            if stretch.runs:
+            assert (f"cycle {cycle} of" in lines[0]) == span.runs
+            assert span.text in lines[0]
+            if span.runs:
                 made_in_cycles += 1
                 assert re.search(r"by \w+ \(\w+\.py:\d+\)", lines[-1])
     assert made_in_cycles > 0
     with pytest.raises(ValueError, match="is in no group"):
-        list(born(timeline, timeline.now, int(debugger.array.h.ci[g.MFREE]) + 1))
+        list(explain_birth(timeline, timeline.now, int(debugger.array.h.ci[g.MFREE]) + 1))
 
 
 def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
@@ -209,6 +217,6 @@ def test_where_groups_got_other_addresses_the_search_is_over(tmp_path: Path) -> 
     debugger.run(list(statements(deck, "wall")))
     timeline, atlas = debugger.timeline, debugger.atlas
     iad = int(atlas.groups["block"][-1])
-    assert next(iter(born(timeline, timeline.now, iad))) == RENUMBERED
-    assert next(iter(wrote(timeline, timeline.now, place(atlas, f"block@{iad}.KMAT")))) == RENUMBERED
-    assert "KYD: " in next(iter(wrote(timeline, timeline.now, place(atlas, f"block@{iad}.KYD"))))
+    assert next(iter(explain_birth(timeline, timeline.now, iad))) == RENUMBERED
+    assert next(iter(explain_write(timeline, timeline.now, place(atlas, f"block@{iad}.KMAT")))) == RENUMBERED
+    assert "KYD: " in next(iter(explain_write(timeline, timeline.now, place(atlas, f"block@{iad}.KYD"))))

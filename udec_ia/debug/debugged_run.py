@@ -1,20 +1,21 @@
-"""A deck run under the debugger: where it stops, and where one looks.
+"""A deck that is run under the debugger: where it stops, and which of its states is shown.
 
-What runs is the model itself, by the same machine code as without a debugger; its cycles come in pieces that
-end where something is asked for. `now` is where it stands. One may look at any event before (`event`), in a
-copy; what runs is not touched by that. In front of a cycle one may stand between two writes of it (`trace`).
+The model itself runs, by the same machine code as without a debugger. Its cycles run in pieces that end where
+the run may have to stop. `timeline.now` is the present. Any earlier `event` can be shown, from a copy, which
+leaves the run alone. Before a cycle the state between two of its writes can be shown (`trace`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any
 
-from udec_ia.debug.answers import last_hit, where
-from udec_ia.debug.probes import Probe
+from udec_ia.debug.cycle_trace import CycleTrace
+from udec_ia.debug.stop_conditions import StopCondition
 from udec_ia.debug.timeline import BUDGET, Timeline
-from udec_ia.debug.tracing import Trace
+from udec_ia.debug.word_history import describe_event, find_last_hit, is_cycle
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import Line, Statement, tokens
@@ -28,28 +29,18 @@ from udec_ia.signals import poll
 PIECE_SECONDS = 0.02
 FIRST_PIECE = 16  # cycles
 Stopped = Callable[[Sequence[str]], None]
-Placed = tuple[
-    int, Statement
-]  # a command, and which one of the deck it is, or is a part of, or stands behind
+NumberedStatement = tuple[int, Statement]  # number: of the command of the deck, or of the one before it
 
 
-class Leave(BaseException):
-    """The debugger is left in the midst of a run, which is not gone on with."""
+class LeaveDebugger(BaseException):
+    """The debugger is left; the run is not continued."""
 
 
-class Resume(BaseException):
-    """The run is to go on from an event that was. event: that; command: what is to be obeyed first, or ""."""
+class ResumeRun(BaseException):
+    """The run continues from an earlier event. command: what is obeyed first, or ""."""
 
     def __init__(self, event: int, command: str = "") -> None:
         self.event, self.command = event, command
-
-
-class Traced(Protocol):
-    """What the debugger has to know of a model."""
-
-    array: MainArray
-    laws: Any
-    around: Callable[[Watch | None], Watch | None]
 
 
 class Debugger:
@@ -64,13 +55,13 @@ class Debugger:
         self.monitor = Monitor(model, out)
         self.stopped = stopped
         self.timeline = Timeline(model.array, model.laws, budget)
-        self.probes: dict[int, Probe] = {}
+        self.conditions: dict[int, StopCondition] = {}
         self.goal: int | None = None  # event to stop at, the next one where it can
         self.goal_cycle: int | None = None
         self.goal_line: int | None = None
         self.interrupted = False
         self.event = 0
-        self.trace: Trace | None = None
+        self.trace: CycleTrace | None = None
         self._atlas: tuple[Any, Atlas] | None = None
         self._array: tuple[int, MainArray] | None = None
         self._numbered = 0
@@ -91,7 +82,7 @@ class Debugger:
                 try:
                     self._obey_all(number)
                     return
-                except Resume as back:
+                except ResumeRun as back:
                     number = self._resume(back.event, back.command)
         finally:
             self.model.around = around
@@ -118,24 +109,26 @@ class Debugger:
         self.model.take_up(array, [*self._before, *lines])
         self.monitor.ended = False
         self.goal, self.goal_cycle, self.goal_line = event + len(inserted), None, None
+        self._atlas = self._array = None  # an event of the discarded timeline may have the same number
+        self._begin_conditions()
         self.show(event)
         return len(done)
 
-    def _parted(self) -> tuple[list[Placed], list[Placed]]:
+    def _parted(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
         """What has been obeyed, and what of the deck is to come. A run that is not over is in both."""
-        stretches = self.timeline.stretches
-        if not stretches:
+        spans = self.timeline.spans
+        if not spans:
             return [], [*enumerate(self._deck)]
-        last = stretches[-1]
+        last = spans[-1]
         done = self._commands[: last.number + 1]
         place = done[-1][0]
         whole, rest = self._deck[place], [*enumerate(self._deck)][place + 1 :]
-        runs = [one for one in stretches if one.runs and self._commands[one.number][0] == place]
-        left = cycles_of(whole) - sum(one.done for one in runs)
+        runs = [one for one in spans if one.runs and self._commands[one.number][0] == place]
+        left = count_cycles(whole) - sum(one.done for one in runs)
         if runs and left > 0:
             rest.insert(0, (place, cycle_statement(whole, left)))
         elif (
-            runs and cycles_of(whole) == 0 and not runs[-1].ended
+            runs and count_cycles(whole) == 0 and not runs[-1].ended
         ):  # SOLVE, which tells by itself when it is done
             rest.insert(0, (place, whole))
         if last.runs and rest and rest[0][0] == place:
@@ -144,8 +137,8 @@ class Debugger:
 
     def _worded(self, command: str) -> Statement:
         """A command that is typed while another one is the last."""
-        stretches = self.timeline.stretches
-        first = self._commands[stretches[-1].number if stretches else 0][1].tokens[0].line
+        spans = self.timeline.spans
+        first = self._commands[spans[-1].number if spans else 0][1].tokens[0].line
         line = Line(first.file, first.number, command)
         return Statement([line], tokens(line))
 
@@ -172,7 +165,7 @@ class Debugger:
 
     def piece(self, n: int) -> int:
         """Cycles until the next look, of `n` to come."""
-        if self.probes:
+        if self.conditions:
             return 1
         if self.goal is not None:
             n = min(n, max(self.goal - self.timeline.now, 1))
@@ -191,27 +184,31 @@ class Debugger:
         self._look()
 
     def _look(self) -> None:
-        """Stop if a probe says so, if this is where to, or if somebody has asked for it."""
-        told = [f"{n}: {what}" for n, probe in self.probes.items() if (what := probe.hit(self.model.array))]
+        """Stop if a condition is met, if the goal is reached, or after Ctrl-C."""
+        hits = [
+            f"{n}: {what}"
+            for n, condition in self.conditions.items()
+            if (what := condition.hit(self.model.array))
+        ]
         if self.interrupted:
-            told.append("interrupted")
+            hits.append("interrupted")
         there = self.goal is not None and self.timeline.now >= self.goal
         cycles = int(self.model.array.h.ci[g.MCTOT])
-        if told or there or (self.goal_cycle is not None and cycles >= self.goal_cycle):
-            self.stop(told)
+        if hits or there or (self.goal_cycle is not None and cycles >= self.goal_cycle):
+            self.stop(hits)
 
-    def stop(self, told: Sequence[str]) -> None:
+    def stop(self, reasons: Sequence[str]) -> None:
         """Stop here and now."""
         self.goal = self.goal_cycle = self.goal_line = None
         self.interrupted = False
         self.show(self.timeline.now)
-        self.stopped(told)
+        self.stopped(reasons)
 
-    # ---- where one looks
+    # ---- the state that is shown
 
     @property
     def array(self) -> MainArray:
-        """The state that one looks at; not to be changed."""
+        """The state that is shown; it must not be changed."""
         if self.trace is not None:
             return self.trace.state
         if self.event == self.timeline.now:
@@ -231,7 +228,7 @@ class Debugger:
 
     @property
     def in_past(self) -> bool:
-        """True if what one looks at is not what will go on."""
+        """True if the state that is shown is not the present one."""
         return self.trace is not None or self.event < self.timeline.now
 
     def show(self, event: int) -> None:
@@ -241,8 +238,8 @@ class Debugger:
         self.event, self.trace = event, None
 
     def place(self) -> str:
-        """Where one looks, in words."""
-        text = where(self.timeline, self.event)
+        """The event that is shown, as text."""
+        text = describe_event(self.timeline, self.event)
         if self.trace is not None:
             text += f", within the next cycle after {self.trace.done} of {len(self.trace.writes)} writes"
         return text
@@ -250,7 +247,7 @@ class Debugger:
     # ---- moving about
 
     def forward(self, events: int | None) -> tuple[bool, list[str]]:
-        """Look at what comes `events` later, or at the next stop of a probe.
+        """Look at what comes `events` later, or at the next event where a condition is met.
 
         True if that has not been run yet: it is, when `stopped` returns. Else what has happened.
         """
@@ -269,54 +266,62 @@ class Debugger:
         return (False, found[1]) if found else (not self.ended, [])
 
     def _first_hit(self) -> tuple[int, list[str]] | None:
-        """The first event after the one that is looked at where a probe stops, and what has happened."""
+        """The first event after the shown one where a condition is met, and what has happened."""
         timeline, start = self.timeline, self.event
-        for a, b in [*timeline.backwards(timeline.now)][::-1]:
-            if b <= start:
-                continue
-            first = timeline.at(max(a, start))
-            for probe in self.probes.values():
-                probe.begin(first)
-            for event, array in timeline.through(a, b):
-                if event > start:
-                    told = [what for probe in self.probes.values() if (what := probe.hit(array))]
-                    if told:
-                        self._probes_at_now()
-                        return event, told
-        self._probes_at_now()
+        with self._conditions_in_past():
+            for a, b in [*timeline.backwards(timeline.now)][::-1]:
+                if b <= start:
+                    continue
+                first = timeline.at(max(a, start))
+                for condition in self.conditions.values():
+                    condition.begin(first)
+                for event, array in timeline.through(a, b):
+                    if event > start:
+                        hits = [
+                            what for condition in self.conditions.values() if (what := condition.hit(array))
+                        ]
+                        if hits:
+                            return event, hits
         return None
 
-    def _probes_at_now(self) -> None:
-        for probe in self.probes.values():
-            probe.begin(self.model.array)
+    @contextmanager
+    def _conditions_in_past(self) -> Iterator[None]:
+        """Conditions may compare past states within this; afterwards they compare with the present again."""
+        try:
+            yield
+        finally:
+            self._begin_conditions()
+
+    def _begin_conditions(self) -> None:
+        for condition in self.conditions.values():
+            condition.begin(self.model.array)
 
     def back(self, events: int) -> None:
         """Look at what was `events` before. Raises Gone."""
         self.show(max(self.event - events, self.timeline.earliest))
 
-    def back_to(self, probes: Sequence[Probe]) -> str:
-        """Look at the last event before this one at which a probe stops: what happened, "" if nothing.
+    def back_to(self, conditions: Sequence[StopCondition]) -> str:
+        """Show the last event before this one where a condition is met: what happened, "" if nothing.
 
-        From within a cycle that is the event that it follows, if a probe stops there.
+        From within a cycle that is the event before it, if a condition is met there.
         """
         before = self.trace is None
-        hits = [last_hit(self.timeline, self.event, probe, before) for probe in probes]
-        self._probes_at_now()
-        event, told = max(hits, default=(0, ""))
-        if told:
+        with self._conditions_in_past():
+            hits = [find_last_hit(self.timeline, self.event, condition, before) for condition in conditions]
+        event, hit = max(hits, default=(0, ""))
+        if hit:
             self.show(event)
-        return told
+        return hit
 
     def within(self, by: str, step: int) -> bool:
-        """Go to the next pass, group or write of the cycle that follows, or back; False at its border."""
+        """Go to the next pass, group or write of the cycle that follows, or back; False at its border.
+
+        Raises ValueError if the event that follows, or the last one, is not a cycle.
+        """
         if self.trace is None:
             event = self.event if step > 0 else self.event - 1
-            stretch = (
-                self.timeline.stretch(event + 1) if event + 1 <= self.timeline.now and event >= 0 else None
-            )
-            if stretch is None or not stretch.runs or event <= stretch.first:
-                return False
-            trace = Trace(self.timeline.at(event), self.timeline.laws)
+            self._require_cycle(event + 1, step)
+            trace = CycleTrace(self.timeline.at(event), self.timeline.laws)
             self.show(event)
             self.trace = trace
             trace.go(0 if step > 0 else len(trace.writes))
@@ -327,13 +332,25 @@ class Debugger:
             return False
         return True
 
-    # ---- probes
+    def _require_cycle(self, event: int, step: int) -> None:
+        """Raise ValueError, with what can be done instead, unless `event` is a cycle that has been run."""
+        if event > self.timeline.now:
+            raise ValueError("the next cycle has not been run yet: step over it, then reverse-step into it")
+        if event < 1:
+            raise ValueError("this is the beginning, and not a cycle: nothing comes before it")
+        if not is_cycle(self.timeline, event):
+            span = self.timeline.span(event)
+            command = f"{'the preparation of ' if span.runs else ''}line {span.line}: {span.text}"
+            which, over = ("next", "step") if step > 0 else ("last", "reverse-step")
+            raise ValueError(f"the {which} event is not a cycle but {command}\n{over} passes over it")
 
-    def add(self, probe: Probe) -> int:
-        """Stop for `probe` from now on; its number."""
+    # ---- stop conditions
+
+    def add(self, condition: StopCondition) -> int:
+        """Stop at `condition` from now on; its number."""
         self._numbered += 1
-        probe.begin(self.model.array)
-        self.probes[self._numbered] = probe
+        condition.begin(self.model.array)
+        self.conditions[self._numbered] = condition
         return self._numbered
 
 
@@ -363,7 +380,7 @@ class _Pieces(Around):
         return done
 
 
-def cycles_of(statement: Statement) -> int:
+def count_cycles(statement: Statement) -> int:
     """How many cycles a CYCLE asks for; 0 if it is another command."""
     call = parse(statement)
     return int(call.positional[0]) if call.command.name == "cycle" else 0

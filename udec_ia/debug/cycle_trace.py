@@ -1,7 +1,7 @@
-"""One event of a run under the magnifying glass: every word that is read or written, by whom, in order.
+"""Trace of one cycle: every word that is read or written, in order, with routine and line.
 
-The cycle is run as Python on a memory that tells of each access. What is told is kept, with the routine and
-the line: so one can stand between any two writes, and go back, without running anything again.
+The cycle is run as Python on a memory that reports each access. The accesses are recorded: so the state
+between any two writes can be shown, forwards and backwards, without running anything again.
 
     pass    what run_cycles calls: move_all, accumulate, ford_all ...
     work    one call by a pass: of motion for a block, of ford for a contact
@@ -35,7 +35,7 @@ MEMORY_LIMIT = 1_000  # times that a cycle may stop for memory
 ROOT = "run_cycles"
 
 
-class Work(NamedTuple):
+class RoutineCall(NamedTuple):
     """One call by a pass. group: the address that it is about, 0 if there is none."""
 
     number: int
@@ -52,7 +52,7 @@ class Access(NamedTuple):
     at: int
     before: Any
     after: Any
-    work: Work
+    work: RoutineCall
     code: CodeType
     line: int
 
@@ -62,7 +62,7 @@ class Access(NamedTuple):
         return f"{self.code.co_name} ({Path(self.code.co_filename).name}:{self.line})"
 
 
-class Trace:
+class CycleTrace:
     """The cycle that follows the state in `array`, access by access.
 
     accesses: in order. writes: which of them are writes. state: the array after `done` writes.
@@ -72,7 +72,7 @@ class Trace:
         self.accesses: list[Access] = []
         self._pass: FrameType | None = None
         self._frame: FrameType | None = None
-        self._work = Work(0, ROOT, ROOT, 0)
+        self._work = RoutineCall(0, ROOT, ROOT, 0)
         self._run(array, laws)
         self.writes = [k for k, one in enumerate(self.accesses) if one.written]
         self.done = len(self.writes)
@@ -97,25 +97,25 @@ class Trace:
                     break
         self._pass = self._frame = None
 
-    # ---- what is told
+    # ---- recording
 
-    def _tell(self, part: str, where: Any, value: Any, written: bool) -> None:
+    def _tell(self, part: str, describe_event: Any, value: Any, written: bool) -> None:
         frame = sys._getframe(2)
         while frame.f_globals in UNDER:
             assert frame.f_back is not None
             frame = frame.f_back
         self._place(frame)
         words = getattr(self.state.h, part)
-        before = words[where]
-        if isinstance(where, slice | np.ndarray):
-            indices = np.arange(len(words))[where]
+        before = words[describe_event]
+        if isinstance(describe_event, slice | np.ndarray):
+            indices = np.arange(len(words))[describe_event]
             values = np.broadcast_to(value, indices.shape)
             for index, old, new in zip(indices.tolist(), before.tolist(), values.tolist(), strict=True):
                 self._note(written, part, index, old, new, frame)
         else:
-            self._note(written, part, int(where), before, value, frame)
+            self._note(written, part, int(describe_event), before, value, frame)
         if written:
-            words[where] = value
+            words[describe_event] = value
 
     def _note(self, written: bool, part: str, index: int, before: Any, after: Any, frame: FrameType) -> None:
         kind = getattr(self.state.h, part).dtype.type
@@ -137,7 +137,7 @@ class Trace:
             return
         self._pass, self._frame = now, work
         of, routine = (one.f_code.co_name if one else ROOT for one in (now, work))
-        self._work = Work(self._work.number + 1, of, routine, _group(work))
+        self._work = RoutineCall(self._work.number + 1, of, routine, _group(work))
 
     # ---- standing between two writes
 
