@@ -13,14 +13,14 @@ from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
-from udec_ia.debug.places import place
 from udec_ia.debug.stop_conditions import ContactChange, WordChange
 from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.debug.word_history import find_last_hit
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import iget
-from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, TABLE, Atlas
+from udec_ia.reader.places import place
 
 KEPT_CYCLES = 460
 

@@ -15,7 +15,6 @@ from support.debugger_decks import PILE
 from udec_ia import Model
 from udec_ia.debug.cycle_trace import CycleTrace
 from udec_ia.debug.debugged_run import Debugger
-from udec_ia.debug.places import named, place
 from udec_ia.debug.word_history import (
     RENUMBERED,
     explain_birth,
@@ -25,8 +24,9 @@ from udec_ia.debug.word_history import (
 )
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import getr
-from udec_ia.inspect.look.atlas import KINDS, Atlas
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas
+from udec_ia.reader.places import named, place
 
 
 @pytest.fixture(scope="module")

@@ -15,9 +15,9 @@ from udec_ia.deck.parser import NO_DECK, RESTART_FILE
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.inspect.look.atlas import TABLE
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
+from udec_ia.reader.atlas import TABLE
 from udec_ia.signals import dealt_with, hold, passing
 
 ALIASES = {
