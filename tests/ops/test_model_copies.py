@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from interrupted.scene import SCENE, state
 from support.every_group_kind import every_kind
+from trials.interrupted_commands import SCENE, state
 
 from udec_ia import Model, UdecError
 from udec_ia.layout.offsets import IBPNT

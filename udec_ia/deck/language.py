@@ -417,7 +417,8 @@ COMMANDS = (
         "SAve",
         "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
         "for files (--out), outside of which no folder is created. The file may replace a restart file and "
-        "nothing else. FORCE also saves an unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
+        "nothing else. FORCE also saves an unsound state, and marks the file. Put the name of a file "
+        "called FORCE in quotes.",
         "SAVE slope.h5",
         words=(BY_FORCE,),
         text="path",

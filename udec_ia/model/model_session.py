@@ -31,8 +31,8 @@ from udec_ia.model.undo import Undo
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.history import definitions
 from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.solution import in_short
 from udec_ia.ops.run.watch import Series, Watch
