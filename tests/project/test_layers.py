@@ -100,6 +100,7 @@ BELOW = {  # layers that a layer imports
         "errors",
         "heap",
         "inspect",
+        "kernels",
         "keywords",
         "layout",
         "ops",
@@ -110,7 +111,7 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"counting", "errors", "heap", "layout", "ops", "printable", "signals"},
+    "deck": {"counting", "errors", "heap", "kernels", "layout", "ops", "printable", "signals"},
 }
 
 

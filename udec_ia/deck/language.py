@@ -16,8 +16,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import Protocol, TypeVar
 
+from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.recordable import QUANTITIES, recordable
 
@@ -60,19 +62,49 @@ class Word:
         return f"{self.keyword} {self.values}".strip() + (" ..." if self.repeated else "")
 
 
+class Kind(Enum):
+    """What a command does: change the model, run cycles, show something, or direct the session."""
+
+    CHANGES = auto()
+    RUNS = auto()
+    SHOWS = auto()
+    SESSION = auto()
+
+
+CHANGES, RUNS, SHOWS, SESSION = Kind
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What the number counts that a command returns, as a run reports it: `3 blocks deleted, 9 blocks now`.
+
+    thing: what is counted. done: what was done with it. none: what is reported instead of 0. of_all: the
+    number of all such things follows.
+    """
+
+    thing: str
+    done: str
+    none: str = "no block in range"
+    of_all: bool = False
+
+
 @dataclass(frozen=True)
 class Command:
     """A command of the language.
 
+    kind: what it does, on which the log, studies and the rescue of a run depend. counts: what the number
+    counts that its method returns; None if that number is for Python only.
     numbers: names of the numbers that must be given. optional: of those that may be left off.
     words: its keywords. first: the argument that its first word must set, and the error if it does not.
     list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
     it stands, to the end of the line or to the word that stands last in it; needs_text: it must be given.
-    opens: may come before START.
+    opens: may come before START. begins: another model takes the place of this one. ends: ends the run.
+    writes_words: writes any word of the array, by name or by address.
     ours: what of the command is not in Appendix I-1.
     """
 
     keyword: str
+    kind: Kind
     help: str
     example: str
     numbers: str = ""
@@ -84,12 +116,21 @@ class Command:
     text: str = ""
     needs_text: bool = False
     opens: bool = False
+    begins: bool = False
+    ends: bool = False
+    writes_words: bool = False
+    counts: Counts | None = None
     ours: str = ""
 
     @property
     def name(self) -> str:
         """The full keyword in lower case: the name of the method of Model."""
         return self.keyword.lower()
+
+    @property
+    def is_work(self) -> bool:
+        """True if the command changes the model, runs it, or puts another in its place."""
+        return self.kind in (CHANGES, RUNS) or self.begins
 
     @property
     def extends(self) -> bool:
@@ -126,6 +167,7 @@ FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in 
 COMMANDS = (
     Command(
         "Block",
+        CHANGES,
         "Create a rigid block with the corners (x,y), given clockwise. A run has one BLOCK; SPLIT makes "
         "more blocks.",
         "BLOCK MAT=2 0,0 0,40 60,40 60,0",
@@ -134,6 +176,7 @@ COMMANDS = (
     ),
     Command(
         "BOundary",
+        CHANGES,
         "Boundary conditions in x1<x<x2, y1<y<y2. Velocities and forces act on the grid-points and block "
         "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension"
         " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
@@ -156,9 +199,11 @@ COMMANDS = (
             Word("FRee"),
         ),
         ours="the command, which the report lists under further developments",
+        counts=Counts("condition", "in the range", none="no condition in range"),
     ),
     Command(
         "Change",
+        CHANGES,
         "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
         "CHANGE 0 60 30 40 MATERIAL=2",
         numbers=RANGE,
@@ -170,9 +215,11 @@ COMMANDS = (
             CONSTITUTIVE,
         ),
         ours="Rigid",
+        counts=Counts("block", "changed"),
     ),
     Command(
         "CYcle",
+        RUNS,
         "Calculate n cycles.",
         "CYCLE 300",
         numbers="n",
@@ -180,27 +227,24 @@ COMMANDS = (
     ),
     Command(
         "DAmping",
+        CHANGES,
         "Rayleigh damping: the fraction of critical damping at the centre frequency, in cycles per unit "
         "time. Mass or Stiffness keeps that half alone, which is fcrit/2 at that frequency. There is no "
-        "damping by default. The other kinds only lead to rest and are not physical. LOCAL opposes the "
-        "velocity with the fraction f of every unbalanced force. COMBINED takes half of that, and half "
-        "against the change of the force. KINETIC stops all motion when the kinetic energy has passed a "
-        "peak. ADAPTIVE is mass damping, with f the fraction of critical damping for what moves.",
+        "damping by default, and DAMPING 0 1 switches it off again. The other kinds only lead to rest and "
+        "are not physical. " + " ".join(f"{one.name} {one.help}." for one in MODES),
         "DAMP 0.1 30 STIFFNESS",
         optional="fcrit freq",
         words=(
             Word("Mass", sets="only"),
             Word("Stiffness", sets="only"),
             Word("Internal", sets="only"),
-            Word("Local", "f"),
-            Word("Combined", "f"),
-            Word("Kinetic"),
-            Word("Adaptive", "f"),
+            *(Word(one.keyword, one.fraction) for one in MODES),
         ),
-        ours="LOCAL, COMBINED, KINETIC, ADAPTIVE",
+        ours=", ".join(one.name for one in MODES),
     ),
     Command(
         "DEFault",
+        SESSION,
         "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
         "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
         "given with the deck, by --set F=0.4, takes precedence.",
@@ -211,16 +255,23 @@ COMMANDS = (
         ours="the command, and variables",
     ),
     Command(
-        "DElete", "Delete the blocks with centroids in x1<x<x2, y1<y<y2.", "DELETE 20 40 10 20", numbers=RANGE
+        "DElete",
+        CHANGES,
+        "Delete the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "DELETE 20 40 10 20",
+        numbers=RANGE,
+        counts=Counts("block", "deleted", of_all=True),
     ),
     Command(
         "Dump",
+        SHOWS,
         "Dump the main array from address n to address m, and its five pointers.",
         "DUMP 1 100",
         numbers="n m",
     ),
     Command(
         "ENErgy",
+        CHANGES,
         "ON starts an account of the energy, which PRINT ENERGY shows: motion, springs, weight, friction, "
         "damping, boundary conditions. Cycles take longer with it. OFF ends it.",
         "ENERGY ON",
@@ -229,10 +280,17 @@ COMMANDS = (
         ours="the command",
     ),
     Command(
-        "END", "The last line of a deck, after STOP.", "END", opens=True, ours="only said to be one more line"
+        "END",
+        SESSION,
+        "The last line of a deck, after STOP.",
+        "END",
+        opens=True,
+        ours="only said to be one more line",
+        ends=True,
     ),
     Command(
         "FUnction",
+        CHANGES,
         "Define function number n for BOUNDARY: factors f at the times t of the model, linear in between.",
         "FUNCTION 1 0 0 0.5 1",
         numbers="n",
@@ -241,6 +299,7 @@ COMMANDS = (
     ),
     Command(
         "FRaction",
+        CHANGES,
         "Use the fraction f of the critical time-step. Without a word this is the estimate of 1980, which "
         "is only approximate; the default is 0.1 of it. SAFE: of a bound that no mode of the present "
         "contacts and zones exceeds. SCALED: of that bound, with inertial masses that make all modes as "
@@ -250,12 +309,25 @@ COMMANDS = (
         words=(Word("Safe"), Word("SCaled")),
         ours="Safe, Scaled",
     ),
-    Command("Fix", "Fix the blocks with centroids in x1<x<x2, y1<y<y2.", "FIX 0 60 0 10", numbers=RANGE),
     Command(
-        "FRee", "Set free the blocks with centroids in x1<x<x2, y1<y<y2.", "FREE 0 60 0 10", numbers=RANGE
+        "Fix",
+        CHANGES,
+        "Fix the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "FIX 0 60 0 10",
+        numbers=RANGE,
+        counts=Counts("block", "fixed"),
+    ),
+    Command(
+        "FRee",
+        CHANGES,
+        "Set free the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "FREE 0 60 0 10",
+        numbers=RANGE,
+        counts=Counts("block", "set free"),
     ),
     Command(
         "GEnerate",
+        CHANGES,
         "Make the first block in the range fully-deformable. Manual: grid-points (x,y), and zones as "
         "triples of their numbers; the last grid-point is number 1. Automatic: triangles with sides of "
         "about d. Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
@@ -273,9 +345,16 @@ COMMANDS = (
         first_error=22,
         ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
-    Command("Gravity", "Set the gravitational accelerations in x and y.", "GRAVITY 0 -9.81", numbers="gx gy"),
+    Command(
+        "Gravity",
+        CHANGES,
+        "Set the gravitational accelerations in x and y.",
+        "GRAVITY 0 -9.81",
+        numbers="gx gy",
+    ),
     Command(
         "HElp",
+        SHOWS,
         "Explain a command, or list them all.",
         "HELP PROPERTY",
         text="command",
@@ -284,6 +363,7 @@ COMMANDS = (
     ),
     Command(
         "HIStory",
+        CHANGES,
         "Record a number every n cycles. It is a field of a group, named as in the table of data groups; "
         "the group is given by its address, or as the one nearest to a point. Or it is a variable of the "
         "common block, such as TIME or WFRIC, or a quantity of the whole model: "
@@ -302,6 +382,7 @@ COMMANDS = (
     ),
     Command(
         "INsitu",
+        CHANGES,
         "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive;"
         " XGrad and YGrad are the increases with x and y. Joints start without force and close under these "
         "stresses.",
@@ -309,9 +390,11 @@ COMMANDS = (
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
         ours="the command",
+        counts=Counts("block", "stressed"),
     ),
     Command(
         "PAtch",
+        CHANGES,
         "Change words of the main array by name: a field of a group, a variable of the common block, or an "
         "integer word by its address. Separate several with commas. The state is first proved sound with "
         "the new values; otherwise nothing is changed.",
@@ -319,9 +402,11 @@ COMMANDS = (
         text="assignments",
         needs_text=True,
         ours="the command",
+        writes_words=True,
     ),
     Command(
         "PLot",
+        SHOWS,
         "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
@@ -345,6 +430,7 @@ COMMANDS = (
     ),
     Command(
         "Print",
+        SHOWS,
         "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
         "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or the"
         " histories.",
@@ -369,6 +455,7 @@ COMMANDS = (
     ),
     Command(
         "PROperty",
+        CHANGES,
         "Define the properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
         "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
         "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
@@ -389,6 +476,7 @@ COMMANDS = (
     ),
     Command(
         "Restart",
+        SESSION,
         "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
         "files (--out). FORCE also accepts an unsound state, for inspection and repair. Commands that "
         "follow links, such as CYCLE, are then refused until the links are sound.",
@@ -397,15 +485,19 @@ COMMANDS = (
         text="path",
         opens=True,
         ours="the name of the file; FORCE",
+        begins=True,
     ),
     Command(
         "RSet",
+        CHANGES,
         "Insert the real v in the main array at address ia, with offset ioff.",
         "RSET 9.81 100 5",
         numbers="v ia ioff",
+        writes_words=True,
     ),
     Command(
         "Round",
+        CHANGES,
         "Round each corner with a circle tangential to its edges at the distance d. The upper limit is half"
         " the shortest edge, the lower limit twice the greatest overlap. Blocks touch where the circles of "
         "their corners begin: a block turns about a point at d from its corner.",
@@ -414,6 +506,7 @@ COMMANDS = (
     ),
     Command(
         "SAve",
+        SESSION,
         "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
         "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
         "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
@@ -422,9 +515,10 @@ COMMANDS = (
         text="path",
         ours="the name of the file; FORCE",
     ),
-    Command("SCale", "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
+    Command("SCale", SHOWS, "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
     Command(
         "SOLve",
+        RUNS,
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
         "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
         "carry; and until kinetic over strain energy is no more either. At its end it says what still moves, "
@@ -443,12 +537,28 @@ COMMANDS = (
     ),
     Command(
         "SPlit",
+        CHANGES,
         "Split the blocks in the path of the line from (x1,y1) to (x2,y2).",
         "SPLIT -1,10 61,10",
         numbers="x1 y1 x2 y2",
+        counts=Counts("block", "cut off", none="no block was cut", of_all=True),
     ),
-    Command("STArt", "Start from nothing.", "START", opens=True),
-    Command("Stop", "End the run.", "STOP", opens=True),
+    Command(
+        "STArt",
+        CHANGES,
+        "Start from nothing.",
+        "START",
+        opens=True,
+        begins=True,
+    ),
+    Command(
+        "Stop",
+        SESSION,
+        "End the run.",
+        "STOP",
+        opens=True,
+        ends=True,
+    ),
 )
 
 

@@ -47,6 +47,11 @@ class Call:
         return self.places.get(error.parameter or self.command.text, self.head)
 
 
+def command_of(statement: Statement) -> Command | None:
+    """The command that `statement` begins with; None for comments and for what is no command."""
+    return match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+
+
 def parse(statement: Statement) -> Call:
     """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
     head = statement.tokens[0]

@@ -14,14 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word
+from udec_ia.deck.language import COMMANDS, SESSION, SEVERAL, Command, Word
 from udec_ia.deck.reader import CONTINUATION
 
 WIDTH = 79  # of a line
 WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-# Of files and of the session: no part of what has made a state.
-UNSAID = ("save", "restart", "stop", "end", "help", "default")
-BY_NAME = {command.name: command for command in COMMANDS if command.name not in UNSAID}
+# Commands of the session are no part of what has made a state.
+BY_NAME = {one.name: one for one in COMMANDS if one.kind is not SESSION}
 
 
 def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]) -> list[str]:

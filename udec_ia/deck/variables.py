@@ -16,8 +16,8 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from udec_ia.deck.advice import at, hint, quoted
-from udec_ia.deck.language import COMMANDS, Command, match
-from udec_ia.deck.parser import APART, NUMBER, QUOTED
+from udec_ia.deck.language import Command
+from udec_ia.deck.parser import APART, NUMBER, QUOTED, command_of
 from udec_ia.deck.reader import Line, Put, Statement, Token, obeyed, statements, tokens_of
 from udec_ia.errors import UdecError
 
@@ -29,7 +29,6 @@ PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
 FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
 IS_NAME = "a name is a letter, then letters, digits and _"
 IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
-LAST = ("stop", "end")  # commands after which a deck is not read any more
 
 
 def spelt(name: str, value: object) -> str:
@@ -63,7 +62,7 @@ class Variables:
 
         Raises UdecError 7 for a variable without a value, 10 for a DEFAULT that cannot be understood.
         """
-        command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+        command = command_of(statement)
         if command is not None and command.name == "default":
             self._note(statement)
             return statement
@@ -81,10 +80,10 @@ class Variables:
         """
         ahead = Variables(self.given)
         for statement in ahead.filled(statements(lines, file)):
-            command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+            command = command_of(statement)
             if command is None and statement.tokens:
                 return  # with which the run will end
-            if command is not None and command.name in LAST:
+            if command is not None and command.ends:
                 break
         for name in self.given:
             if name not in ahead.used:
