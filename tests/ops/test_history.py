@@ -19,8 +19,7 @@ from udec_ia.heap.accessors import getr, iget, puti
 from udec_ia.inspect.check import check, check_links
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.history import define, named
-from udec_ia.ops.commands.recordable import recordable
+from udec_ia.ops.commands.history_definitions import define, named, recordable
 from udec_ia.ops.run.watch import ROWS, Watch
 
 KINDS = ("block", "corner", "contact", "domain")

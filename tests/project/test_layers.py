@@ -12,7 +12,7 @@ PACKAGE = Path(__file__).parents[2] / "udec_ia"
 FOLDERS = {  # of a layer, each of which imports from those before it and from files beside them only
     "inspect": ("translate", "check", "look", "change", "compare", "facilities"),
     "kernels": ("links", "geometry", "audit", "map", "body", "detect", "energy", "contact", "split", "drive"),
-    "ops": ("common", "laws", "mesh", "commands", "run"),
+    "ops": ("common", "laws", "commands", "run"),
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),

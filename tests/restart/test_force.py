@@ -13,9 +13,9 @@ from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main
-from udec_ia.deck.monitor import Monitor, run_deck
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import statements
+from udec_ia.deck.command_monitor import Monitor, run_deck
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.inspect.check import check, unjudged
 from udec_ia.inspect.table import table

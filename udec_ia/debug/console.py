@@ -18,9 +18,9 @@ from udec_ia.debug.places import place
 from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, shown
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
-from udec_ia.deck.parser import NO_DECK, RESTART_FILE
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
 from udec_ia.errors import UdecError
 from udec_ia.inspect.change import patch
 from udec_ia.inspect.look.atlas import TABLE

@@ -15,9 +15,9 @@ from udec_ia.debug.answers import last_hit, where
 from udec_ia.debug.probes import Probe
 from udec_ia.debug.timeline import BUDGET, Timeline
 from udec_ia.debug.tracing import Trace
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Line, Statement, tokens
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Line, Statement, tokens
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.look.atlas import Atlas

@@ -23,7 +23,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import interpreted, observe
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.watch import run_unwatched

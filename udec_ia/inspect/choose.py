@@ -18,7 +18,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.inspect.table import table
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import finite
+from udec_ia.ops.common.number_limits import finite
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))

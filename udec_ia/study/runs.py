@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from udec_ia.deck.parser import command_of, parse
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import command_of, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.ops.run.watch import Watch

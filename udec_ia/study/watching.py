@@ -9,9 +9,9 @@ import math
 from collections.abc import Callable
 from typing import Any, TextIO
 
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.parser import command_of
-from udec_ia.deck.reader import Statement
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Statement
+from udec_ia.deck.lines_and_calls import command_of
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from udec_ia.deck.language import COMMANDS, Kind
-from udec_ia.deck.parser import command_of, parse
-from udec_ia.deck.reader import Statement, statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.command_table import COMMANDS, Kind
+from udec_ia.deck.deck_statements import Statement, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import command_of, parse
 from udec_ia.trade import writing
 from udec_ia.trade.levers import Fraction, Numbers, Setting
 from udec_ia.trade.writing import Piece

@@ -11,7 +11,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.inspect.check import Violation
 from udec_ia.inspect.table import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
+from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, last_digit
 
 SHOWN = 3  # violations that are named
 

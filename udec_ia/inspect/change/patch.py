@@ -25,7 +25,7 @@ from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Span, Word
 from udec_ia.inspect.look.names import called
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
-from udec_ia.ops.commands.recordable import HISTORY
+from udec_ia.ops.commands.history_definitions import HISTORY
 
 ELEMENT = r"(?P<name>[A-Za-z]\w*)(\((?P<element>\d{1,9})\))?"
 PLACE = re.compile(rf"(?P<address>\d{{1,18}})|((?P<kind>[A-Za-z]+)@(?P<group>\d{{1,18}})\.)?{ELEMENT}")

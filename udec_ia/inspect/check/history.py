@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.inspect.check.groups import State
-from udec_ia.ops.commands.recordable import HISTORY, by_codes
+from udec_ia.ops.commands.history_definitions import HISTORY, by_codes
 
 
 def check_histories(state: State) -> None:

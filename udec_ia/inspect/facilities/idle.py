@@ -17,9 +17,9 @@ from udec_ia.inspect.facilities.scene import Scene
 from udec_ia.inspect.look.listing import Listing
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.settings import PROPERTIES
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.model_settings import PROPERTIES
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.ops.run.remarks import on_laws, on_loads
 
 Found = Iterator[tuple[str, str]]

@@ -16,8 +16,8 @@ from udec_ia.kernels.body.law_call import Laws
 from udec_ia.kernels.body.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
-from udec_ia.ops.common.limits import NCONS, NMAT
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.number_limits import NCONS, NMAT
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.printable import printable
 

@@ -25,8 +25,8 @@ from udec_ia.kernels.drive.peaks import halt_block
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.memory import require
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.ops.run.damped import undamped
 from udec_ia.ops.run.rows import OVERFLOWS, Array, Rows
 

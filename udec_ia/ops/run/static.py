@@ -16,7 +16,7 @@ from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.kernels.drive.peaks import halt_all
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.settings import set_damping_mode, set_fraction
+from udec_ia.ops.commands.model_settings import set_damping_mode, set_fraction
 
 DAMPED = 0.8  # of critical
 SHARE = 0.9  # of the safe time-step

@@ -15,10 +15,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from udec_ia.deck.advice import at, hint, quoted
-from udec_ia.deck.language import Command
-from udec_ia.deck.parser import APART, NUMBER, QUOTED, command_of
-from udec_ia.deck.reader import Line, Put, Statement, Token, obeyed, statements, tokens_of
+from udec_ia.deck.command_table import Command
+from udec_ia.deck.deck_statements import Line, Put, Statement, Token, obeyed, statements, tokens_of
+from udec_ia.deck.keyword_suggestions import at, hint, quoted
+from udec_ia.deck.lines_and_calls import APART, NUMBER, QUOTED, command_of
 from udec_ia.errors import UdecError
 
 Value = int | float | str

@@ -1,6 +1,6 @@
 """The table of commands in words: what HELP prints, and docs/commands.md.
 
-python -m udec_ia.deck.reference > docs/commands.md
+python -m udec_ia.deck.command_help > docs/commands.md
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 import textwrap
 
-from udec_ia.deck.advice import hint, quoted
-from udec_ia.deck.language import COMMANDS, Command, match
+from udec_ia.deck.command_table import COMMANDS, Command, match
+from udec_ia.deck.keyword_suggestions import hint, quoted
 from udec_ia.errors import ADVICE, MESSAGES, UdecError
 
 WIDTH = 96

@@ -5,8 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from udec_ia.deck.reader import Token
-from udec_ia.deck.synonyms import ALSO_CALLED
+from udec_ia.deck.deck_statements import Token
 from udec_ia.errors import UdecError
 
 SHOWN = 40  # characters of a word that are worth repeating
@@ -41,3 +40,71 @@ def hint(typed: str, keywords: Iterable[str], advice: str) -> str:
     alike = difflib.get_close_matches(word, begun, n=SUGGESTED, cutoff=ALIKE)
     near = near or list(dict.fromkeys(begun[one] for one in alike))[:2]
     return f"did you mean {' or '.join(near)}? {advice}" if near else advice
+
+
+# ---- What other programs and other people call the things of the deck language
+
+ALSO_CALLED = {
+    "?": "HELP",
+    "ANGLE": "FRICTION",
+    "BEGIN": "START",
+    "BYE": "STOP",
+    "CONTINUE": "CYCLE RESTART",
+    "CRACK": "SPLIT",
+    "CUT": "SPLIT",
+    "DEFINE": "DEFAULT",
+    "DEFORMABLE": "SDEF FDEF",
+    "DRAW": "PLOT",
+    "DT": "FRACTION",
+    "E": "BULK G",
+    "ERASE": "DELETE",
+    "EXIT": "STOP",
+    "FORCE": "BOUNDARY CONTACTS KCFN KBFX",
+    "GO": "CYCLE",
+    "INFO": "PRINT HELP",
+    "JFRICTION": "FRICTION",
+    "JKN": "KN",
+    "JKS": "KS",
+    "JOINT": "SPLIT",
+    "JSET": "SPLIT",
+    "KILL": "DELETE",
+    "LET": "DEFAULT",
+    "LIST": "PRINT",
+    "LOAD": "BOUNDARY RESTART",
+    "LOG": "HISTORY",
+    "MAN": "HELP",
+    "MAT": "PROPERTY",
+    "MATERIAL": "PROPERTY",
+    "MESH": "GENERATE",
+    "MU": "FRICTION",
+    "NEW": "START",
+    "NU": "BULK G",
+    "OPEN": "RESTART",
+    "PARAMETER": "DEFAULT",
+    "PHI": "FRICTION",
+    "POISSON": "BULK G",
+    "POLYGON": "BLOCK",
+    "QUIT": "STOP",
+    "RECORD": "HISTORY",
+    "REMOVE": "DELETE",
+    "RHO": "DENSITY",
+    "RUN": "CYCLE",
+    "SET": "GRAVITY DAMPING FRACTION",
+    "SHEAR": "G",
+    "SHOW": "PRINT",
+    "STEP": "CYCLE",
+    "STRESS": "BOUNDARY INSITU KZS11 KS111",
+    "SXX": "STRESS",
+    "TENSION": "BTENSION",
+    "TIMESTEP": "FRACTION",
+    "VARIABLE": "DEFAULT",
+    "VELOCITY": "BOUNDARY XVEL YVEL KXD KYD",
+    "VIEW": "PLOT",
+    "WRITE": "SAVE",
+    "X": "KX KXG",
+    "XVEL": "KXD KXDG",
+    "Y": "KY KYG",
+    "YOUNG": "BULK G",
+    "YVEL": "KYD KYDG",
+    "ZONE": "GENERATE",
+}

@@ -11,19 +11,19 @@ import errno
 import io
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TextIO
+from typing import Any, Protocol, TextIO, TypeVar
 
 from udec_ia.counting import counted
-from udec_ia.deck.advice import at
-from udec_ia.deck.language import COMMANDS, RUNS, Counts, match
-from udec_ia.deck.obeying import Obeying
-from udec_ia.deck.parser import NUMBER, Call, parse
-from udec_ia.deck.reader import WORD, Statement, statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.command_table import COMMANDS, RUNS, Counts, match
+from udec_ia.deck.deck_statements import WORD, Statement, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.keyword_suggestions import at
+from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
@@ -280,3 +280,47 @@ def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
         return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
+
+
+# ---- What the monitor needs of a model, beside a method for every command of the table
+
+R = TypeVar("R")
+
+
+class Obeying(Protocol):
+    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+
+    started: bool
+    tell: Callable[[str], None]
+    inform: Callable[[str], None]
+    explain_step: bool
+    logs_calls: bool
+
+    @property
+    def out(self) -> Path:
+        """The folder for files."""
+
+    @property
+    def h(self) -> Memory:
+        """The array."""
+
+    def whole(self, action: Callable[[], R]) -> R:
+        """Have all that `action` does done, or nothing of it."""
+
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
+        """Why a command has found nothing."""
+
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
+        """SAVE."""
+
+    def check_file(self, path: str | Path) -> list[Any]:
+        """All violations in a restart file."""
+
+    def stop(self) -> str:
+        """STOP."""
+
+    def summary(self) -> str:
+        """The line that sums up the run."""
