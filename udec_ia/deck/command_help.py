@@ -9,7 +9,8 @@ import sys
 import textwrap
 
 from udec_ia.deck.command_table import COMMANDS, Command, match
-from udec_ia.deck.keyword_suggestions import hint, quoted
+from udec_ia.deck.deck_statements import quoted
+from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, MESSAGES, UdecError
 
 WIDTH = 96
@@ -56,7 +57,7 @@ def explain(typed: str) -> str:
     """What HELP COMMAND prints. Raises UdecError 2 if there is no such command."""
     command = match(COMMANDS, typed)
     if command is None:
-        raise UdecError(2, quoted(typed), hint(typed, (c.keyword for c in COMMANDS), ADVICE[2]))
+        raise UdecError(2, quoted(typed), with_suggestion(typed, (c.keyword for c in COMMANDS), ADVICE[2]))
     return f"{command.form}\n{meaning(command, WIDTH, '    ')}\n    Example: {command.example}"
 
 

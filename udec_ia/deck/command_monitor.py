@@ -18,9 +18,8 @@ from typing import Any, Protocol, TextIO, TypeVar
 
 from udec_ia.counting import counted
 from udec_ia.deck.command_table import COMMANDS, RUNS, Counts, match
-from udec_ia.deck.deck_statements import WORD, Statement, statements
+from udec_ia.deck.deck_statements import WORD, Statement, at, statements
 from udec_ia.deck.deck_variables import Values, Variables
-from udec_ia.deck.keyword_suggestions import at
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.accessors import Memory

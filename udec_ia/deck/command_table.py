@@ -243,7 +243,7 @@ COMMANDS = (
         ours=", ".join(one.name for one in MODES),
     ),
     Command(
-        "DEFault",
+        "DEFAult",
         SESSION,
         "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
         "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
@@ -328,7 +328,8 @@ COMMANDS = (
     Command(
         "GEnerate",
         CHANGES,
-        "Make the first block in the range fully-deformable. Manual: grid-points (x,y), and zones as "
+        "Make the first block in the range that has no zones fully-deformable; the same command again takes "
+        "the next block. Manual: grid-points (x,y), and zones as "
         "triples of their numbers; the last grid-point is number 1. Automatic: triangles with sides of "
         "about d. Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
@@ -460,8 +461,9 @@ COMMANDS = (
         "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
         "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
         "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
-        "blocks face to face have two contacts. A joint between two materials has the properties of one of "
-        "them (PRINT CONTACTS shows which): give both the same joint properties, or check. For constitutive"
+        "blocks face to face have two contacts. A contact has the material of its first block, so the contacts of one joint "
+        "between two materials can differ (PRINT CONTACTS shows them): give both materials the same joint "
+        "properties. For constitutive"
         " numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
         "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
         "laws of your own. Frictions and dilations are tangents of angles.",

@@ -16,8 +16,18 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from udec_ia.deck.command_table import Command
-from udec_ia.deck.deck_statements import Line, Put, Statement, Token, obeyed, statements, tokens_of
-from udec_ia.deck.keyword_suggestions import at, hint, quoted
+from udec_ia.deck.deck_statements import (
+    Line,
+    Put,
+    Statement,
+    Token,
+    at,
+    obeyed,
+    quoted,
+    statements,
+    tokens_of,
+)
+from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.deck.lines_and_calls import APART, NUMBER, QUOTED, command_of
 from udec_ia.errors import UdecError
 
@@ -26,7 +36,7 @@ Values = Mapping[str, Value]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
-FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
+FORM = "the form is: DEFAult name value ..., as in DEFAULT F=0.5"
 IS_NAME = "a name is a letter, then letters, digits and _"
 IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
 
@@ -89,7 +99,7 @@ class Variables:
             if name not in ahead.used:
                 known = ", ".join(f"${one}" for one in ahead.used)
                 advice = f"the variables of the deck are {known}" if known else "the deck has no variables"
-                raise UdecError(10, f"{file} has no ${name}", hint(name, ahead.used, advice))
+                raise UdecError(10, f"{file} has no ${name}", with_suggestion(name, ahead.used, advice))
 
     def _note(self, statement: Statement) -> None:
         """Note the defaults that a statement gives."""
@@ -138,7 +148,7 @@ class Variables:
             return self.defaults[name][0]
         cure = f"give it with --set {name}=..., or by DEFAULT {name}=... before this line"
         known = [one for one in self.given | self.defaults if one != name]
-        raise at(UdecError(7, f"the variable {name} has no value", hint(name, known, cure)), place)
+        raise at(UdecError(7, f"the variable {name} has no value", with_suggestion(name, known, cure)), place)
 
 
 def _end_of(text: str, command: Command | None) -> int:

@@ -1,49 +1,19 @@
-"""What an error tells the user besides its number: where it arose, what to do, what may have been meant."""
+"""Suggestions for words that the deck language does not have: `did you mean PROPERTY?`.
+
+A keyword is suggested if it is what other programs call the typed word, if the typed word is its beginning or
+one letter too long, or if both begin with the same letter and agree in most others; and only if what follows
+on the line fits it (`fits`).
+"""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
-from udec_ia.deck.deck_statements import Token
-from udec_ia.errors import UdecError
-
-SHOWN = 40  # characters of a word that are worth repeating
 SUGGESTED = 3  # keywords that begin with what was typed
-ALIKE = 0.65  # share of two words that must agree for one to be taken for the other
-WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
+ALIKE = 0.75  # share of two words that must agree for one to be taken for the other
 
-
-def at(error: UdecError, place: Token) -> UdecError:
-    """`error`, telling that it arose at `place`, in the line as it was written."""
-    line, column = place.line.as_written(place.column)
-    error.file, error.line, error.column = line.file, line.number, column
-    error.token = place.text
-    if column <= WIDTH:
-        error.source = line.shown if len(line.shown) <= WIDTH else line.shown[: column + SHOWN] + " ..."
-    return error
-
-
-def quoted(text: str) -> str:
-    """`text` in quotes, cut off when it is very long, harmless to print."""
-    shown = "".join(c if c.isprintable() else "?" for c in text[:SHOWN])
-    return f'"{shown}{"..." if len(text) > SHOWN else ""}"'
-
-
-def hint(typed: str, keywords: Iterable[str], advice: str) -> str:
-    """`advice`, behind `did you mean PROPERTY?` if one of `keywords` is, or means, nearly what was typed."""
-    word, known = typed[:SHOWN].upper(), [keyword.upper() for keyword in keywords]
-    meant = ALSO_CALLED.get(word) or ALSO_CALLED.get(word.removesuffix("S"), "")
-    near = [name for name in meant.split() if name in known]
-    near = near or [name for name in known if name.startswith(word)][:SUGGESTED]  # not long enough
-    begun = {name[: len(word)]: name for name in reversed(known)} | {name: name for name in known}
-    alike = difflib.get_close_matches(word, begun, n=SUGGESTED, cutoff=ALIKE)
-    near = near or list(dict.fromkeys(begun[one] for one in alike))[:2]
-    return f"did you mean {' or '.join(near)}? {advice}" if near else advice
-
-
-# ---- What other programs and other people call the things of the deck language
-
+# Names in other programs and in common use. The parser does not take them.
 ALSO_CALLED = {
     "?": "HELP",
     "ANGLE": "FRICTION",
@@ -65,6 +35,7 @@ ALSO_CALLED = {
     "JFRICTION": "FRICTION",
     "JKN": "KN",
     "JKS": "KS",
+    "JMAT": "MATERIAL",
     "JOINT": "SPLIT",
     "JSET": "SPLIT",
     "KILL": "DELETE",
@@ -87,14 +58,15 @@ ALSO_CALLED = {
     "QUIT": "STOP",
     "RECORD": "HISTORY",
     "REMOVE": "DELETE",
+    "RESTORE": "RESTART",
     "RHO": "DENSITY",
     "RUN": "CYCLE",
-    "SET": "GRAVITY DAMPING FRACTION",
     "SHEAR": "G",
     "SHOW": "PRINT",
     "STEP": "CYCLE",
     "STRESS": "BOUNDARY INSITU KZS11 KS111",
     "SXX": "STRESS",
+    "TABLE": "FUNCTION",
     "TENSION": "BTENSION",
     "TIMESTEP": "FRACTION",
     "VARIABLE": "DEFAULT",
@@ -108,3 +80,28 @@ ALSO_CALLED = {
     "YVEL": "KYD KYDG",
     "ZONE": "GENERATE",
 }
+
+
+def with_suggestion(
+    typed: str, keywords: Iterable[str], advice: str, fits: Callable[[str], bool] = lambda keyword: True
+) -> str:
+    """`advice`, behind `did you mean PROPERTY?` if one of `keywords` was probably meant by `typed`.
+
+    fits: whether the rest of the line goes with a keyword, given in upper case.
+    """
+    word, known = typed.upper(), [keyword.upper() for keyword in keywords]
+    names = (ALSO_CALLED.get(word) or ALSO_CALLED.get(word.removesuffix("S"), "")).split()
+    near = (
+        [name for name in names if name in known and fits(name)]
+        or [name for name in known if (name.startswith(word) or name == word[:-1]) and fits(name)][:SUGGESTED]
+        or [name for name in _alike(word, known) if fits(name)][:2]
+    )
+    return f"did you mean {' or '.join(near)}? {advice}" if near else advice
+
+
+def _alike(word: str, known: Iterable[str]) -> list[str]:
+    """Those of `known` that are spelt much like `word`, whole or as far as `word` goes; nearest first."""
+    same = [name for name in known if name[:1] == word[:1]]
+    begun = {name[: len(word)]: name for name in reversed(same)} | {name: name for name in same}
+    alike = difflib.get_close_matches(word, begun, n=SUGGESTED, cutoff=ALIKE)
+    return list(dict.fromkeys(begun[one] for one in alike))

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.deck.command_table import COMMANDS, SESSION, SEVERAL, Command, Word, match
-from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token
-from udec_ia.deck.keyword_suggestions import at, hint, quoted
+from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token, at, quoted
+from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
@@ -69,9 +69,32 @@ def parse(statement: Statement) -> Call:
     if command is None and [token.text for token in statement.tokens] == RESTART_FILE:
         raise at(UdecError(2, quoted(head.text), NO_DECK), head)
     if command is None:
-        advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
-        raise at(UdecError(2, quoted(head.text), advice), head)
+        raise at(UdecError(2, quoted(head.text), _which_command(statement.tokens)), head)
     return _Parser(command, statement.tokens).parse()
+
+
+def _which_command(tokens: list[Token]) -> str:
+    """Advice on an unknown command: one that is spelt alike, or stands after the first word.
+
+    The whole line must be readable as that command.
+    """
+    if len(tokens) > 1 and (command := match(COMMANDS, tokens[1].text)) and _reads_as(command, tokens[1:]):
+        return f"did you mean {command.name.upper()}? {ADVICE[2]}"
+    by_name = {command.name.upper(): command for command in COMMANDS}
+    return with_suggestion(tokens[0].text, by_name, ADVICE[2], lambda name: _reads_as(by_name[name], tokens))
+
+
+def _reads_as(command: Command, tokens: list[Token]) -> bool:
+    """True if `tokens` have the form of `command`, whatever their first word is."""
+    try:
+        text = str(_Parser(command, tokens).parse().named.get(command.text, ""))
+    except UdecError:
+        return False
+    if command.text == "assignments":
+        return "=" in text
+    if command.text == "command":
+        return not text or match(COMMANDS, text) is not None
+    return not text or "." in text  # the name of a file
 
 
 def number(token: Token, name: str, advice: str) -> int | float:
@@ -236,7 +259,12 @@ class _Parser:
         raise self._unrecognised(token, self.command.first_error, allowed)
 
     def _unrecognised(self, token: Token, error: int, allowed: list[Word] | tuple[Word, ...]) -> UdecError:
-        advice = hint(token.text, (word.keyword for word in allowed), self._advice())
+        by_name = {word.keyword.upper(): word for word in allowed}
+        following = self.tokens[self.read + 1 : self.read + 2]
+        has_number = bool(following) and NUMBER.fullmatch(following[0].text) is not None
+        advice = with_suggestion(
+            token.text, by_name, self._advice(), lambda name: bool(by_name[name].values) == has_number
+        )
         return at(UdecError(error, quoted(token.text), advice), token)
 
     def _word(self, token: Token) -> None:
