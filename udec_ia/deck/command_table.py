@@ -461,10 +461,9 @@ COMMANDS = (
         "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
         "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
         "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
-        "blocks face to face have two contacts. A contact has the material of its first block, so the contacts of one joint "
-        "between two materials can differ (PRINT CONTACTS shows them): give both materials the same joint "
-        "properties. For constitutive"
-        " numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
+        "blocks face to face have two contacts. A contact has the material of its first block, so the "
+        "contacts of one joint between two materials can differ (PRINT CONTACTS shows them): give both the "
+        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
         "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
         "laws of your own. Frictions and dilations are tangents of angles.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
