@@ -21,7 +21,7 @@ from typing import Protocol, TypeVar
 
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.history_definitions import QUANTITIES, recordable
+from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
 
 MANY = 20  # choices that are told by the name of their argument, not one by one
 SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
@@ -463,7 +463,8 @@ COMMANDS = (
         "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
         "blocks face to face have two contacts. A contact has the material of its first block, so the "
         "contacts of one joint between two materials can differ (PRINT CONTACTS shows them): give both the "
-        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
+        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, "
+        "residual friction and cohesion, and the critical slip that "
         "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
         "laws of your own. Frictions and dilations are tangents of angles.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",

@@ -51,7 +51,7 @@ def measure_potential(h: Memory, row: Any, i: int) -> bool:
     return True
 
 
-# Of the whole model, in the order of ops.commands.history_definitions.QUANTITIES.
+# Of the whole model, in the order of reader.recordable_numbers.QUANTITIES.
 MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
 NOT_MEASURED = (0,) * len(MEASURED)
 

@@ -7,7 +7,6 @@ when the group is given back (heap.memory.unwatch): it never shows another group
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -18,9 +17,9 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, read_table
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import whole
+from udec_ia.reader.recordable_numbers import Recordable, by_codes, recordable
 
 CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}
 
@@ -102,50 +101,3 @@ def places(array: MainArray) -> np.ndarray:
         else:
             row[0] = what.number
     return found
-
-
-# ---- What HISTORY can record: every single number that has a name
-
-HISTORY = "history"
-QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.recording.MEASURED
-    "UNBalanced": ("N/m", "greatest unbalanced force"),
-    "RATio": ("-", "unbalanced force ratio, as in SOLVE"),
-    "KINetic": ("J/m", "kinetic energy"),
-    "STRain": ("J/m", "strain energy of contacts and deformable blocks"),
-    "POTential": ("J/m", "potential of gravity against that at ENERGY ON"),
-}
-
-
-class Recordable(NamedTuple):
-    """A number that a history can record. kind and number: as a history group holds them (KHK, KHF)."""
-
-    group: str  # name of the kind of group; "" if there is none to choose
-    kind: int
-    number: int
-    field: Field
-
-
-@cache
-def recordable() -> dict[str, Recordable]:
-    """All that can be recorded, by name; head codes, arrays and histories themselves cannot."""
-    table = read_table()
-    found = [
-        Recordable(group.name, kind, number, field)
-        for kind, group in enumerate(table.groups, 1)
-        for number, field in enumerate(group.fields)
-        if group.name != HISTORY and field.role != "head"
-    ]
-    found += [Recordable("", g.COMMON_BLOCK, number, field) for number, field in enumerate(table.common)]
-    found += [
-        Recordable(
-            "", g.WHOLE_MODEL, number, Field(word.upper(), "real", 1, None, "data", unit, "ours", text)
-        )
-        for number, (word, (unit, text)) in enumerate(QUANTITIES.items())
-    ]
-    return {r.field.name: r for r in found if r.field.count == 1}
-
-
-@cache
-def by_codes() -> dict[tuple[int, int], Recordable]:
-    """The same by what a history group holds, (KHK, KHF)."""
-    return {(r.kind, r.number): r for r in recordable().values()}

@@ -1,0 +1,61 @@
+"""What HISTORY can record: every single number that has a name.
+
+A name of the field table says of itself which kind of group it belongs to, so `KXD` is enough to mean a
+block's velocity. Beside the fields there are the variables of the common block (`TIME`, `WFRIC`, ...), and a
+few quantities of the whole model, which are calculated when they are recorded.
+
+In IA() a history holds the kind as a number: that of the group in the order of the table, counted from 1,
+COMMON_BLOCK for the common block or WHOLE_MODEL for the whole model.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, read_table
+
+HISTORY = "history"
+QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.recording.MEASURED
+    "UNBalanced": ("N/m", "greatest unbalanced force"),
+    "RATio": ("-", "unbalanced force ratio, as in SOLVE"),
+    "KINetic": ("J/m", "kinetic energy"),
+    "STRain": ("J/m", "strain energy of contacts and deformable blocks"),
+    "POTential": ("J/m", "potential of gravity against that at ENERGY ON"),
+}
+
+
+class Recordable(NamedTuple):
+    """A number that a history can record. kind and number: as a history group holds them (KHK, KHF)."""
+
+    group: str  # name of the kind of group; "" if there is none to choose
+    kind: int
+    number: int
+    field: Field
+
+
+@cache
+def recordable() -> dict[str, Recordable]:
+    """All that can be recorded, by name; head codes, arrays and histories themselves cannot."""
+    table = read_table()
+    found = [
+        Recordable(group.name, kind, number, field)
+        for kind, group in enumerate(table.groups, 1)
+        for number, field in enumerate(group.fields)
+        if group.name != HISTORY and field.role != "head"
+    ]
+    found += [Recordable("", g.COMMON_BLOCK, number, field) for number, field in enumerate(table.common)]
+    found += [
+        Recordable(
+            "", g.WHOLE_MODEL, number, Field(word.upper(), "real", 1, None, "data", unit, "ours", text)
+        )
+        for number, (word, (unit, text)) in enumerate(QUANTITIES.items())
+    ]
+    return {r.field.name: r for r in found if r.field.count == 1}
+
+
+@cache
+def by_codes() -> dict[tuple[int, int], Recordable]:
+    """The same by what a history group holds, (KHK, KHF)."""
+    return {(r.kind, r.number): r for r in recordable().values()}
