@@ -39,6 +39,7 @@ class Numbers(State):
     @takes(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
     def damping(
         self,
+        /,
         fcrit: float | None = None,
         freq: float | None = None,
         only: str | None = None,
