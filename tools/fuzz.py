@@ -28,8 +28,9 @@ from typing import Any
 import numpy as np
 
 from udec_ia.checker import Violation, check, check_links
+from udec_ia.deck.command_forms import required
 from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
-from udec_ia.deck.command_table import COMMANDS, required
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import Statement, statements
 from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray

@@ -20,8 +20,8 @@ from math import inf
 from pathlib import Path
 from typing import TextIO
 
-from udec_ia.deck.command_help import explain, summary
 from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.interpreting import mode

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_deck_language import SHARED, abbreviations
 
-from udec_ia.deck.command_table import COMMANDS, SEVERAL, Command, Word
+from udec_ia.deck.command_forms import SEVERAL, Command, Word
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import INTEGER_NAMES, Call, parse
 from udec_ia.errors import UdecError

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from udec_ia.deck.command_table import COMMANDS, SEVERAL, Command, Word
+from udec_ia.deck.command_forms import SEVERAL, Command, Word
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import BY_NAME, parse, spell
 from udec_ia.errors import UdecError

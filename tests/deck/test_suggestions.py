@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from udec_ia.deck.command_table import COMMANDS, match
+from udec_ia.deck.command_forms import match
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from udec_ia import Model, UdecError
+from udec_ia.deck.command_forms import match
 from udec_ia.deck.command_monitor import run_deck
-from udec_ia.deck.command_table import COMMANDS, match
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.keyword_suggestions import ALSO_CALLED
 from udec_ia.layout.offsets import TIME
 

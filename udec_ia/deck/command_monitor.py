@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any, Protocol, TextIO, TypeVar
 
 from udec_ia.counting import counted
-from udec_ia.deck.command_table import COMMANDS, RUNS, Counts, match
+from udec_ia.deck.command_forms import RUNS, Counts, match
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import WORD, Statement, at, statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from udec_ia.deck.command_table import Command
+from udec_ia.deck.command_forms import Command
 from udec_ia.deck.deck_statements import (
     Line,
     Put,

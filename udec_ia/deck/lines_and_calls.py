@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.deck.command_table import COMMANDS, SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_forms import SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token, at, quoted
 from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, UdecError

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from udec_ia.deck.command_table import COMMANDS, Kind
+from udec_ia.deck.command_forms import Kind
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import Statement, statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import command_of, parse

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from udec_ia.deck.command_table import match
+from udec_ia.deck.command_forms import match
 from udec_ia.deck.deck_statements import Line, Statement, Token
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.trade.levers import Fraction, Numbers, Setting
