@@ -1,4 +1,4 @@
-"""The form of a command: its kind, numbers, words and list, and how typed words match keywords (MATCH, III-3).
+"""The form of a command: its kind, numbers, words and list, and how typed words match keywords (MATCH).
 
 A keyword is printed as in the report: its upper-case letters must be typed, the others may be left off
 from the end. `PROperty` is matched by PRO, PROP and property, not by PR or PROPS. Where two keywords

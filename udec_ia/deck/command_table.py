@@ -1,6 +1,6 @@
 """The table of commands: every command of the deck language, its parameters and its help (Appendix I-1).
 
-The parser, the log, studies, HELP, the suggestions in error messages and docs/commands.md come from this table.
+The parser, the log, studies, HELP, suggestions in error messages and docs/commands.md come from this table.
 
 python -m udec_ia.deck.command_table > docs/commands.md
 """
