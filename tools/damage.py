@@ -33,9 +33,9 @@ import numpy as np
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.inspect.check import check, check_links
 from udec_ia.inspect.check.codes import allowed
 from udec_ia.inspect.check.groups import State

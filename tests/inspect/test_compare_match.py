@@ -14,8 +14,8 @@ from support.replayable_steps import blocks
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.inspect.change import renumber
 from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.compare import Matching, compare

@@ -16,8 +16,8 @@ from test_look_damage import spoiled
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.compare import compare, diff, raw
 from udec_ia.inspect.compare.values import reals_apart, tolerance

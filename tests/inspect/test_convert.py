@@ -22,8 +22,8 @@ from support.mechanics_scenes import colliding
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.words import ALL_SCHEMES, Scheme, scheme
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme, scheme
 from udec_ia.inspect.change import convert, renumber
 from udec_ia.inspect.change.rewrite import rewrite
 from udec_ia.inspect.change.settle import settle

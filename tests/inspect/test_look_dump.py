@@ -12,8 +12,8 @@ from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.inspect.look import Atlas, common, dump, names, what
 from udec_ia.inspect.look.atlas import KINDS
 from udec_ia.layout import offsets as g

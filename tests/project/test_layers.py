@@ -16,12 +16,26 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
-    "heap": {"errors", "layout", "signals"},
-    "kernels": {"errors", "heap", "layout"},
-    "ops": {"counting", "errors", "heap", "kernels", "layout", "printable", "signals"},
-    "inspect": {"counting", "errors", "heap", "kernels", "layout", "ops"},
-    "restart": {"counting", "errors", "files", "heap", "inspect", "layout", "ops", "printable", "version"},
+    "compiling": {"errors", "layout", "signals"},
+    "heap": {"compiling", "errors", "layout"},
+    "checked_build": {"compiling", "errors", "heap", "layout"},
+    "kernels": {"compiling", "errors", "heap", "layout"},
+    "ops": {"compiling", "counting", "errors", "heap", "kernels", "layout", "printable", "signals"},
+    "inspect": {"compiling", "counting", "errors", "heap", "kernels", "layout", "ops"},
+    "restart": {
+        "compiling",
+        "counting",
+        "errors",
+        "files",
+        "heap",
+        "inspect",
+        "layout",
+        "ops",
+        "printable",
+        "version",
+    },
     "output": {
+        "compiling",
         "counting",
         "errors",
         "files",
@@ -35,6 +49,7 @@ BELOW = {  # layers that a layer imports
     },
     "view": {"files", "heap", "inspect", "layout", "printable"},
     "debug": {
+        "compiling",
         "counting",
         "deck",
         "errors",
@@ -46,8 +61,20 @@ BELOW = {  # layers that a layer imports
         "printable",
         "signals",
     },
-    "diverge": {"counting", "debug", "deck", "errors", "heap", "inspect", "kernels", "layout", "ops"},
+    "diverge": {
+        "compiling",
+        "counting",
+        "debug",
+        "deck",
+        "errors",
+        "heap",
+        "inspect",
+        "kernels",
+        "layout",
+        "ops",
+    },
     "study": {
+        "compiling",
         "counting",
         "deck",
         "errors",
@@ -63,6 +90,7 @@ BELOW = {  # layers that a layer imports
         "version",
     },
     "trade": {
+        "compiling",
         "counting",
         "deck",
         "errors",
@@ -77,6 +105,7 @@ BELOW = {  # layers that a layer imports
         "study",
     },
     "workshop": {
+        "compiling",
         "counting",
         "debug",
         "diverge",
@@ -95,6 +124,7 @@ BELOW = {  # layers that a layer imports
     },
     "verify": {"errors", "files", "heap", "layout", "model", "output", "printable"},
     "methods": {
+        "compiling",
         "counting",
         "deck",
         "errors",
@@ -110,7 +140,7 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"counting", "errors", "heap", "layout", "ops", "printable", "signals"},
+    "deck": {"compiling", "counting", "errors", "heap", "layout", "ops", "printable", "signals"},
 }
 
 

@@ -16,7 +16,7 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.look import Atlas, dump, heap_map
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.timestep import bound, describe

@@ -13,7 +13,7 @@ import numpy as np
 
 from interrupted.commands import Lines
 from udec_ia import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.restart import load, save
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from udec_ia.debug.places import Place
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.look.atlas import Atlas
 from udec_ia.inspect.look.condition import satisfying
 from udec_ia.inspect.table import addresses, table

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.compare import Compared, compare
 from udec_ia.inspect.compare.compare import Differing
 from udec_ia.inspect.compare.side import Side

@@ -7,11 +7,11 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from udec_ia.compiling.interpreting import interpreted, observe
 from udec_ia.debug.timeline import Copy, copied
 from udec_ia.debug.tracing import ROOT, UNDER
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import interpreted, observe
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
 from udec_ia.ops.laws.laws import LawBook

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import gather
-from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import CHOICES
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.walk import HEADS, Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.look.atlas import KINDS, NAMES, Atlas
 from udec_ia.inspect.look.cover import FINE, cover, stretch

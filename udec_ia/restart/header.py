@@ -8,7 +8,7 @@ from typing import Any
 
 from udec_ia.counting import counted
 from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.heap.array import variable
+from udec_ia.heap.main_array import variable
 from udec_ia.inspect.check.unjudged import unfinished
 from udec_ia.inspect.translate import Words
 from udec_ia.layout.table import read_table

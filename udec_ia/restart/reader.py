@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.words import ALL_SCHEMES, Scheme
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme
 from udec_ia.inspect.check import check_links
 from udec_ia.inspect.meaning import news
 from udec_ia.inspect.translate import TranslationError, Words, translate

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.choose import choose
 from udec_ia.inspect.look.atlas import Atlas, Word
 from udec_ia.inspect.table import addresses

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check import check
 from udec_ia.inspect.look.atlas import NAMES, TABLE, UNUSED, Atlas, Span
 from udec_ia.printable import MESSAGE, printable

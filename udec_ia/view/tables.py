@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.heap.census import CHOICES
-from udec_ia.heap.junk import JNEXT
+from udec_ia.heap.junk_list import JNEXT
 from udec_ia.inspect.check.codes import in_words
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED
 from udec_ia.inspect.look.fields import NOT_ALLOWED

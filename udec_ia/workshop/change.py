@@ -20,7 +20,7 @@ from udec_ia.printable import folded, printable
 from udec_ia.workshop.common import Look, Script, command, file
 
 if TYPE_CHECKING:
-    from udec_ia.heap.array import MainArray
+    from udec_ia.heap.main_array import MainArray
     from udec_ia.inspect.check import Violation
     from udec_ia.inspect.look import Listing
     from udec_ia.restart.reader import Restored
@@ -68,7 +68,7 @@ def _change(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
 
 
 def _convert(args: argparse.Namespace) -> Listing:
-    from udec_ia.heap.words import scheme
+    from udec_ia.heap.word_scheme import scheme
     from udec_ia.inspect.change import prove, rewrite
     from udec_ia.inspect.look import Listing
 
@@ -84,7 +84,7 @@ def _convert_line(args: argparse.Namespace) -> str:
 
 
 def _convert_script(args: argparse.Namespace) -> str:
-    imports = "from udec_ia.heap.words import scheme\nfrom udec_ia.inspect.change import convert"
+    imports = "from udec_ia.heap.word_scheme import scheme\nfrom udec_ia.inspect.change import convert"
     proof = "print(made.broken)" if args.force else "assert made.broken == []"
     change = f"made = convert(state.array, scheme({args.build!r}))\nprint(*made.said, sep='\\n')\n{proof}"
     return _script(args, imports, change, "made.array", _convert_line(args))

@@ -33,7 +33,7 @@ def add_commands(commands: Any) -> None:
 
 def _look(args: argparse.Namespace) -> Listing:
     """All violations in a file, sound or not, and what was not judged."""
-    from udec_ia.heap.slack import keep_freed
+    from udec_ia.heap.freed_memory import keep_freed
     from udec_ia.inspect.check import check, unjudged
     from udec_ia.inspect.look.listing import Listing
     from udec_ia.printable import printable

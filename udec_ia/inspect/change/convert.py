@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.inspect.change.faults import too_coarse
 from udec_ia.inspect.change.rewrite import Rewritten, rewrite
 from udec_ia.inspect.change.settle import settle

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check import Violation
 from udec_ia.inspect.table import addresses
 from udec_ia.layout import offsets as g

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.lists import Lists
 from udec_ia.inspect.look.atlas import Atlas, junk_list
 from udec_ia.inspect.look.names import called

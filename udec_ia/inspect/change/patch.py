@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.change.faults import in_short
 from udec_ia.inspect.check import Violation, check
 from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas, Span, Word

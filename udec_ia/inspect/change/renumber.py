@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import integers
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.relocate import relocate
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.relocation import relocate
 from udec_ia.inspect.change.movable import junk_words, movable
 from udec_ia.inspect.look.listing import Listing
 from udec_ia.layout import offsets as g

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.outlines import circles, extent, outlines
 from udec_ia.inspect.check.touches import touches

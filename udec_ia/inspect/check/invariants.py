@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check.bounds import check_bounds, check_times
 from udec_ia.inspect.check.codes import check_codes
 from udec_ia.inspect.check.common import check_common

@@ -12,14 +12,14 @@ from collections import defaultdict
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import SIDES
 from udec_ia.inspect.reading import Numbers
 from udec_ia.kernels.audit.outlines import Outlines, rounded
 from udec_ia.layout import offsets as g
 
-ROUNDED = Sparing(rounded, 2e5, LOOKS)  # corners
+ROUNDED = InterpretWhenSmall(rounded, 2e5)  # corners
 
 
 def check_pieces(state: State, o: Outlines) -> None:

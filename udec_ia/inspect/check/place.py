@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.touches import Touches
 from udec_ia.inspect.reading import HOSTS, INDEX, Numbers
@@ -21,8 +21,8 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g
 
-STANDING = Sparing(standing, 2e5, LOOKS)  # contacts
-DISORDERED = Sparing(disordered, 2e6, LOOKS)  # items
+STANDING = InterpretWhenSmall(standing, 2e5)  # contacts
+DISORDERED = InterpretWhenSmall(disordered, 2e6)  # items
 
 
 @dataclass(frozen=True)

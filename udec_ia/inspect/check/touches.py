@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.inspect.check.groups import State
 from udec_ia.inspect.check.map import AHEAD
 from udec_ia.inspect.reading import INDEX, Numbers
@@ -15,7 +15,7 @@ from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import OVERLAP, PLACE, touching, unlike
 from udec_ia.layout import offsets as g
 
-TOUCHING, UNLIKE = Sparing(touching, 5e5, LOOKS), Sparing(unlike, 1e6, LOOKS)  # contacts
+TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(unlike, 1e6)  # contacts
 
 
 class Touches(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from udec_ia.errors import DISORDERED, MESSAGES
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.check.groups import Violation
 from udec_ia.inspect.reading import TABLE
 from udec_ia.layout import offsets as g

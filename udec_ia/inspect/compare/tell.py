@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.inspect.compare.compare import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.inspect.compare.side import Side
 from udec_ia.inspect.compare.values import tolerance as limits

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import variable
+from udec_ia.heap.main_array import variable
 from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas
 from udec_ia.inspect.look.condition import ADDRESS, satisfying
 from udec_ia.inspect.look.fields import COMMON

@@ -1,7 +1,8 @@
 """Constitutive laws of blocks: number 1, and where the user's numbers 2 to 5 come in (CL1 to CL5; IV-4).
 
 `laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
-`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws (law_call.py).
+`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws
+(compiling/law_calls.py).
 """
 
 from __future__ import annotations
@@ -10,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.law_calls import FIRST, Laws, call, is_given
 from udec_ia.errors import LAW_FAILED
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
-from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.body.law_call import FIRST, Laws, call, is_given
 from udec_ia.layout import offsets as g
 
 IN_BLOCKS, AT_JOINTS = 0, 1  # rows of what numbers_in_use fills

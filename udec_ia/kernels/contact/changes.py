@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.contact.joint_law import is_open
 from udec_ia.kernels.contact.notch import has_no_place, leave_notch
 from udec_ia.kernels.contact.springs import lose_shear
@@ -207,7 +207,7 @@ def settle_all(h: Memory) -> None:
         ic = following
 
 
-@apart
+@outlined
 def change_map(h: Memory, waiting: Any, n: int) -> bool:
     """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
 

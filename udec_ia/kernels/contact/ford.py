@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.outlined_calls import call_entry
+from udec_ia.compiling.prefetch import LEAD, fetch
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.contact.changes import is_still, opens
 from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open

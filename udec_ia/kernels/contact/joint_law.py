@@ -6,9 +6,9 @@ holds its blocks apart. It closes when blocks overlap, and it bears no tension.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined
+from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.heap.accessors import Memory, getr, iget, real
-from udec_ia.heap.jit import inlined
-from udec_ia.kernels.body.law_call import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.kernels.body.laws import failed
 from udec_ia.layout import offsets as g
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.outlined_calls import call_entry
 from udec_ia.heap.accessors import Memory, int64
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import room
+from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate

@@ -8,9 +8,9 @@ or broken on a large domain costs as much as its small side.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
-from udec_ia.heap.jit import inlined, kernel
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
 from udec_ia.kernels.geometry.contact_geometry import begin
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.flag import flag

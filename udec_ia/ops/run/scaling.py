@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.peaks import halt_block
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
