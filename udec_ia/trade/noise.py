@@ -20,11 +20,11 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.inspect.table import addresses as listed
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
+from udec_ia.reader.group_tables import addresses as listed
 from udec_ia.study.runs import Run
 
 KICKS = 1000
