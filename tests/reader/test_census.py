@@ -17,8 +17,7 @@ from udec_ia import Model
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import puti
 from udec_ia.heap.census import census
-from udec_ia.heap.interpreting import Sparing
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import Unsound
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.outlines import (
     Outlines,
     fill_blocks,

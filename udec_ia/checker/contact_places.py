@@ -14,7 +14,7 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_overlaps import Touches
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
 from udec_ia.layout import offsets as g

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import LOST, State
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.walks import gaps
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.untrusted_lists import gaps
 from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers
 from udec_ia.reader.kernel_rows import told
 

@@ -25,7 +25,7 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_overlaps import Touches
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.meetings import EDGE, crossing, lonely_meetings
 from udec_ia.kernels.audit.outlines import Outlines, in_rounded
 from udec_ia.reader.field_reading import HOSTS, Numbers

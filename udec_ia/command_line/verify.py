@@ -63,7 +63,7 @@ def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _verify(args: argparse.Namespace) -> Listing:
-    from udec_ia.heap.words import scheme
+    from udec_ia.heap.word_scheme import scheme
     from udec_ia.reader.listing import Listing
     from udec_ia.verify.page import COLUMNS, brief, rows, write
     from udec_ia.verify.run import run

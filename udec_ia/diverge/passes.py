@@ -54,7 +54,7 @@ def _pass_of(frame: FrameType | None) -> str:
     """The routine that the loop of the passes has called; that loop itself if it has called none."""
     name = ROOT
     while frame is not None and frame.f_code.co_name != ROOT:
-        if frame.f_globals not in UNDER:
+        if not frame.f_globals["__name__"].startswith(UNDER):
             name = frame.f_code.co_name
         frame = frame.f_back
     return name

@@ -12,8 +12,7 @@ import numpy as np
 
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import groups_along
+from udec_ia.heap.untrusted_lists import groups_along
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 

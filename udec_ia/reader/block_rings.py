@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import closed_lists
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.untrusted_lists import closed_lists
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.reader.field_reading import Numbers
 
 ROOM = 100  # rows that are expected
