@@ -79,10 +79,12 @@ def _compile_look(look: Callable[..., Any]) -> None:
     """Compiled code is always within a kernel."""
     from numba.extending import overload
 
-    def impl(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> None:
-        judge(h, iad, k, i, writes)
+    @overload(look)
+    def _look(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> Callable[..., None]:
+        def impl(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> None:
+            judge(h, iad, k, i, writes)
 
-    overload(look)(lambda h, iad, k, i, writes: impl)
+        return impl
 
 
 def checked_accessors(*plain: Any) -> tuple[Any, ...]:
