@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from udec_ia.compiling.interpreting import mode
-from udec_ia.compiling.law_calls import Laws
+from udec_ia.compiling.law_calls import FIRST, LAST, Laws
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
+from udec_ia.kernels.constitutive.block_laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
+from udec_ia.kernels.constitutive.joint_properties import material_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.common.limits import NCONS, NMAT
@@ -28,8 +29,8 @@ class Bound(NamedTuple):
     """The laws as kernels take them.
 
     blocks: None if all blocks are rigid, as in `soft`, so that they need no machine code of their own.
-    joints: None if no contact follows one of the laws. book: where they come from. own_blocks: True if a
-    deformable block follows one.
+    joints: None if no contact follows a law of its own (kernels.constitutive.joint_laws). book: where they
+    come from. own_blocks: True if a deformable block follows one.
     """
 
     blocks: Laws | None
@@ -86,7 +87,8 @@ class LawBook:
         for law, n, group in sorted(wanted, key=lambda one: one[0] not in self.recorded):
             self._demand(array, n, law, group)
         laws = self.pack(array)
-        followed = any(user[AT_JOINTS, n] and f"clj{n}" in self.given for n in NUMBERS)
+        own = [n for n in range(FIRST, NCONS + 1) if n > LAST or f"clj{n}" in self.given]
+        followed = user[AT_JOINTS, own].any()
         for one in self.given.values():
             one.noted[:] = np.nan
         own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
@@ -122,7 +124,7 @@ class LawBook:
         """Error 35 for the law of block or contact `group`."""
         h = array.h
         if iget(h, group, HEAD) == g.MCON:
-            who, law, material = f"contact@{group}", f"clj{iget(h, group, g.KCC)}", iget(h, group, g.KCM)
+            who, law, material = f"contact@{group}", f"clj{iget(h, group, g.KCC)}", material_of(h, group)
         else:
             who, law, material = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
         detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[g.MCTOT])}"

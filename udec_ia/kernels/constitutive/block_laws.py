@@ -1,4 +1,4 @@
-"""Constitutive laws of blocks: number 1, and where the user's numbers 2 to 5 come in (CL1 to CL5; IV-4).
+"""Block laws by constitutive number: linear elasticity (1, CL1) and the user's (2 to 5; IV-4).
 
 `laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
 `if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.compiling.law_calls import FIRST, Laws, call, is_given
+from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.errors import LAW_FAILED
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
 from udec_ia.layout import offsets as g
@@ -80,7 +80,7 @@ def stress_increment(
     """
     if laws is not None:
         i = number - FIRST
-        if i >= 0 and is_given(laws, i):
+        if 0 <= i < JOINTS and is_given(laws, i):
             d11, d12, d22 = call(laws, i, mat, (s11, s12, s22, e11, e12, e22))
             if failed(h, group, real(h, d11) + real(h, d12) + real(h, d22)):
                 return real(h, 0.0), real(h, 0.0), real(h, 0.0)
