@@ -14,8 +14,8 @@ from numba.core import config
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.constitutive.block_laws import stress_increment
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
@@ -91,8 +91,10 @@ def test_what_is_no_number_is_error_35(build: str) -> None:
 PROBE = """
 import sys
 import numpy as np
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.body import laws as kernels
 from udec_ia.ops.commands import model_settings
 from udec_ia.kernels.constitutive import block_laws as kernels

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from udec_ia.heap.accessors import HEAD, iget, puti
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import REMEMBER
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.kernels.links.relaxations import lose_relaxations

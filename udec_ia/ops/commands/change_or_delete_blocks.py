@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.bounds import push_loads
 from udec_ia.kernels.body.masses import share_mass, zone_means
 from udec_ia.kernels.body.motion import carry_corners

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from math import hypot
 
 from udec_ia.heap.accessors import Memory, Offset, getr, iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.ranges import blocks_between
 from udec_ia.kernels.links.lists import nextcp
 from udec_ia.layout import offsets as g

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.table import read_table
 
 NMAT = next(field.count for field in read_table().common if field.name == "AKN")

@@ -10,6 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from udec_ia.compiling.compile_time import working_time
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import (
     INSIDE_OUT,
     LAW_FAILED,
@@ -21,9 +23,7 @@ from udec_ia.errors import (
     UdecError,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import working_time
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.masses import make_masses
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite import not_finite
@@ -44,7 +44,7 @@ from udec_ia.ops.run.timestep import kind_of, share_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
-NOT_FINITE = Sparing(not_finite, 2e3)
+NOT_FINITE = InterpretWhenSmall(not_finite, 2e3)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 KINDS = {head.value: head.group for head in read_table().heads}
 REPORT_SECONDS = 0.2

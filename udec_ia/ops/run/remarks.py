@@ -14,7 +14,7 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges

@@ -6,7 +6,7 @@ seen again. Whatever the run stopped for, it stops for here.
 
 from __future__ import annotations
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.passes import TUNNELLING, passes
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.layout import offsets as g

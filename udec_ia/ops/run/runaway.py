@@ -31,7 +31,7 @@ import numpy as np
 
 from udec_ia.errors import OUT_OF_NOWHERE, UdecError
 from udec_ia.heap.accessors import Memory, getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.bounds import power_of_loads
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.inertial import energy_of_motion

@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.peaks import halt_block

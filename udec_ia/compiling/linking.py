@@ -22,8 +22,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
-from udec_ia.heap.compiling import compiling
-from udec_ia.heap.kept import keep_code
+from udec_ia.compiling.code_cache import use_cache
+from udec_ia.compiling.compile_time import compiling
 from udec_ia.signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
@@ -117,15 +117,15 @@ class _WholeCompiler(_KernelCompiler):
             return super().compile_extra(function)
 
 
-class Forms:
+class LinkedKernel:
     """A compiled function in both its forms: called from Python it is whole, from a kernel a part.
 
-    folder: where the machine code of the whole is kept. apart: kernels call the whole, too, by its address.
+    folder: of the machine code of the whole. outlined: kernels call the whole, too, by its address.
     """
 
-    def __init__(self, function: Callable[..., Any], folder: Path, apart: bool = False, **flags: Any) -> None:
-        self.whole = njit(no_cfunc_wrapper=not apart, pipeline_class=_WholeCompiler, **flags)(function)
-        keep_code(self.whole, folder)
+    def __init__(self, function: Callable[..., Any], folder: Path, outlined: bool, **flags: Any) -> None:
+        self.whole = njit(no_cfunc_wrapper=not outlined, pipeline_class=_WholeCompiler, **flags)(function)
+        use_cache(self.whole, folder)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
         )(function)
@@ -146,6 +146,6 @@ class _KernelType(types.Dispatcher):
 register_model(_KernelType)(models.OpaqueModel)
 
 
-@typeof_impl.register(Forms)
-def _type_of(forms: Forms, _: Any) -> _KernelType:
-    return _KernelType(forms.part)
+@typeof_impl.register(LinkedKernel)
+def _type_of(linked: LinkedKernel, _: Any) -> _KernelType:
+    return _KernelType(linked.part)

@@ -1,13 +1,15 @@
-"""Lists of a heap that nobody has vouched for: every address is tested before it is used, every walk ends.
+"""Walks along the lists of a heap that is not proved sound: every address is tested, every walk ends.
 
 The words of IA() come as a bare array; a `step` is the place of a field in it, from the address of the group.
+Reals of many groups come as a bare array as well.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from udec_ia.heap.kernel import over_arrays
+from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.layout import offsets as g
 
 TURNS = 4  # walks around blocks take as many steps together, for each place where a group could begin
@@ -232,3 +234,29 @@ def _place(iad: int, places: int, shift: int) -> int:
     """The real that begins at an address, counted from 0; -1 where none does."""
     place = (iad - 1) >> shift
     return place if iad >= 1 and place < places and place << shift == iad - 1 else -1
+
+
+@over_arrays
+def all_finite(reals: Any, groups: Any, ratio: int, first: int, last: int) -> bool:
+    """True if the reals `first` to `last` of the groups at these addresses, counted from 1, are numbers."""
+    for k in range(len(groups)):
+        base = (groups[k] - 1) // ratio
+        for i in range(base + first - 1, base + last):
+            if not math.isfinite(reals[i]):
+                return False
+    return True
+
+
+@over_arrays
+def place_items(reals: Any, items: Any, contact: Any, ratio: int, offsets: Any, places: Any) -> None:
+    """The place of each item (n x 2), from that of the first, a corner.
+
+    offsets: of x and y among the reals, counted from 1, of a corner and of a contact.
+    """
+    for k in range(len(items)):
+        base, of_kind = (items[k] - 1) // ratio - 1, 2 if contact[k] else 0
+        for axis in range(2):
+            places[k, axis] = reals[base + offsets[of_kind + axis]]
+    x, y = places[0, 0], places[0, 1]
+    for k in range(len(items)):
+        places[k, 0], places[k, 1] = places[k, 0] - x, places[k, 1] - y

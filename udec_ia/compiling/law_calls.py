@@ -6,7 +6,7 @@ addresses of machine code, as numbers, and calls what lies there with a fixed li
 
     void law(double, double, double, double, double, double, const double *material, double *result)
 
-`machine_code` (law_call_numba.py) brings a compiled law to this form, `call` calls it. A call costs what it
+`machine_code` (law_calls_numba.py) brings a compiled law to this form, `call` calls it. A call costs what it
 costs in C, and no kernel is compiled anew for it. Laws calculate with 64-bit reals in every word scheme.
 Kernels that are not compiled call the Python function itself.
 
@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.loading import has_numba_side
+from udec_ia.compiling.numba_loading import numba_form
 
 FIRST, LAST = 2, 5  # constitutive numbers of the user's laws
 JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws
@@ -37,11 +37,13 @@ class Laws(NamedTuple):
     materials: Any
 
 
+@numba_form("udec_ia.compiling.law_calls_numba:compile_is_given")
 def is_given(laws: Laws, i: int) -> bool:
     """True if there is a law at place `i` of the calls."""
     return bool(laws.calls[i] != 0)
 
 
+@numba_form("udec_ia.compiling.law_calls_numba:compile_call")
 def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
     """What law `i` returns for material `mat` and six reals: three reals, of which joint laws use two.
 
@@ -52,6 +54,3 @@ def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
             return laws.calls[i](*map(np.float64, state), laws.materials[mat - 1])
     except Exception:
         return (np.nan, np.nan, np.nan)
-
-
-has_numba_side(__name__)

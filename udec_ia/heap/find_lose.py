@@ -1,7 +1,7 @@
 """Memory management: FIND and LOSE (report 3.4).
 
 Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
-reuses it for the next request of exactly the same size (junk.py); groups are never cut up.
+reuses it for the next request of exactly the same size (junk_list.py); groups are never cut up.
 
 Its address may soon be that of another group. So whoever watches a group from outside the map, as a history
 does, is told when the group is given back.
@@ -9,15 +9,29 @@ does, is told when the group is given back.
 
 from __future__ import annotations
 
+from udec_ia.compiling.build_choice import CHECKED, checked_build, offset
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.numba_loading import numba_form
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
-from udec_ia.heap.checked import WHATEVER, offset
-from udec_ia.heap.guarding import begins, ends
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.layout import offsets as g
 
-WORD: Offset = offset("WORD", (0, 0, 0), WHATEVER)  # the first one of any group
+WORD: Offset = offset("WORD", (0, 0, 0), "any")  # the first one of any group
+
+
+def begins(h: Memory, iad: int, nv: Offset) -> None:
+    """FIND hands out the words at `iad` for a group of the size `nv`: noted by the checked build."""
+
+
+def ends(h: Memory, iad: int, nv: Offset) -> None:
+    """LOSE takes them back: tested and noted by the checked build."""
+
+
+if CHECKED:
+    begins, ends = checked_build("access_checks").begins, checked_build("access_checks").ends
+for each in begins, ends:
+    numba_form("numba.extending:register_jitable")(each)
 
 
 @kernel

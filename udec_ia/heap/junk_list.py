@@ -17,11 +17,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.heap.checked import SPARE, offset
+from udec_ia.compiling.build_choice import offset
 
-JNEXT = offset("JNEXT", (0, 0, 0), SPARE)
-JSIZE = offset("JSIZE", (1, 1, 1), SPARE)
-JSIZES = offset("JSIZES", (2, 2, 2), SPARE)
+JNEXT = offset("JNEXT", (0, 0, 0), "junk group")
+JSIZE = offset("JSIZE", (1, 1, 1), "junk group")
+JSIZES = offset("JSIZES", (2, 2, 2), "junk group")
 
 
 def junk_chains(words: Any, first: int) -> list[list[tuple[int, int]]]:

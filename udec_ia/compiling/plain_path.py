@@ -7,34 +7,26 @@ words; compiling takes about twice as long, and a cycle about 1.3 times.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
-import numba
 from numba import njit
 from numba.core import event
 
-from udec_ia.heap.compiling import compiling
-from udec_ia.heap.kept import keep_code
+from udec_ia.compiling.build_choice import plain_wanted
+from udec_ia.compiling.code_cache import use_cache
+from udec_ia.compiling.compile_time import compiling
 
-TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which linking.py was tried
 KERNELS: set[Callable[..., Any]] = set()  # all that are made here; laws of the user's are compiled untold
-
-
-def wanted() -> bool:
-    """True if kernels are to be made without linking.py."""
-    release = tuple(int(part) for part in numba.__version__.split(".")[:2])
-    return os.environ.get("UDEC_LINK") == "plain" or not TRIED[0] <= release <= TRIED[1]
 
 
 def plain_kernel(function: Callable[..., Any], folder: Path, **flags: Any) -> Any:
     """`function` compiled. folder: where its machine code is kept; flags: as njit takes them."""
     KERNELS.add(function)
     made = njit(**flags)(function)
-    keep_code(made, folder)
+    use_cache(made, folder)
     return made
 
 
@@ -56,5 +48,5 @@ class _Teller(event.Listener):
         self.open.pop().__exit__(None, None, None)
 
 
-if wanted():
+if plain_wanted():
     event.register("numba:compile", _Teller())

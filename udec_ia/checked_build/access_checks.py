@@ -1,4 +1,4 @@
-"""The checked build at work: accessors that look first, and what is said of an access that they refuse.
+"""The checks themselves: accessors that test each address before they use it, and the error if it is wrong.
 
 An access is right if a group of the kind that has the field begins at the address. All of a group lies below
 MFREE, since FIND has it so; what was given back is a junk group. The first access that is not right ends the
@@ -8,14 +8,12 @@ kernel, before anything is read or written there.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import update_wrapper
 from typing import Any
 
 import numpy as np
 
-from udec_ia.errors import DAMAGED, UdecError
-from udec_ia.heap.checked import (
-    CHECKED,
+from udec_ia.checked_build.group_kinds import enter, leave, shadow
+from udec_ia.checked_build.tagged_offsets import (
     COUNT,
     FIELD,
     HEADED,
@@ -25,25 +23,24 @@ from udec_ia.heap.checked import (
     ROUTINE,
     ROUTINES,
     SPARE,
+    WANTED,
     WITH_HEAD,
+    named,
     of_routine,
 )
-from udec_ia.heap.entering import enter, leave
-from udec_ia.heap.kinds import shadow
-from udec_ia.heap.loading import has_numba_side
-from udec_ia.heap.views import Memory
+from udec_ia.compiling.kernel_decorators import Kernel
+from udec_ia.compiling.kernel_memory import Memory
+from udec_ia.compiling.numba_loading import numba_form
+from udec_ia.errors import DAMAGED, WrongAddress
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
 
 ADVICE = "udec check shows which pointer is wrong; if none is, the routine is wrong: keep this deck"
+JITABLE = "numba.extending:register_jitable"
 
 
 class Refused(Exception):
     """Of a kernel that was ended; the notes of the memory say why."""
-
-
-class Astray(UdecError):
-    """Error 20: a kernel has gone to where it has nothing to do, and may have changed words before."""
 
 
 class _Inside:
@@ -52,6 +49,7 @@ class _Inside:
     kernel = False
 
 
+@numba_form(JITABLE)
 def judge(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
     """Refused unless a group that has the field `k` begins at `iad`, and `i` is one of its elements."""
     top: Any = h.ci[g.MFREE]
@@ -70,16 +68,27 @@ def judge(h: Any, iad: Any, k: Any, i: Any, writes: int) -> None:
         raise Refused
 
 
+@numba_form("udec_ia.checked_build.access_checks:_compile_look")
 def look(h: Memory, iad: int, k: Any, i: int, writes: int) -> None:
     """The same within a kernel; what reads the heap from outside of them has tests of its own."""
     if _Inside.kernel:
         judge(h, iad, k, i, writes)
 
 
-def guarded(*plain: Any) -> tuple[Any, ...]:
-    """The accessors iget, puti, getr and putr as they are in this build."""
-    if not CHECKED:
-        return plain
+def _compile_look(look: Callable[..., Any]) -> None:
+    """Compiled code is always within a kernel."""
+    from numba.extending import overload
+
+    @overload(look)
+    def _look(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> Callable[..., None]:
+        def impl(h: Any, iad: Any, k: Any, i: Any, writes: Any) -> None:
+            judge(h, iad, k, i, writes)
+
+        return impl
+
+
+def checked_accessors(*plain: Any) -> tuple[Any, ...]:
+    """The accessors iget, puti, getr and putr, each of which looks first."""
     plain_iget, plain_puti, plain_getr, plain_putr = plain
 
     def iget(h: Memory, iad: int, k: Any, i: int = 0) -> Any:
@@ -98,53 +107,45 @@ def guarded(*plain: Any) -> tuple[Any, ...]:
         look(h, iad, k, 0, 1)
         plain_putr(h, iad, k, v)
 
-    return iget, puti, getr, putr
+    return tuple(numba_form(JITABLE)(one) for one in (iget, puti, getr, putr))
 
 
 def begins(h: Memory, iad: int, nv: Any) -> None:
-    """FIND hands out the words at `iad` for a group of the size `nv`. Nothing in an ordinary build."""
-    if CHECKED:
-        h.kinds[iad - 1] = nv[KIND]
+    """FIND hands out the words at `iad` for a group of the size `nv`."""
+    h.kinds[iad - 1] = nv[KIND]
 
 
 def ends(h: Memory, iad: int, nv: Any) -> None:
-    """LOSE takes them back. Refused if there is no such group. Nothing in an ordinary build."""
-    if CHECKED:
-        look(h, iad, nv, 0, 1)
-        h.kinds[iad - 1] = SPARE
+    """LOSE takes them back. Refused if there is no such group."""
+    look(h, iad, nv, 0, 1)
+    h.kinds[iad - 1] = SPARE
 
 
-class Guarded:
-    """A kernel of the checked build. Called from Python it ends in Astray where an access is refused."""
+class CheckedKernel(Kernel):
+    """A kernel of the checked build: called from Python, it ends in WrongAddress if an access is refused."""
 
-    def __init__(self, made: Any, function: Callable[..., Any], number: int) -> None:
-        update_wrapper(self, function)
-        self.number = number
-        self.made = made
-
-    @property
-    def whole(self) -> Any:
-        """What is compiled of it."""
-        return self.made.whole
+    def __init__(self, function: Callable[..., Any], inline: bool, outlined: bool) -> None:
+        own, self.number = named(function)
+        super().__init__(own, inline, outlined, True)
 
     def __call__(self, *args: Any) -> Any:
         h = next((one for one in args if isinstance(one, Memory)), None)
         if h is None or _Inside.kernel:
-            return self.made(*args)
+            return super().__call__(*args)
         args = tuple(of_routine(one, self.number) for one in args)
         enter(h)
         _Inside.kernel = True
         try:
-            return self.made(*args)
+            return super().__call__(*args)
         except Refused:
-            raise astray(h) from None
+            raise wrong_address(h) from None
         finally:
             _Inside.kernel = False
             leave(h)
 
 
-def astray(h: Memory) -> Astray:
-    """The error that the notes of `h` tell of."""
+def wrong_address(h: Memory) -> WrongAddress:
+    """The error that the notes of `h` describe."""
     routine, iad, field, element, writes = (int(word) for word in shadow(h.ia).notes)
     name, deed = NAMES[field], "writes" if writes else "reads"
     if name.startswith("NV"):
@@ -155,14 +156,7 @@ def astray(h: Memory) -> Astray:
         detail += f", not a {KINDS[WANTED[field]]}"
     elif element:
         detail += f", and {name} has no element {element}"
-    return Astray(DAMAGED, detail, ADVICE, group=iad)
-
-
-WANTED = {
-    value[FIELD]: value[KIND]
-    for value in vars(g).values()
-    if CHECKED and isinstance(value, tuple) and len(value) > ROUTINE
-}
+    return WrongAddress(DAMAGED, detail, ADVICE, group=iad)
 
 
 def _kind(h: Memory, iad: int) -> str:
@@ -186,6 +180,3 @@ def _there(h: Memory, iad: int) -> str:
     kind = _kind(h, first)
     size = sizes[kind].size if kind in sizes else int(h.ia[first])
     return f"a word of {kind}@{first}" if iad < first + size else "no group"
-
-
-has_numba_side(__name__)

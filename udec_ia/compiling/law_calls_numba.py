@@ -1,4 +1,4 @@
-"""How a kernel that is compiled calls a law, and how a law is compiled for it (law_call.py)."""
+"""How a kernel that is compiled calls a law, and how a law is compiled for it (law_calls.py)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from udec_ia.kernels.constitutive.law_call import call, is_given
 from udec_ia.layout.material import Material
 
 MATERIAL_SIZE = 8 * len(Material._fields)  # bytes
@@ -54,22 +53,28 @@ def _jump(typing: Any, law: Any, state: Any, material: Any) -> Any:
     return three(types.int64, types.UniTuple(types.float64, 6), types.int64), generate
 
 
-@overload(is_given)
-def _is_given(laws: Any, i: Any) -> Callable[..., Any]:
-    def impl(laws: Any, i: Any) -> Any:
-        return _word_at(laws.calls + 8 * i) != 0
+def compile_is_given(is_given: Callable[..., Any]) -> None:
+    """An address of 0 is that of no law."""
 
-    return impl
+    @overload(is_given)
+    def _is_given(laws: Any, i: Any) -> Callable[..., Any]:
+        def impl(laws: Any, i: Any) -> Any:
+            return _word_at(laws.calls + 8 * i) != 0
+
+        return impl
 
 
-@overload(call)
-def _call(laws: Any, i: Any, mat: Any, state: Any) -> Callable[..., Any]:
-    def impl(laws: Any, i: Any, mat: Any, state: Any) -> Any:
-        a, b, c, d, e, f = state
-        reals = (np.float64(a), np.float64(b), np.float64(c), np.float64(d), np.float64(e), np.float64(f))
-        return _jump(_word_at(laws.calls + 8 * i), reals, laws.materials + MATERIAL_SIZE * (mat - 1))
+def compile_call(call: Callable[..., Any]) -> None:
+    """The law that lies at an address is called."""
 
-    return impl
+    @overload(call)
+    def _call(laws: Any, i: Any, mat: Any, state: Any) -> Callable[..., Any]:
+        def impl(laws: Any, i: Any, mat: Any, state: Any) -> Any:
+            a, b, c, d, e, f = state
+            reals = (np.float64(a), np.float64(b), np.float64(c), np.float64(d), np.float64(e), np.float64(f))
+            return _jump(_word_at(laws.calls + 8 * i), reals, laws.materials + MATERIAL_SIZE * (mat - 1))
+
+        return impl
 
 
 @intrinsic

@@ -1,13 +1,14 @@
-"""What a kernel sees of the program's memory. How compiled code sees it: views_numba.py."""
+"""The memory that every kernel works on: the views of IA() and the common block."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from udec_ia.heap.kinds import shadow
-from udec_ia.heap.loading import has_numba_side
+from udec_ia.compiling.build_choice import checked_build
+from udec_ia.compiling.numba_loading import numba_form
 
 
+@numba_form("udec_ia.compiling.memory_type_numba:register")
 class Memory(NamedTuple):
     """All that a kernel sees.
 
@@ -24,12 +25,9 @@ class Memory(NamedTuple):
     @property
     def kinds(self) -> Any:
         """In the checked build: the kind of the group that begins at each address, counted from 0."""
-        return shadow(self.ia).kinds
+        return checked_build("group_kinds").shadow(self.ia).kinds
 
     @property
     def notes(self) -> Any:
         """In the checked build: what an access that was refused leaves behind."""
-        return shadow(self.ia).notes
-
-
-has_numba_side(__name__)
+        return checked_build("group_kinds").shadow(self.ia).notes

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.views import Memory
+from udec_ia.compiling.kernel_memory import Memory
 
 
 class Writes:

@@ -1,15 +1,12 @@
-"""The checked build: kernels that look at what stands at an address before they read or write there.
+"""Offsets that carry tags: kind of group, number of elements, name of the field, and routine that uses them.
 
-It is chosen by UDEC_CHECKED=1 in the environment, or `udec --checked`, before the kernels are loaded. An
-offset is then a longer tuple. After the three offsets come the kind of the group that has the field, how many
-words or reals the field has, the number of its name, and the number of the kernel in whose source it stands:
-what the accessors need to look (guarding.py), and to say what is wrong. In an ordinary build nothing of this
-is there.
+In the checked build an offset is a longer tuple. After the three offsets come the kind of the group that has
+the field, how many words or reals the field has, the number of its name, and the number of the kernel in
+whose source it stands: what the accessors need to test an access (access_checks.py), and to name it.
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -18,7 +15,6 @@ from typing import Any
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 
-CHECKED = os.environ.get("UDEC_CHECKED", "") not in ("", "0")
 TABLE = read_table()
 NOTHING = 0  # no group begins at an address
 WITH_HEAD, WHATEVER = -1, -2  # kinds of group that a field may be of: one with a head code, or any at all
@@ -31,33 +27,16 @@ UNNAMED = 0
 ROUTINES = ["a routine"]  # by their number; 0 is what Python hands over
 
 
-def offset(name: str, words: tuple[int, ...], kind: int, count: int = 1) -> Any:
-    """The offsets `words` of the field `name` as kernels of this build take them."""
-    if not CHECKED:
-        return words
+def tagged(name: str, words: tuple[int, ...], kind: str, count: int = 1) -> Any:
+    """The offsets `words` of the field `name` of groups of a kind, with their tags."""
     NAMES.append(name)
-    return (*words, kind, count, len(NAMES) - 1, 0)
+    number = {"headed": WITH_HEAD, "any": WHATEVER}.get(kind) or KINDS.index(kind)
+    return (*words, number, count, len(NAMES) - 1, 0)
 
 
-def _at_offset(k: int, kind: int, own: Any) -> Any:
+def at_offset(k: int, kind: int, own: Any) -> Any:
     """Field `k` of groups of kind `kind`, counted from 1, for the routine that has the offset `own`."""
-    return k, k, k
-
-
-def _checked_at_offset(k: int, kind: int, own: Any) -> Any:
     return k, k, k, kind, 1, UNNAMED, own[ROUTINE]
-
-
-at_offset = _checked_at_offset if CHECKED else _at_offset
-
-
-def _lengthen() -> None:
-    """Every offset and size of the table, in its place."""
-    for kind, group in enumerate(TABLE.groups, 1):
-        setattr(g, group.size_name, offset(group.size_name, getattr(g, group.size_name), kind))
-        for field in group.fields:
-            if field.role != "head":
-                setattr(g, field.name, offset(field.name, getattr(g, field.name), kind, field.count))
 
 
 class _Names(dict[str, Any]):
@@ -81,7 +60,7 @@ def of_routine(value: Any, number: int) -> Any:
 
 
 def named(function: Callable[..., Any]) -> tuple[Any, int]:
-    """`function`, with offsets that say that they are its own, and its number."""
+    """`function`, with offsets that carry the tag of this routine, and its number."""
     code = function.__code__
     path = Path(code.co_filename)
     ROUTINES.append(f"{function.__name__} ({path.parent.name}/{path.name})")
@@ -97,5 +76,11 @@ def named(function: Callable[..., Any]) -> tuple[Any, int]:
     return same, number
 
 
-if CHECKED:
-    _lengthen()
+for _group in TABLE.groups:  # every offset and size of the table is exchanged, before kernels take it over
+    setattr(g, _group.size_name, tagged(_group.size_name, getattr(g, _group.size_name), _group.name))
+    for _field in _group.fields:
+        if _field.role != "head":
+            setattr(g, _field.name, tagged(_field.name, getattr(g, _field.name), _group.name, _field.count))
+WANTED = {  # kind of the groups that have a field, by the number of its name
+    value[FIELD]: value[KIND] for value in vars(g).values() if type(value) is tuple and len(value) > ROUTINE
+}

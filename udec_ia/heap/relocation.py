@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.kinds import forget
+from udec_ia.compiling.build_choice import forget_kinds
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, Layout, layouts, read_table
 
@@ -53,7 +53,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
         if group.list_head is not None:
             h.ci[getattr(g, group.list_head)] = moved[order[kind][0]]
     h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
-    forget(h.ia)
+    forget_kinds(h.ia)
     return moved
 
 

@@ -1,4 +1,4 @@
-"""How compiled code sees the memory (views.py).
+"""The type that the memory of a kernel (kernel_memory.py) has in compiled code.
 
 An array of numba is seven words and a reference count, and the memory is handed to every kernel. So Memory
 has a type of its own when compiled: four bare addresses, which stay in registers, and nothing to count; a
@@ -25,8 +25,8 @@ from numba.extending import (
 )
 from numba.np.numpy_support import from_dtype
 
-from udec_ia.heap.checked import CHECKED
-from udec_ia.heap.views import Memory
+from udec_ia.compiling.build_choice import CHECKED
+from udec_ia.compiling.kernel_memory import Memory
 
 BESIDE = [("kinds", types.int8), ("notes", types.int64)] if CHECKED else []  # further arrays, and their types
 
@@ -75,9 +75,12 @@ def _reals(context: Any, builder: Any, kind: MemoryType, value: Any) -> Any:
     return builder.bitcast(pointers.ia, context.get_value_type(_pointer_to_reals(kind)))
 
 
-@typeof_impl.register(Memory)
-def _type_of(memory: Memory, _: Any) -> MemoryType:
-    return MemoryType(*(from_dtype(array.dtype) for array in memory))
+def register(memory_class: type[Memory]) -> None:
+    """Have numba give memories this type."""
+
+    @typeof_impl.register(memory_class)
+    def _type_of(memory: Memory, _: Any) -> MemoryType:
+        return MemoryType(*(from_dtype(array.dtype) for array in memory))
 
 
 @unbox(MemoryType)

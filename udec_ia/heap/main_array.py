@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.build_choice import CHECKED, checked_build
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.kinds import follow
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
 
@@ -63,7 +63,8 @@ class MainArray:
         """`size` words, of which those below MFREE are as they are now and the others zero."""
         ia, used = _words(size, self.scheme.int_type), int(self.h.ci[g.MFREE]) - 1
         ia[:used] = self.h.ia[:used]
-        follow(self.h.ia, ia)
+        if CHECKED:
+            checked_build("group_kinds").follow(self.h.ia, ia)
         return ia
 
     def _whole_reals(self, words: int) -> int:
