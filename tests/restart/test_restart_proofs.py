@@ -12,7 +12,7 @@ from support.every_group_kind import every_kind
 from udec_ia import Model, UdecError
 from udec_ia.errors import MESSAGES, OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.group_tables import table
 from udec_ia.restart import load, save

@@ -20,36 +20,33 @@ from typing import Any, Concatenate, Generic, ParamSpec, Self, TextIO, TypeVar, 
 
 from udec_ia.checker import check, unjudged
 from udec_ia.counting import counted
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.reference import explain, summary
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import explain, summary
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
+from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import DTOL, MCTOT
 from udec_ia.model.model_runs import run_cycles, solve_as_given, solve_statically
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.saved_states import restart_from, save_state
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
-from udec_ia.ops.commands import boundary as bounds
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.boundary import ZERO, Triple, number_of_conditions
-from udec_ia.ops.commands.change import change
-from udec_ia.ops.commands.create import create
-from udec_ia.ops.commands.delete import delete
-from udec_ia.ops.commands.energy import Balance, balance, switch
-from udec_ia.ops.commands.function import set_function
-from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
-from udec_ia.ops.commands.generate_automatic import generate_automatically
-from udec_ia.ops.commands.insitu import insitu
-from udec_ia.ops.commands.rounding import round_corners
-from udec_ia.ops.commands.split import split
-from udec_ia.ops.commands.uncut import why_uncut
-from udec_ia.ops.common.limits import not_negative, real, reals, rows, whole
-from udec_ia.ops.common.ranges import limits_turned, why_no_block
+from udec_ia.ops.commands import boundary_conditions as bounds
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, number_of_conditions, set_function
+from udec_ia.ops.commands.change_or_delete_blocks import change, delete
+from udec_ia.ops.commands.corner_rounding import round_corners
+from udec_ia.ops.commands.create_block import create
+from udec_ia.ops.commands.energy_account import Balance, balance, switch
+from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate, generate_automatically
+from udec_ia.ops.commands.initial_stress import insitu
+from udec_ia.ops.commands.split_blocks import split, why_uncut
+from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
+from udec_ia.ops.common.number_limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.run.remarks import on_fraction, on_properties, on_tension
 from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
@@ -296,13 +293,13 @@ class Model:
     def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FIX: hold the blocks in the range. Returns their number."""
         self.session.ensure_ready()
-        return settings.set_fixity(self.array, (x1, x2, y1, y2), True)
+        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), True)
 
     @changes_array
     def free(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FREE: let the blocks in the range move. Returns their number."""
         self.session.ensure_ready()
-        return settings.set_fixity(self.array, (x1, x2, y1, y2), False)
+        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), False)
 
     @changes_array
     def change(
@@ -411,7 +408,7 @@ class Model:
     def rset(self, v: float, ia: int, ioff: int) -> None:
         """RSET: put the real value v at offset ioff of the group at address ia."""
         self.session.ensure_ready(sound=False)
-        settings.rset(self.array, v, ia, ioff)
+        model_settings.rset(self.array, v, ia, ioff)
         self.session.forget_boxes()
         self.session.written = True
 
@@ -445,43 +442,42 @@ class Model:
         From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
         self.session.ensure_ready()
-        settings.set_property(self.array, material, **values)
+        model_settings.set_property(self.array, material, **values)
         self.session.remark(on_properties(self.array, material, dict[str, float | None](**values)))
 
     @changes_common
     def gravity(self, gx: float, gy: float) -> None:
         """GRAVITY: accelerations in the x and y directions."""
         self.session.ensure_ready(sound=False)
-        settings.set_gravity(self.array, gx, gy)
+        model_settings.set_gravity(self.array, gx, gy)
 
     @changes_common
+    @takes_keywords(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
     def damping(
         self,
+        /,
         fcrit: float | None = None,
         freq: float | None = None,
         only: str | None = None,
-        *,
-        local: float | None = None,
-        combined: float | None = None,
-        kinetic: bool = False,
-        adaptive: float | None = None,
+        **modes: float | None,
     ) -> None:
         """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
 
-        Or one of what else leads to rest: local, combined, kinetic or adaptive (see set_relaxation).
+        Or one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f
+        (kernels.drive.damping_modes).
         """
         self.session.ensure_ready(sound=False)
-        others = {"local": local, "combined": combined, "kinetic": kinetic or None, "adaptive": adaptive}
-        given = {how: f for how, f in others.items() if f is not None}
+        asked = {one: modes.get(one.argument) for one in MODES}
+        given = {one: f for one, f in asked.items() if f is not None and f is not False}
         if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
-            advice = "fcrit and freq, or one of " + ", ".join(word.upper() for word in others)
+            advice = "fcrit and freq, or one of " + ", ".join(one.name for one in MODES)
             raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
-        for how, f in given.items():
-            settings.set_relaxation(self.array, how, float(f))
+        for mode, f in given.items():
+            model_settings.set_damping_mode(self.array, mode, float(f))
         if not given:
             if fcrit is None or freq is None:
                 raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
-            settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
+            model_settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
     @keeps_step
     def energy(self, state: str = "on") -> None:
@@ -507,14 +503,14 @@ class Model:
         scaled: the same with inertial masses that make all degrees of freedom as quick as the quickest one.
         """
         self.session.ensure_ready(sound=False)
-        settings.set_fraction(self.array, f, safe, scaled)
+        model_settings.set_fraction(self.array, f, safe, scaled)
         self.session.remark(on_fraction(f))
 
     @keeps_step
     def scale(self, s: float) -> None:
         """SCALE: plot scale."""
         self.session.ensure_ready(sound=False)
-        settings.set_scale(self.array, s)
+        model_settings.set_scale(self.array, s)
 
     # ---- running
 

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from contextlib import suppress
 from math import inf
 
+from udec_ia.compiling.interpreting import mode
 from udec_ia.errors import UdecError
-from udec_ia.heap.interpreting import mode
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.model.model_session import Session
-from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.ops.run.aside import speed_after
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.damped import UNDAMPED, damping

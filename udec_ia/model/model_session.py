@@ -17,20 +17,20 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TextIO
 import numpy as np
 
 from udec_ia.checker import check, check_shapes
+from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.errors import UdecError
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import compile_seconds
-from udec_ia.heap.lent import Writes, lend
-from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.tracked_arrays import Writes, lend
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import CommandLog, Step
 from udec_ia.model.history_recorder import HistoryRecorder
 from udec_ia.model.undo import Undo
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.history import definitions
-from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.run.guard import Guard
@@ -89,7 +89,7 @@ class Session:
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
         self._set_process()
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     def _set_process(self) -> None:
         """What belongs to this process: where messages go, the undo copy, the clock."""
@@ -141,7 +141,7 @@ class Session:
     def start(self) -> None:
         """START: a cold start; all that was there is gone."""
         self.array = MainArray(self.scheme, self.mtop)
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
         self.recorder.series, self.recorder.solutions = [], []
         self._remarks, self.continued = set(), False
