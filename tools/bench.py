@@ -35,8 +35,8 @@ from udec_ia.inspect.table import table
 from udec_ia.kernels.body.law_call_numba import MATERIAL_SIZE, _jump
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
-from udec_ia.ops.run.watch import run_unwatched
 from udec_ia.restart import load_to_change, save_changed
+from udec_ia.running.history_series import run_unwatched
 
 ROOT = Path(__file__).parent.parent
 TURNS = 15

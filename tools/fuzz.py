@@ -37,10 +37,10 @@ from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.rounding import STRAINED
-from udec_ia.ops.run.solution import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal
+from udec_ia.running.solve_result import Solution
 
 BATCH = 250  # cases to a process
 FIRST_CASE, NEXT_CASE = 600.0, 180.0  # seconds of silence after which a process hangs; any may compile

@@ -23,7 +23,7 @@ from udec_ia.inspect.facilities.without import WITHOUT
 from udec_ia.inspect.look import Atlas, junk
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.run.cycle import prepare
+from udec_ia.running.cycle import prepare
 
 BARE = {"blocks and contacts", "domain pass", "watch of the energy"}
 KINDS = {

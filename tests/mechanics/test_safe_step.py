@@ -12,7 +12,7 @@ from safe_steps.search import LIMITS, ROUNDING, look
 from support.mechanics_scenes import block, box, model, push, sound, step
 
 from udec_ia import Model
-from udec_ia.ops.run.timestep import bound
+from udec_ia.running.critical_step import bound
 
 JOINTS = (1e8, 1e8)
 

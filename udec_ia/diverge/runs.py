@@ -19,7 +19,7 @@ from udec_ia.deck.reader import Line, Statement, statements, tokens
 from udec_ia.deck.variables import Values
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import SOLVE_LIMIT
+from udec_ia.running.history_series import SOLVE_LIMIT
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 

@@ -18,8 +18,8 @@ from udec_ia.diverge.runs import Run, Step
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.ops.common.memory import keep_spare
-from udec_ia.ops.run.cycle import prepare
-from udec_ia.ops.run.replay import Replay
+from udec_ia.running.cycle import prepare
+from udec_ia.running.cycle_replay import Replay
 
 States = tuple[Copy, Copy]
 

@@ -18,10 +18,10 @@ from udec_ia.inspect.walk import Unsound, groups
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history import Definition, definitions
 from udec_ia.ops.commands.recordable import HISTORY, by_codes
-from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
 from udec_ia.restart.refusal import RefusedError
+from udec_ia.running.history_series import Series
 
 TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in the order of Series.numbers
 CHUNK = 512  # numbers that stand together in a dataset that grows

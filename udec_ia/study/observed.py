@@ -18,8 +18,8 @@ from udec_ia.inspect.choose import choose
 from udec_ia.inspect.look.atlas import Atlas, Word
 from udec_ia.inspect.table import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.solution import Solution
-from udec_ia.ops.run.watch import Series
+from udec_ia.running.history_series import Series
+from udec_ia.running.solve_result import Solution
 
 FOLLOWED = ("block", "corner", "gridpoint", "zone")
 PLACES = {"block": ("KX", "KY"), "gridpoint": ("KXG", "KYG")}  # of what has a displacement
