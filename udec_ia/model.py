@@ -28,7 +28,7 @@ from udec_ia.deck.reference import explain, summary
 from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.interpreting import mode
-from udec_ia.inspect.arrange import arrange
+from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files

@@ -12,8 +12,8 @@ from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.diverge import Divergence, Judge, diverge, of_deck, of_state
 from udec_ia.errors import UdecError
-from udec_ia.inspect.table import table
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
 
 DECK = """\
 START

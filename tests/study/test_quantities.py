@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from udec_ia import Model
-from udec_ia.inspect.look.condition import Wrong
+from udec_ia.reader.conditions import Wrong
 from udec_ia.study.obeying import obey
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.study.runs import Run

@@ -14,10 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.compare import Compared, compare
-from udec_ia.inspect.compare.compare import Differing
-from udec_ia.inspect.compare.side import Side
-from udec_ia.inspect.look.atlas import KINDS
+from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
+from udec_ia.reader.atlas import KINDS
 
 SHARE, TIMES = 1e-6, 100
 ARMS = {"rad/s": ("m/s", -1), "N": ("N/m", 1)}  # units that are others times or over a length

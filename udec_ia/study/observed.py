@@ -14,10 +14,10 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.choose import choose
-from udec_ia.inspect.look.atlas import Atlas, Word
-from udec_ia.inspect.table import addresses
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import Atlas, Word
+from udec_ia.reader.group_tables import addresses
+from udec_ia.reader.nearest_group import choose
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
 
