@@ -19,6 +19,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.openings import LOOK, STRIDE
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
@@ -33,11 +34,14 @@ ROOM = 1.25  # more marks than are needed, when more are needed
 
 
 class ChatterMonitor:
-    """Monitors the contacts of one model. tell: takes warnings."""
+    """Monitors the contacts of one model. tell: takes warnings.
+
+    share: of the contacts that bore a force, what chattered in the last window.
+    """
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
-        self._share = 0.0  # of those that bore a force, what chattered in the last window
+        self.share = 0.0
         self._judged = 0  # cycle at the end of the last window
         self._said = False
         self._marks = np.zeros(0, np.uint8)
@@ -65,13 +69,13 @@ class ChatterMonitor:
         self._judged = cycle
         often = self._marks >= 2 * OFTEN
         bore, many = int((self._marks > 0).sum()), int(often.sum())
-        before, self._share = self._share, many / max(bore, 1) if many >= FEWEST else 0.0
-        if self._share >= SHARE:
+        before, self.share = self.share, many / max(bore, 1) if many >= FEWEST else 0.0
+        if self.share >= SHARE:
             if before >= SHARE and safe and not self._said:
                 self._said = True
                 text = f"contacts chatter: {many} of {bore} {self._what(h, self._worst(h))}"
                 self.tell(Remark("contacts-chatter", text))
-        elif self._share < SHARE / 2:
+        elif self.share < SHARE / 2:
             self._said = False
         self._marks &= 1
 
@@ -109,6 +113,5 @@ def _own_frequency(h: Memory, ic: int) -> float:
     """Frequency (Hz) of the lighter block of contact `ic` on two springs like it."""
     blocks = [iget(h, ic, k) for k in (g.KB1, g.KB2)]
     masses = [float(getr(h, ib, g.KBM)) for ib in blocks if iget(h, ib, g.KBFIX) != g.FIXED]
-    return math.sqrt(2 * float(h.cr[g.AKN + iget(h, ic, g.KCM) - 1]) / min(masses, default=math.inf)) / (
-        2 * math.pi
-    )
+    kn = float(joints_of(h, np.array([ic])).kn[0])
+    return math.sqrt(2 * kn / min(masses, default=math.inf)) / (2 * math.pi)

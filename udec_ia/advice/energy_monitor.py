@@ -17,7 +17,7 @@ may be more, by errors of the formulation (docs/energy.md) and as velocities are
 vibration with w dt below 1.8, 0.9 of the critical step, has up to ten times the energy that a small step
 would give it. If there is more, no load has made it. The work of friction counts, so that a stack that
 rattles is found as well as one that is thrown off; a user's joint law that gives energy reduces it by
-as much (contact.joint_law). Nothing is known of a user's block law: blocks that follow one may swell by
+as much (constitutive.joint_laws). Nothing is known of a user's block law: blocks that follow one may swell by
 themselves, and such runs are not suspected.
 """
 

@@ -15,6 +15,7 @@ from udec_ia.advice.damping_report import what_damps
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
@@ -193,8 +194,8 @@ def _farthest_slip(h: Memory) -> str:
     if not len(contacts):
         return ""
     fs, slip = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFS, g.KCS))
-    stiffness = h.cr[g.AKS + integers(h, contacts, g.KCM) - 1]
-    held = np.divide(fs, stiffness, out=np.zeros_like(fs), where=stiffness > 0)
+    ks = joints_of(h, contacts).ks
+    held = np.divide(fs, ks, out=np.zeros_like(fs), where=ks > 0)
     slip = np.abs(slip - held)
     k = int(slip.argmax())
     if slip[k] < ROUNDED * np.abs(held).max():

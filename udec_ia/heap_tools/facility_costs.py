@@ -23,7 +23,7 @@ from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.heap_tools.facility_trials import WITHOUT, Trial
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.reader.listing import Listing
 from udec_ia.running.cycle import cycle, prepare
 from udec_ia.running.history_series import Recording

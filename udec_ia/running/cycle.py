@@ -19,7 +19,7 @@ from udec_ia.ops.commands.rounding import check_strained_edges, settle_default
 from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import keep_spare
 from udec_ia.ops.common.soft import soft
-from udec_ia.ops.laws.laws import Bound, LawBook
+from udec_ia.ops.laws.law_book import Bound, LawBook
 from udec_ia.running.critical_step import time_step
 from udec_ia.running.cycle_errors import SPOILING, check_finite, raise_error
 from udec_ia.running.history_series import Recording

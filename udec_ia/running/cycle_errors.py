@@ -17,13 +17,14 @@ from udec_ia.errors import (
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import Sparing
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.rounding import crowded
 from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.memory import find_room, keep_spare
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.running.critical_step import fraction_in_words
 from udec_ia.running.group_names import strained_name
 
@@ -127,7 +128,7 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         return _without_contact(array, group)
     if iget(h, group, HEAD) != g.MCON:  # it vanished in a later pass of the same cycle
         return UdecError(OVERLAP_TOO_GREAT, f"in cycle {cycle}", "take a smaller FRACTION or a greater ROUND")
-    m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
+    m, overlap = material_of(h, group), getr(h, group, g.KCN)
     limit = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
     detail = (
         f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
@@ -135,7 +136,7 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         f"{limit}, in cycle {cycle}"
     )
     advice = (
-        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is "
+        f"KN of material {m} is {joints_of_materials(h, m).kn:g}, the time-step {h.cr[g.TDEL]:g} is "
         f"{fraction_in_words(h)}: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
     return UdecError(OVERLAP_TOO_GREAT, detail, advice + _unscaled(h), group=group)

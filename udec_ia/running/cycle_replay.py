@@ -11,7 +11,7 @@ from udec_ia.kernels.drive.passes import TUNNELLING, passes
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.history_series import NEVER, NO_MARKS, nothing_recorded
 from udec_ia.running.safe_step_update import cycles_to_update, update_step
