@@ -23,18 +23,18 @@ from udec_ia.advice.damping_report import UNDAMPED, describe_damping
 from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.rest_diagnosis import RestDiagnosis
 from udec_ia.advice.step_warnings import describe_step
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.reference import explain, summary
-from udec_ia.deck.variables import Values
+from udec_ia.compiling.interpreting import mode
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import explain, summary
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.heap.interpreting import mode
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
-from udec_ia.ops.common.limits import not_negative, whole
+from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.running.critical_step import bound
 from udec_ia.running.cycle import cycle, finish
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording, Series

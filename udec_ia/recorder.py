@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.ops.commands.history import define, named
+from udec_ia.heap.main_array import MainArray
+from udec_ia.ops.commands.history_definitions import define, named
 from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
 

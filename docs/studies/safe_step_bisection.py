@@ -28,7 +28,7 @@ from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.advice.damping_report import damped  # noqa: E402
 from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.ops.common.lists import chain  # noqa: E402
+from udec_ia.ops.common.block_ranges import chain  # noqa: E402
 from udec_ia.running.critical_step import bound, estimate  # noqa: E402
 from udec_ia.verify.grids import fan  # noqa: E402
 

@@ -5,24 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.remark import Remark
 
-WORDS = {
-    g.LOCAL: "LOCAL damping takes {f:g} of every unbalanced force",
-    g.COMBINED: "COMBINED damping takes {f:g} of every unbalanced force that swings",
-    g.KINETIC: "KINETIC damping stops all when the kinetic energy has passed a peak",
-    g.ADAPTIVE: "ADAPTIVE damping is {f:g} of critical for what still moves",
-}
 UNDAMPED = Remark("undamped", "damping: none; only friction takes energy")
 
 
 def what_damps(h: Memory) -> list[str]:
     """Each kind of damping that acts, with its numbers and on what."""
-    found = []
-    if h.ci[g.LREST]:
-        found.append(WORDS[int(h.ci[g.LREST])].format(f=float(h.cr[g.RESTF])))
+    found, mode = [], mode_of(h)
+    if mode:
+        found.append(f"{mode.name} damping {mode.report.format(f=float(h.cr[g.RESTF]))}")
     elif h.cr[g.ALPHA]:
         found.append(f"MASS damping takes ALPHA = {h.cr[g.ALPHA]:.3g} 1/s of every velocity")
     if h.cr[g.BETA]:

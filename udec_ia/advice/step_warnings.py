@@ -6,7 +6,8 @@ import math
 
 from udec_ia.advice.damping_report import what_damps
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.layout import offsets as g
 from udec_ia.remark import Remark
 from udec_ia.running.critical_step import estimate
@@ -81,8 +82,8 @@ def _damping(h: Memory) -> tuple[str, str]:
     if h.cr[g.BETA]:
         beta = float(h.cr[g.BETA])
         return f"stiffness damping BETA = {beta:.3g} s", "a smaller fcrit, or MASS damping alone"
-    how = "LOCAL" if h.ci[g.LREST] == g.LOCAL else "COMBINED"
-    return f"{how} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
+    name = BY_CODE[int(h.ci[g.LREST])].name
+    return f"{name} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
 
 
 def describe_step(array: MainArray, safe: Limit) -> str:

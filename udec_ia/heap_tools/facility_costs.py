@@ -17,7 +17,7 @@ import numpy as np
 from udec_ia.advice.energy_monitor import EnergyMonitor
 from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES, Facility
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.heap_tools.facility_trials import WITHOUT, Trial

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from udec_ia.compiling.compile_time import working_time
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import working_time
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.masses import make_masses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands import energy
-from udec_ia.ops.commands.rounding import check_strained_edges, settle_default
-from udec_ia.ops.common.lists import chain
-from udec_ia.ops.common.memory import keep_spare
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.commands import energy_account
+from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
+from udec_ia.ops.common.array_growth import keep_spare
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import Bound, LawBook
 from udec_ia.running.critical_step import time_step
 from udec_ia.running.cycle_errors import SPOILING, check_finite, raise_error
@@ -101,7 +101,7 @@ def cycle(
     array.h.ci[g.NCYC] = n
     # a run that was interrupted may have left an error behind, or a wish for memory
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
-    energy.begin(array)
+    energy_account.begin(array)
     recording = recording or Recording(array, [])
     try:
         try:
@@ -120,7 +120,7 @@ def cycle(
 
 def finish(array: MainArray, recording: Recording) -> None:
     """Complete the sums and series of a run that ends, whatever ended it. A repetition does no harm."""
-    energy.end(array)
+    energy_account.end(array)
     recording.hand_on()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import (
     INSIDE_OUT,
     LAW_FAILED,
@@ -15,20 +16,19 @@ from udec_ia.errors import (
     UdecError,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.rounding import crowded
-from udec_ia.ops.common.limits import last_digit
-from udec_ia.ops.common.memory import find_room, keep_spare
+from udec_ia.ops.commands.corner_rounding import crowded
+from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.running.critical_step import fraction_in_words
 from udec_ia.running.group_names import strained_name
 
-NOT_FINITE = Sparing(not_finite, 2e3)
+NOT_FINITE = InterpretWhenSmall(not_finite, 2e3)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 KINDS = {head.value: head.group for head in read_table().heads}
 

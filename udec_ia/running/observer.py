@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 

@@ -19,15 +19,16 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
-from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tensor import ROUND
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
-ADD_CONTACTS = Sparing(add_contacts, 2e3)
+ADD_CONTACTS = InterpretWhenSmall(add_contacts, 2e3)
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
@@ -223,5 +224,6 @@ def undamped_step(h: Memory, step: float) -> float:
 
 
 def _stiffened(h: Memory) -> float:
-    """By how much LOCAL and COMBINED damping raise the frequency of what turns about in every cycle."""
-    return math.sqrt(1 + float(h.cr[g.RESTF])) if h.ci[g.LREST] in (g.LOCAL, g.COMBINED) else 1.0
+    """By how much LOCAL and its kind of damping raise the frequency of what turns about in every cycle."""
+    mode = mode_of(h)
+    return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and mode.stiffens else 1.0

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas, Word
 from udec_ia.reader.group_tables import addresses
