@@ -59,9 +59,9 @@ def state(model: Model) -> dict[str, Any]:
         "flags": (model.session.started, model.session.written, model.session.unproved, model.explain_step),
         "remarks": (
             sorted(model.session._remarks),
-            model.session.guard.runaway._judged,
-            model.session.guard.runaway._warned,
-            model.session.guard.runaway._account,
+            model.session.monitors.energy._judged,
+            model.session.monitors.energy._warned,
+            model.session.monitors.energy._account,
         ),
     }
 

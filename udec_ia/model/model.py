@@ -18,6 +18,8 @@ from functools import update_wrapper, wraps
 from pathlib import Path
 from typing import Any, Concatenate, Generic, ParamSpec, Self, TextIO, TypeVar, Unpack, get_type_hints
 
+from udec_ia.advice.input_warnings import check_fraction, check_properties, check_tension
+from udec_ia.advice.step_warnings import describe_step
 from udec_ia.checker import check, unjudged
 from udec_ia.counting import counted
 from udec_ia.deck.command_monitor import run_deck
@@ -31,7 +33,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import DTOL, MCTOT
-from udec_ia.model.model_runs import run_cycles, solve_as_given, solve_statically
+from udec_ia.model.model_runs import recording_of, run_cycles, solve_as_given, solve_statically
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.saved_states import restart_from, save_state
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
@@ -48,13 +50,12 @@ from udec_ia.ops.commands.split_blocks import split, why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.run.remarks import on_fraction, on_properties, on_tension
-from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
-from udec_ia.ops.run.timestep import bound, describe
-from udec_ia.ops.run.watch import SOLVE_LIMIT, Series
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
 from udec_ia.reader.group_tables import table
+from udec_ia.running.critical_step import bound
+from udec_ia.running.history_series import SOLVE_LIMIT, Series
+from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -395,7 +396,7 @@ class Model:
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
         many = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
-        self.session.remark(on_tension((s11, s12, s22), (*xgrad, *ygrad)))
+        self.session.remark(check_tension((s11, s12, s22), (*xgrad, *ygrad)))
         return many
 
     @changes_array
@@ -443,7 +444,7 @@ class Model:
         """
         self.session.ensure_ready()
         model_settings.set_property(self.array, material, **values)
-        self.session.remark(on_properties(self.array, material, dict[str, float | None](**values)))
+        self.session.remark(check_properties(self.array, material, dict[str, float | None](**values)))
 
     @changes_common
     def gravity(self, gx: float, gy: float) -> None:
@@ -504,7 +505,7 @@ class Model:
         """
         self.session.ensure_ready(sound=False)
         model_settings.set_fraction(self.array, f, safe, scaled)
-        self.session.remark(on_fraction(f))
+        self.session.remark(check_fraction(f))
 
     @keeps_step
     def scale(self, s: float) -> None:
@@ -519,8 +520,7 @@ class Model:
         """CYCLE: n calculation cycles. Returns how many were completed."""
         self.session.ensure_ready()
         not_negative(self.array, n=whole(n=n))
-        watch = self.session.recorder.watch(self.array)
-        return run_cycles(self.session, n, watch, self._log_cycles)
+        return run_cycles(self.session, n, recording_of(self.session), self._log_cycles)
 
     def _log_cycles(self, n: int) -> None:
         """Log the `n` cycles of a run that has ended early."""
@@ -532,7 +532,8 @@ class Model:
     ) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
-        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say (ops.run.static).
+        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
+        (running/static_relaxation.py).
         criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
         The ratio: that force over the mean of those that are carried (drive.unbalanced); it is looked at
@@ -559,7 +560,7 @@ class Model:
         Estimate and bound are those of the present state, which the cycles since then have made.
         """
         self.session.ensure_ready()
-        return describe(self.array, bound(self.array))
+        return describe_step(self.array, bound(self.array))
 
     @not_repeatable
     def history(

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TextIO
 
 import numpy as np
 
+from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.checker import check, check_shapes
 from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.errors import UdecError
@@ -33,11 +34,12 @@ from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.run.guard import Guard
-from udec_ia.ops.run.solution import in_short
-from udec_ia.ops.run.watch import Series, Watch
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
+from udec_ia.remark import Remark
+from udec_ia.running.history_series import Recording, Series
+from udec_ia.running.observer import Observer
+from udec_ia.running.solve_result import in_short
 from udec_ia.signals import hold
 
 if TYPE_CHECKING:
@@ -48,7 +50,23 @@ if TYPE_CHECKING:
 log = logging.getLogger("udec_ia")
 
 NAME = "udec"  # names of files begin with this
-OF_THIS_PROCESS = ("progress", "tell", "inform", "around", "undo", "writes", "_lent", "_clock", "_compiled")
+GIVEN_ONCE = ("coarse-reals",)  # keys of remarks whose numbers change with every cycle
+NOT_COPIED = (
+    "progress",
+    "tell",
+    "inform",
+    "observers",
+    "undo",
+    "writes",
+    "_lent",
+    "_clock",
+    "_compiled",
+)
+
+
+def warn_in_log(text: str) -> None:
+    """Log a warning; the record has the key of a remark as its attribute `key`, else ""."""
+    log.warning(text, extra={"key": text.key if isinstance(text, Remark) else ""})
 
 
 class Session:
@@ -57,9 +75,9 @@ class Session:
     array: the main array. laws: the user's laws. started: START or RESTART was given. undo: undoes commands.
     written: words were written by RSET or through `h` since the state was last proved. unproved: the state
     comes from a restart file, and not all of it was proved. split_boxes: block boxes between SPLITs.
-    guard: watches runs from one CYCLE to the next. recorder: histories and SOLVE results. log: what was done.
-    progress, animate, tell, inform, explain_step: see Model. around: wraps the watch of a CYCLE, for a
-    debugger. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
+    monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
+    progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
+    or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
     restart file, and pictures of the run before it are kept.
     """
 
@@ -81,7 +99,7 @@ class Session:
         self.explain_step = self.animate = False
         self.logs_calls = True
         self.split_boxes = Boxes()
-        self.guard = Guard(self.warn)
+        self.monitors = RunMonitors(self.laws, self.warn)
         self.log = CommandLog()
         self.recorder = HistoryRecorder()
         self.files: list[Path] = []
@@ -94,9 +112,9 @@ class Session:
     def _set_process(self) -> None:
         """What belongs to this process: where messages go, the undo copy, the clock."""
         self.progress: TextIO | None = None
-        self.tell: Callable[[str], None] = log.warning
+        self.tell: Callable[[str], None] = warn_in_log
         self.inform: Callable[[str], None] = log.info
-        self.around: Callable[[Watch | None], Watch | None] = lambda watch: watch
+        self.observers: Sequence[Observer] = ()
         self.undo = Undo()
         self.writes = Writes()
         self._lent: tuple[Memory, Memory] | None = None  # memory of IA(), and what was lent for it
@@ -106,7 +124,7 @@ class Session:
         """For pickle and copy: all but what belongs to this process."""
         if self.writes.made:
             self.note_writes()
-        return {name: value for name, value in vars(self).items() if name not in OF_THIS_PROCESS}
+        return {name: value for name, value in vars(self).items() if name not in NOT_COPIED}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._set_process()
@@ -132,7 +150,7 @@ class Session:
         """The objects that hold what is not in the main array."""
         frame = None if self.plots is None else self.plots.frame
         held = self.log, self.recorder, self.plots, frame, self.animation, self.laws
-        for part in (self, *held, *self.recorder.series, self.guard, self.guard.runaway):
+        for part in (self, *held, *self.recorder.series, self.monitors, self.monitors.energy):
             if part is not None:
                 yield part
 
@@ -152,7 +170,7 @@ class Session:
         """The array is another one: what was known of the state before is forgotten."""
         self.forget_boxes()
         self.written, self.unproved = written, unproved
-        self.guard = Guard(self.warn)
+        self.monitors = RunMonitors(self.laws, self.warn)
 
     def return_to(self, array: MainArray, lines: Sequence[str]) -> None:
         """Go on from a former state of this run, to which `lines` have led: what came later is forgotten."""
@@ -248,17 +266,16 @@ class Session:
         """Report `text` as a warning."""
         self.tell(text)  # not bound beforehand: a monitor changes it
 
-    def remark(
-        self, remarks: Iterable[str], tell: Callable[[str], None] | None = None, what: str = ""
-    ) -> None:
-        """Report `remarks`, each once, by `tell` if it is not a warning.
+    def remark(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
+        """Report `remarks`, each once, by `tell` if they are not warnings.
 
-        what: their subject, if their numbers change with every cycle; one of each subject is reported.
+        Of those whose numbers change with every cycle one is reported.
         """
-        for text in remarks:
-            if (what or text) not in self._remarks:
-                self._remarks = self._remarks | {what or text}
-                (tell or self.tell)(text)
+        for one in remarks:
+            mark = one.key if one.key in GIVEN_ONCE else one
+            if mark not in self._remarks:
+                self._remarks = self._remarks | {mark}
+                (tell or self.tell)(one)
 
     def skip_remark(self, what: str) -> None:
         """Do not report remarks on `what`."""
@@ -295,9 +312,9 @@ class Session:
         """The last number of a picture to be kept: of the run that this one continues, or 0."""
         return last_number(self.out, self.name + kind) if self.continued else 0
 
-    def write_histories(self, watch: Watch | None) -> None:
+    def write_histories(self, recording: Recording) -> None:
         """Write what was recorded."""
-        self.add_files(self.recorder.write(watch, self.out / f"{self.name}-history", self.tell))
+        self.add_files(self.recorder.write(recording, self.out / f"{self.name}-history", self.tell))
 
     def report(self, n: int) -> Report:
         """Shows the progress of `n` cycles, and takes pictures of them on request."""
