@@ -3,8 +3,7 @@
 A terminal obeys what it is sent. A name out of a file can hold escape sequences, marks that turn the line
 round, or bytes that are no text, and it can be as long as it likes: all that is not plainly visible becomes
 an escape, as Python writes it, and the end of what is long is left out. What is said in words keeps to the
-width of a terminal.
-"""
+width of a terminal."""
 
 from __future__ import annotations
 
@@ -35,3 +34,8 @@ def _folded(line: str) -> str:
     first = " " * (len(line) - len(bare))
     words = TextWrapper(WIDTH, first, first + INDENT, break_long_words=False, break_on_hyphens=False)
     return words.fill(bare)
+
+
+def counted(n: int, what: str, form: str = "") -> str:
+    """`n` and the noun `what`, with an s unless `n` is 1. form: of the number, such as "," for thousands."""
+    return f"{n:{form}} {what}" + ("" if n == 1 else "s")

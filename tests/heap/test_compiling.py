@@ -15,7 +15,7 @@ from support.handmade_map import two_blocks
 from udec_ia.compiling import compile_time
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.model import Model
-from udec_ia.output.report import Report
+from udec_ia.output.run_progress import Report
 
 SAYS = "compiling once for this machine, up to a minute ..."
 

@@ -25,7 +25,7 @@ from udec_ia.heap_tools.list_printout import walk
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.heap_tools.pointer_graph import graph
 from udec_ia.heap_tools.word_report import what
-from udec_ia.output.dump import raw
+from udec_ia.output.word_dump import raw
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.listing import Listing, Stream
 from udec_ia.restart import save

@@ -10,8 +10,7 @@ from support.handmade_map import two_blocks
 
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.output import progress
-from udec_ia.output.progress import LINES, Progress, summary
-from udec_ia.output.report import Report
+from udec_ia.output.run_progress import LINES, Progress, Report, summary
 
 
 class Terminal(io.StringIO):

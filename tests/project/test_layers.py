@@ -31,12 +31,11 @@ BELOW = {  # layers that a layer imports
     "heap": {"compiling", "errors", "layout"},
     "checked_build": {"compiling", "errors", "heap", "layout"},
     "kernels": {"errors", "compiling", "heap", "layout"},
-    "reader": {"counting", "errors", "compiling", "heap", "kernels", "layout"},
-    "ops": {"counting", "errors", "compiling", "heap", "kernels", "layout", "printable", "reader", "signals"},
-    "checker": {"counting", "errors", "compiling", "heap", "kernels", "layout", "reader"},
+    "reader": {"errors", "compiling", "heap", "kernels", "layout", "printable"},
+    "ops": {"errors", "compiling", "heap", "kernels", "layout", "printable", "reader", "signals"},
+    "checker": {"errors", "compiling", "heap", "kernels", "layout", "reader", "printable"},
     "running": {
         "compiling",
-        "counting",
         "errors",
         "heap",
         "kernels",
@@ -45,12 +44,12 @@ BELOW = {  # layers that a layer imports
         "reader",
         "remark",
         "signals",
+        "printable",
     },
-    "advice": {"counting", "errors", "heap", "kernels", "layout", "ops", "reader", "remark", "running"},
+    "advice": {"errors", "heap", "kernels", "layout", "ops", "reader", "remark", "running", "printable"},
     "heap_tools": {
         "advice",
         "checker",
-        "counting",
         "errors",
         "compiling",
         "heap",
@@ -59,9 +58,9 @@ BELOW = {  # layers that a layer imports
         "ops",
         "reader",
         "running",
+        "printable",
     },
     "restart": {
-        "counting",
         "errors",
         "files",
         "compiling",
@@ -76,7 +75,6 @@ BELOW = {  # layers that a layer imports
         "version",
     },
     "output": {
-        "counting",
         "errors",
         "files",
         "compiling",
@@ -93,7 +91,6 @@ BELOW = {  # layers that a layer imports
     },
     "view": {"files", "compiling", "heap", "checker", "heap_tools", "reader", "layout", "printable"},
     "debug": {
-        "counting",
         "deck",
         "errors",
         "compiling",
@@ -109,7 +106,6 @@ BELOW = {  # layers that a layer imports
         "signals",
     },
     "diverge": {
-        "counting",
         "debug",
         "deck",
         "errors",
@@ -122,9 +118,9 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "running",
+        "printable",
     },
     "study": {
-        "counting",
         "deck",
         "errors",
         "files",
@@ -143,7 +139,6 @@ BELOW = {  # layers that a layer imports
         "version",
     },
     "trade": {
-        "counting",
         "deck",
         "errors",
         "files",
@@ -161,7 +156,6 @@ BELOW = {  # layers that a layer imports
         "study",
     },
     "command_line": {
-        "counting",
         "debug",
         "diverge",
         "errors",
@@ -185,7 +179,6 @@ BELOW = {  # layers that a layer imports
         "advice",
         "remark",
         "running",
-        "counting",
         "debug",
         "deck",
         "errors",
@@ -205,7 +198,6 @@ BELOW = {  # layers that a layer imports
         "view",
     },
     "deck": {
-        "counting",
         "errors",
         "compiling",
         "heap",

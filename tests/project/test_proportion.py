@@ -21,8 +21,8 @@ from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.heap_map import heap_map
 from udec_ia.layout import offsets as g
 from udec_ia.output import histories
-from udec_ia.output.outline import snapshot
-from udec_ia.output.plot import Frame, What
+from udec_ia.output.drawn_outlines import snapshot
+from udec_ia.output.plot_frames import Frame, What
 from udec_ia.reader.atlas import Atlas
 from udec_ia.running.critical_step import bound, describe
 

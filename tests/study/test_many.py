@@ -11,7 +11,7 @@ import pytest
 from support.study_decks import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
 
 from udec_ia.cli import main
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 from udec_ia.study.folders import RESULT
 from udec_ia.study.holding import LOCK
 from udec_ia.study.many import RUNS, run_all

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
@@ -20,6 +19,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.printable import counted
 from udec_ia.remark import Remark
 from udec_ia.running.group_names import contact_name
 from udec_ia.running.observer import Observer, between_cycles

@@ -9,7 +9,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, file
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing

@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, variables
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError
-from udec_ia.printable import printable
+from udec_ia.printable import counted, printable
 
 if TYPE_CHECKING:
     from udec_ia.diverge import Divergence, Run

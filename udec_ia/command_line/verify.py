@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing

@@ -16,7 +16,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol, TextIO, TypeVar
 
-from udec_ia.counting import counted
 from udec_ia.deck.command_forms import RUNS, Counts, match
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import WORD, Statement, at, statements
@@ -25,7 +24,7 @@ from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.printable import printable
+from udec_ia.printable import counted, printable
 from udec_ia.signals import hold, passing, poll
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")

@@ -10,7 +10,6 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import NamedTuple
 
-from udec_ia.counting import counted
 from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.diverge.judge import Judge, Off
 from udec_ia.diverge.passes import Passes
@@ -18,6 +17,7 @@ from udec_ia.diverge.runs import Run, Step
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.ops.common.array_growth import keep_spare
+from udec_ia.printable import counted
 from udec_ia.running.cycle import prepare
 from udec_ia.running.cycle_replay import Replay
 

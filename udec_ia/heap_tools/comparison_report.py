@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.compared_heap import Side
 from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.heap_tools.value_comparison import tolerance as limits
 from udec_ia.layout.codes import spelled
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, NAMES, NOTHING, TABLE, Atlas
 from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
 from udec_ia.reader.group_names import names

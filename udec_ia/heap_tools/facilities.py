@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
+from udec_ia.printable import counted
 from udec_ia.reader.listing import Listing
 
 REMEMBER = [one.code for one in MODES if one.keeps_forces]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import TABLE, Atlas, Word
 from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.list_walks import Unsound, boundary, groups, loop

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, Atlas
 from udec_ia.reader.listing import Listing
 

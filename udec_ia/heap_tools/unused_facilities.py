@@ -10,7 +10,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from udec_ia.advice.input_warnings import check_laws, check_loads
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES
@@ -20,6 +19,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.model_settings import PROPERTIES
 from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.common.number_limits import NMAT
+from udec_ia.printable import counted
 from udec_ia.reader.listing import Listing
 
 Found = Iterator[tuple[str, str]]

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.comparison_report import CALLED, LIMIT
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import TABLE, Atlas
 from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.listing import Listing

@@ -43,9 +43,9 @@ from udec_ia.running.solve_result import in_short
 from udec_ia.signals import hold
 
 if TYPE_CHECKING:
-    from udec_ia.output.animate import Animation
-    from udec_ia.output.plot import Plots, What
-    from udec_ia.output.report import Report
+    from udec_ia.output.animation import Animation
+    from udec_ia.output.plot_frames import Plots, What
+    from udec_ia.output.run_progress import Report
 
 log = logging.getLogger("udec_ia")
 
@@ -283,7 +283,7 @@ class Session:
 
     def summary(self) -> str:
         """The line that sums up the run until now, of files that are written by now."""
-        from udec_ia.output.progress import summary
+        from udec_ia.output.run_progress import summary
 
         try:
             forces = table(self.array, "contact")["KCFN"]
@@ -318,10 +318,10 @@ class Session:
 
     def report(self, n: int) -> Report:
         """Shows the progress of `n` cycles, and takes pictures of them on request."""
-        from udec_ia.output.report import Report
+        from udec_ia.output.run_progress import Report
 
         if self.animate and self.animation is None:
-            from udec_ia.output.animate import Animation
+            from udec_ia.output.animation import Animation
 
             self.animation = Animation(self.name)
         return Report(lambda: self.array.h, n, self.progress, self.animation)
@@ -333,7 +333,7 @@ class Session:
 
     def draw(self, n: int, what: What) -> list[Path]:
         """Start a frame (0) or draw over the last one (1); the files written."""
-        from udec_ia.output.plot import Plots
+        from udec_ia.output.plot_frames import Plots
 
         if self.plots is None:
             self.plots = Plots(self.out, self.name, self._last_picture("-plot"))

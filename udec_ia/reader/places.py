@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 
 FORM = re.compile(r"(?:(\w+)@(\d+)\.)?(\w+)(?:\((\d+)\))?")

@@ -7,8 +7,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from udec_ia.counting import counted
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable import MESSAGE, counted, printable
 from udec_ia.study.runs import DIED, ERROR, Result
 
 KEPT = "kept"

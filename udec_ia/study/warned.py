@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from udec_ia.counting import counted
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable import MESSAGE, counted, printable
 from udec_ia.study.runs import Result
 
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")

@@ -6,8 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from udec_ia.output.draw import INK
-from udec_ia.output.picture import write
+from udec_ia.output.block_drawing import INK, write
 from udec_ia.trade.judge import Row
 from udec_ia.trade.trade import Price
 

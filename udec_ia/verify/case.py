@@ -13,7 +13,7 @@ from udec_ia.model import Model
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from udec_ia.output.plot import Frame
+    from udec_ia.output.plot_frames import Frame
 
 BLOCKS = ("rigid", "sdef", "fdef")
 CROSS = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]  # four zones about grid-point 5
@@ -48,8 +48,8 @@ class Case:
 
     def draw(self, m: Model, **what: Any) -> None:
         """Draw the blocks as they stand, over those drawn before; `what` as for Model.plot."""
-        from udec_ia.output.outline import snapshot
-        from udec_ia.output.plot import Frame, What
+        from udec_ia.output.drawn_outlines import snapshot
+        from udec_ia.output.plot_frames import Frame, What
 
         asked = What(**what)
         if self._frame is None:

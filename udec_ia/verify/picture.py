@@ -6,8 +6,8 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.output.draw import INK, title
-from udec_ia.output.graph import COLOURS
+from udec_ia.output.block_drawing import INK, title
+from udec_ia.output.history_graph import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

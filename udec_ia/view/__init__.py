@@ -5,6 +5,6 @@ both into one file with the style and the scripts of web/ (page.py). The page it
 groups and pictures, with nothing from elsewhere.
 """
 
-from udec_ia.view.page import Page
+from udec_ia.view.view_page import Page
 
 __all__ = ["Page"]

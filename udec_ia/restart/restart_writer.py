@@ -2,8 +2,7 @@
 
 The HDF5 part is made in memory and sealed there, so that neither a full disk nor a kill can leave HDF5
 with half a file. It then goes to a temporary file in the same folder, is forced to the disk and renamed:
-whatever happens, the name stands for the old file or the new one, never for a part of either.
-"""
+whatever happens, the name stands for the old file or the new one, never for a part of either."""
 
 from __future__ import annotations
 
@@ -25,11 +24,12 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
-from udec_ia.restart.contents import CHUNK
-from udec_ia.restart.layout import MARK, MARKED, common_places, field_rows, shorten, text
-from udec_ia.restart.recorded import RECORDED, of_all, store
-from udec_ia.restart.refusal import RefusedError
-from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
+from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.restart.file_seal import SIZE, VERSION, RefusedError, read_front, refusing, seal
+from udec_ia.restart.file_tables import MARK, MARKED, common_places, field_rows, shorten, text
+from udec_ia.restart.hdf5_contents import CHUNK
+from udec_ia.restart.restart_reader import Restored, opened, read_deck, read_header, read_laws, read_state
+from udec_ia.restart.stored_histories import RECORDED, are_told, of_all, recall, store
 from udec_ia.running.history_series import Series
 from udec_ia.version import __version__
 
@@ -208,3 +208,31 @@ def _write_volatile(file: h5py.File) -> None:
 
 def _now() -> str:
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def load_to_change(path: str | Path) -> Restored:
+    """All that the restart file `path` holds, its heap in whatever state it is.
+
+    Raises UdecError 29 if the file is not what `save` wrote, or if its histories cannot be told.
+    """
+    path = Path(path)
+    with refusing(path), opened(path) as file:
+        seen = read_state(file, read_header(file))
+        if not are_told(seen.array):
+            raise RefusedError("does not say what its histories have recorded: the list of them is broken")
+        series = recall(file, seen.array, bool(seen.mark))
+        return Restored(seen.array, read_deck(file), read_laws(file), series, seen.said, seen.mark)
+
+
+def save_changed(
+    state: Restored, array: MainArray, path: str | Path, line: str, unsound: Sequence[str] = ()
+) -> Path:
+    """Write `array`, which was made of that of `state`, with all else of `state` to the file `path`.
+
+    line: what the deck is to say of it, a command or a comment. unsound: what is wrong with it, with which
+    the file is marked. Raises UdecError 31 as `save` does.
+    """
+    if are_told(array):
+        for series, definition in zip(state.series, definitions(array), strict=False):
+            series.follow(definition)
+    return save(array, path, [*state.deck, line], state.laws, state.series, unsound)

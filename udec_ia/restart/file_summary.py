@@ -7,23 +7,22 @@ from pathlib import Path
 from typing import Any
 
 from udec_ia.checker.unjudged_parts import unfinished
-from udec_ia.counting import counted
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.written_state import Words
 from udec_ia.layout.table import read_table
-from udec_ia.printable import printable
-from udec_ia.restart.contents import Contents
-from udec_ia.restart.layout import shorten
-from udec_ia.restart.reader import (
+from udec_ia.printable import counted, printable
+from udec_ia.restart.file_seal import OTHER_TABLE, RefusedError, refusing
+from udec_ia.restart.file_tables import shorten
+from udec_ia.restart.hdf5_contents import Contents
+from udec_ia.restart.restart_reader import (
     opened,
     read_deck,
-    read_front,
+    read_header,
     read_laws,
     read_mark,
     read_state,
 )
-from udec_ia.restart.refusal import OTHER_TABLE, RefusedError, refusing
 
 PROGRAMS = ("udec_ia", "python", "numpy", "numba", "h5py", "hdf5")
 LINE = 1000  # characters
@@ -37,7 +36,7 @@ def info(path: str | Path) -> str:
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        front = read_front(file)
+        front = read_header(file)
         scheme, (layout, values) = front.scheme, _understood(file, front)
         lines = [("file", str(path)), ("format", _format(file)), ("written", _written(file))]
         lines += [("words", f"{scheme.name}: {scheme.int_bits}-bit integers, {scheme.real_bits}-bit reals")]

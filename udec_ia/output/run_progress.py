@@ -1,10 +1,10 @@
-"""How a run is going: a bar on a terminal, a few plain lines elsewhere, and a line when a command ends."""
+"""The progress of a run on the screen, its pictures for an animation, and the line that sums it up."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -13,8 +13,15 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from udec_ia.compiling.compile_time import working_time
-from udec_ia.counting import counted
-from udec_ia.printable import printable
+from udec_ia.heap.accessors import Memory
+from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
+from udec_ia.printable import counted, printable
+from udec_ia.running.critical_step import fraction_in_words
+
+if TYPE_CHECKING:
+    from udec_ia.output.animation import Animation
 
 LINES = 10  # plain lines for one CYCLE command, at most
 QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
@@ -113,3 +120,48 @@ def summary(
         f"{counted(contacts, 'contact')}, largest normal force {force:.4g} N/m{solve}; {written}; "
         f"{wall:.1f} s{compiled}"
     )
+
+
+class Report:
+    """Called by CYCLE now and then with the number of cycles done.
+
+    memory: gives the memory of the model as it is now. total: cycles of the command. stream: where progress
+    shows; None for nowhere. animation: where pictures go; None for nowhere.
+    """
+
+    def __init__(
+        self, memory: Callable[[], Memory], total: int, stream: TextIO | None, animation: Animation | None
+    ) -> None:
+        self.memory = memory
+        self.total = total
+        self.stream = stream
+        self.animation = animation
+        self.progress: Progress | None = None
+        self.shown = 0  # cycles done when progress was shown last
+        self.before = int(memory().ci[g.MCTOT])
+        self.started = working_time()
+
+    def __call__(self, done: int) -> None:
+        if self.animation is not None:
+            self.animation.add(self.memory())
+        if self.stream is not None:
+            self._show(done, self.stream)
+
+    def _show(self, done: int, stream: TextIO) -> None:
+        h = self.memory()
+        if self.progress is None:
+            tdel = float(h.cr[g.TDEL])
+            self.progress = Progress(stream, self.total, tdel, fraction_in_words(h), self.started)
+        self.shown = done
+        made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
+        self.progress.update(
+            done, float(h.cd[g.TIME]), float(unbalanced(h, soft_or_loaded_in(h))[0]), made, broken
+        )
+
+    def close(self) -> None:
+        """Take the progress off the screen; the last line tells how far a command came that was cut short."""
+        done = int(self.memory().ci[g.MCTOT]) - self.before
+        if self.stream is not None and done != self.shown:
+            self._show(done, self.stream)
+        if self.progress is not None:
+            self.progress.close()

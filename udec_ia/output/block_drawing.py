@@ -1,16 +1,18 @@
 """Drawing on paper: blocks, contacts, domains and addresses, each on the axes of a matplotlib figure.
 
 What stands still has the colour of its material, hatched if it is fixed; what moves from state to state
-gets a shade for each state, the darker the later.
-"""
+gets a shade for each state, the darker the later."""
 
 from __future__ import annotations
 
+import io
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.outline import Contacts, Domain, Outlines, State, beside_corners, curves
+from udec_ia.files import put_in_place
+from udec_ia.output.drawn_outlines import Contacts, Domain, Outlines, State, beside_corners, curves
 from udec_ia.printable import printable
 
 if TYPE_CHECKING:
@@ -294,3 +296,31 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
             corners = o.corner_address[o.first[i] : o.first[i + 1]]
             for (x, y), address in zip(beside_corners(o, int(i)), corners, strict=True):
                 axes.annotate(str(address), (x, y), va="center", fontsize=6, alpha=0.7, **style)
+
+
+DPI = 150
+TYPES = (".png", ".svg")
+
+
+def write(figure: Figure, base: Path) -> list[Path]:
+    """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
+    paths = [base.with_name(f"{base.name}{kind}") for kind in TYPES]
+    for path in paths:
+        write_as(figure, path)
+    return paths
+
+
+def write_as(figure: Figure, path: Path) -> None:
+    """Write the file `path`, as the end of its name says. Error 31 if it cannot be done."""
+    image, kind = io.BytesIO(), path.suffix[1:].lower()
+    figure.savefig(image, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else None)
+    put_in_place(path, image.getvalue(), force=False)
+
+
+def picture_path(name: str | Path, more: tuple[str, ...] = ()) -> Path:
+    """The path of a picture that is to be written. ValueError unless it ends as the type of one does."""
+    path = Path(name)
+    if path.suffix.lower() not in (*TYPES, *more):
+        ends = " or ".join((*TYPES, *more))
+        raise ValueError(f"{printable(str(name))}: the name of a picture ends in {ends}")
+    return path

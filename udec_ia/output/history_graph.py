@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.draw import INK, drawable
-from udec_ia.output.picture import write
+from udec_ia.output.block_drawing import INK, drawable, write
 from udec_ia.running.history_series import Series
 
 if TYPE_CHECKING:

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.output.draw import (
+from udec_ia.output.block_drawing import (
     HATCH_WIDTH,
     INK,
     draw_addresses,
@@ -30,8 +29,10 @@ from udec_ia.output.draw import (
     paper,
     scale_for,
     title,
+    write,
 )
-from udec_ia.output.draw_field import (
+from udec_ia.output.drawn_outlines import State, snapshot
+from udec_ia.output.field_drawing import (
     LONGEST,
     draw_contours,
     draw_displacements,
@@ -39,8 +40,7 @@ from udec_ia.output.draw_field import (
     draw_velocities,
     draw_zones,
 )
-from udec_ia.output.outline import State, snapshot
-from udec_ia.output.picture import write
+from udec_ia.printable import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -26,11 +26,10 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.printable import printable
-from udec_ia.restart.contents import Contents, contents
-from udec_ia.restart.layout import MARK, MAX_FAULT, shorten, table_faults
-from udec_ia.restart.recorded import are_told, recall
-from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
-from udec_ia.restart.seal import read_sealed
+from udec_ia.restart.file_seal import OTHER_FILE, OTHER_TABLE, RefusedError, read_sealed, refusing
+from udec_ia.restart.file_tables import MARK, MAX_FAULT, shorten, table_faults
+from udec_ia.restart.hdf5_contents import Contents, contents
+from udec_ia.restart.stored_histories import are_told, recall
 from udec_ia.running.history_series import Series
 
 FORCE = "udec check FILE lists all faults; RESTART FILE FORCE reads it for inspection and repair"
@@ -83,7 +82,7 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
     path = Path(path)
     with refusing(path):
         with opened(path) as file:
-            seen = read_state(file, read_front(file))
+            seen = read_state(file, read_header(file))
             series = recall(file, seen.array, bool(seen.mark)) if are_told(seen.array) else []
             deck, laws = read_deck(file), read_laws(file)
         faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
@@ -99,7 +98,7 @@ def see(path: str | Path) -> Seen:
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
-        return read_state(file, read_front(file))
+        return read_state(file, read_header(file))
 
 
 def look_into(path: str | Path) -> MainArray:
@@ -207,7 +206,7 @@ def _check_sum(file: Contents, place: str, content: Any) -> None:
         raise RefusedError(f"is damaged: the checksum of /{place} is wrong")
 
 
-def read_front(file: Contents) -> Words:
+def read_header(file: Contents) -> Words:
     """The state in the file but for the words of IA(), in the words and by the table of the file."""
     scheme, table = read_scheme(file), read_their_table(file)
     return Words(table, scheme, (), read_common(file, scheme, table))

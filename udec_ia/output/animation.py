@@ -15,8 +15,8 @@ import numpy as np
 from udec_ia.files import put_in_place
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.output.draw import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title
-from udec_ia.output.outline import State, snapshot
+from udec_ia.output.block_drawing import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title
+from udec_ia.output.drawn_outlines import State, snapshot
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture

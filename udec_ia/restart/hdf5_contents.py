@@ -20,8 +20,7 @@ import h5py
 import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5p, h5s, h5t, h5z
 
-from udec_ia.restart.refusal import RefusedError
-from udec_ia.restart.seal import HDF5_SIGNATURE, SIZE
+from udec_ia.restart.file_seal import HDF5_SIGNATURE, SIZE, RefusedError
 
 CHUNK = 65536  # words of the heap in one piece
 CHECKSUM = 4  # bytes of Fletcher-32 behind each piece; a SHA-256 covers all of them
