@@ -20,7 +20,7 @@ from udec_ia.debug.stop_conditions import WordChange
 from udec_ia.debug.word_history import explain_write, find_last_hit
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas
 from udec_ia.reader.places import place

@@ -29,8 +29,8 @@ from udec_ia.deck.language import COMMANDS, required
 from udec_ia.deck.monitor import RESTART_FILE, Monitor
 from udec_ia.deck.reader import Statement, statements
 from udec_ia.errors import MESSAGES, UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.rounding import STRAINED

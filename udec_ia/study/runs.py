@@ -21,7 +21,7 @@ from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.ops.run.watch import Watch
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.version import __version__
