@@ -59,9 +59,9 @@ def state(model: Model) -> dict[str, Any]:
         "flags": (model.started, model._touched, model._unproved, model.explain_step),
         "remarks": (
             sorted(model._said),
-            model._guard.runaway._judged,
-            model._guard.runaway._warned,
-            model._guard.runaway._account,
+            model._monitors.energy._judged,
+            model._monitors.energy._warned,
+            model._monitors.energy._account,
         ),
     }
 

@@ -19,7 +19,7 @@ from udec_ia.deck.deck_variables import Values
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import SOLVE_LIMIT
+from udec_ia.running.history_series import SOLVE_LIMIT
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 

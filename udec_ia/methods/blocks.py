@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import update_wrapper
 from typing import Concatenate, ParamSpec, TypeVar
 
+from udec_ia.advice.input_warnings import check_tension
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
@@ -23,7 +24,6 @@ from udec_ia.ops.commands.initial_stress import insitu
 from udec_ia.ops.commands.split_blocks import split, why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, reals, rows, whole
-from udec_ia.ops.run.remarks import on_tension
 from udec_ia.transaction import command
 
 P = ParamSpec("P")
@@ -190,7 +190,7 @@ class Blocks(State):
         self._ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
         many = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
-        self.remark(on_tension((s11, s12, s22), (*xgrad, *ygrad)))
+        self.remark(check_tension((s11, s12, s22), (*xgrad, *ygrad)))
         return many
 
     @command

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Unpack
 
+from udec_ia.advice.input_warnings import check_fraction, check_properties
 from udec_ia.errors import UdecError
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.keywords import takes
@@ -11,7 +12,6 @@ from udec_ia.layout.material import Properties
 from udec_ia.methods.state import State
 from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
-from udec_ia.ops.run.remarks import on_fraction, on_properties
 from udec_ia.transaction import looking, numbers, steady
 
 
@@ -27,7 +27,7 @@ class Numbers(State):
         """
         self._ready()
         model_settings.set_property(self.array, material, **values)
-        self.remark(on_properties(self.array, material, dict[str, float | None](**values)))
+        self.remark(check_properties(self.array, material, dict[str, float | None](**values)))
 
     @numbers
     def gravity(self, gx: float, gy: float) -> None:
@@ -88,7 +88,7 @@ class Numbers(State):
         """
         self._ready(sound=False)
         model_settings.set_fraction(self.array, f, safe, scaled)
-        self.remark(on_fraction(f))
+        self.remark(check_fraction(f))
 
     @steady
     def scale(self, s: float) -> None:

@@ -1,7 +1,7 @@
-"""A run that was prepared is gone through once more, cycle by cycle: the same words, bit for bit.
+"""The cycles of a run that was prepared, repeated cycle by cycle: the same words, bit for bit.
 
-CYCLE prepares, judges, records and reports; nothing of that is done here, where what has happened is to be
-seen again. Whatever the run stopped for, it stops for here.
+CYCLE prepares, warns, records and reports. Nothing of that is done here. Whatever the run stopped for, its
+replay stops for as well.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import raise_error
-from udec_ia.ops.run.renewal import ahead, renew
-from udec_ia.ops.run.watch import NEVER, NO_MARKS, nothing_recorded
+from udec_ia.running.cycle_errors import raise_error
+from udec_ia.running.history_series import NEVER, NO_MARKS, nothing_recorded
+from udec_ia.running.safe_step_update import cycles_to_update, update_step
 
 
 class Replay:
@@ -32,11 +32,11 @@ class Replay:
         done = 0
         while done < n:
             h = self.array.h
-            cycles = ahead(self.array, n - done)
+            cycles = cycles_to_update(self.array, n - done)
             completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, NO_MARKS, self._passes)
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
-                renew(self.array)
+                update_step(self.array)
             if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[TUNNELLING] == 0:
                 self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

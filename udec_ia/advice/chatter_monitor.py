@@ -1,12 +1,12 @@
-"""Contacts that chatter: noticed while cycles run, and said with place and cure.
+"""The monitor of contacts that chatter: it warns in a run, with the place and a remedy.
 
 A stiff contact swings at a frequency that mass damping of a low one does not reach. Where it swings so widely
 that it opens, it loses its friction each time, and what lies on such contacts slides at any friction.
 
-All contacts are looked at every LOOK cycles (drive/openings.py): that is the only cost. Every JUDGE cycles
-those are counted that have opened or closed between OFTEN pairs of looks and more, against all that bore a
-force. What falls or settles rattles, too, here and there and for a while. It is chatter if it is a SHARE of
-all, in two such windows running.
+The only cost is a look at all contacts every LOOK cycles (kernels.drive.openings). Every JUDGE cycles the
+contacts are counted that have opened or closed between OFTEN pairs of looks or more, against all that bore a
+force. Blocks that fall or settle rattle as well, in some places and for a while. It is chatter if a SHARE of
+all contacts does so in two such windows in a row.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.openings import LOOK, STRIDE
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import fraction_of_critical
+from udec_ia.remark import Remark
+from udec_ia.running.group_names import contact_name
 
 JUDGE = 1000  # cycles of a window
 OFTEN = 4  # openings and closings within a window, of JUDGE / LOOK that can be seen
@@ -32,16 +33,16 @@ FEWEST = 4  # contacts; of fewer one cannot tell chatter from blocks that bounce
 ROOM = 1.25  # more marks than are needed, when more are needed
 
 
-class Chatter:
-    """Watches the contacts of one model. tell: takes warnings.
+class ChatterMonitor:
+    """Monitors the contacts of one model. tell: takes warnings.
 
-    share: of those that bore a force, what chattered in the last window; place: of the worst, in words.
+    share: of the contacts that bore a force, what chattered in the last window.
     """
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
-        self.share, self.place = 0.0, ""
-        self.judged = 0  # cycle at the end of the last window
+        self.share = 0.0
+        self._judged = 0  # cycle at the end of the last window
         self._said = False
         self._marks = np.zeros(0, np.uint8)
 
@@ -57,24 +58,23 @@ class Chatter:
         return self._marks
 
     def judge(self, array: MainArray, safe: bool) -> None:
-        """A window ends every JUDGE cycles: say that contacts chatter, once until they have ceased to.
+        """Warn at the end of a window, every JUDGE cycles, if contacts chatter; once until they cease to.
 
-        safe: the time-step is; one that is not makes contacts chatter, and has been told of.
+        safe: the time-step is safe; one that is not makes contacts chatter, and has its own warning.
         """
         h = array.h
         cycle = int(h.ci[g.MCTOT])
-        if cycle % JUDGE or cycle == self.judged or not len(self._marks):
+        if cycle % JUDGE or cycle == self._judged or not len(self._marks):
             return
-        self.judged = cycle
+        self._judged = cycle
         often = self._marks >= 2 * OFTEN
         bore, many = int((self._marks > 0).sum()), int(often.sum())
         before, self.share = self.share, many / max(bore, 1) if many >= FEWEST else 0.0
         if self.share >= SHARE:
-            worst = self._worst(h)
-            self.place = place_of(h, worst)
             if before >= SHARE and safe and not self._said:
                 self._said = True
-                self.tell(f"contacts chatter: {many} of {bore} {self._what(h, worst)}")
+                text = f"contacts chatter: {many} of {bore} {self._what(h, self._worst(h))}"
+                self.tell(Remark("contacts-chatter", text))
         elif self.share < SHARE / 2:
             self._said = False
         self._marks &= 1
@@ -87,9 +87,9 @@ class Chatter:
         return int(contacts[int(seen.argmax())])
 
     def _what(self, h: Memory, worst: int) -> str:
-        """What they do, where it is worst, and what helps."""
-        frequency = own_frequency(h, worst)
-        share = fraction_of_critical(h, 2 * math.pi * frequency)
+        """What they do, where it is worst, and the remedy."""
+        frequency = _own_frequency(h, worst)
+        share = _fraction_of_critical(h, 2 * math.pi * frequency)
         damping = "" if h.ci[g.LREST] else f", where damping is {share:.2g} of critical"
         cure = (
             "take a smaller FRACTION or KN"
@@ -98,21 +98,18 @@ class Chatter:
         )
         return (
             f"that bear a force open and close again and again (in {OFTEN} and more of the last "
-            f"{JUDGE // LOOK} looks, each {LOOK} cycles), most of all {place_of(h, worst)}. They swing at "
-            f"about {frequency:.3g} Hz{damping}; a joint that opens has no friction, and what lies on it "
+            f"{JUDGE // LOOK} looks, each {LOOK} cycles), most of all {contact_name(h, worst)}. They swing "
+            f"at about {frequency:.3g} Hz{damping}; a joint that opens has no friction, and what lies on it "
             f"slides: {cure}"
         )
 
 
-def place_of(h: Memory, ic: int) -> str:
-    """Contact `ic`, its blocks and where it is, as a message names it."""
-    return (
-        f"contact@{ic} of block@{iget(h, ic, g.KB1)} and block@{iget(h, ic, g.KB2)} at "
-        f"({getr(h, ic, g.KXC):.4g}, {getr(h, ic, g.KYC):.4g})"
-    )
+def _fraction_of_critical(h: Memory, w: float) -> float:
+    """Rayleigh damping at `w` (rad/s), as a fraction of critical damping."""
+    return float(h.cr[g.ALPHA]) / (2 * w) + float(h.cr[g.BETA]) * w / 2 if w > 0 else 0.0
 
 
-def own_frequency(h: Memory, ic: int) -> float:
+def _own_frequency(h: Memory, ic: int) -> float:
     """Frequency (Hz) of the lighter block of contact `ic` on two springs like it."""
     blocks = [iget(h, ic, k) for k in (g.KB1, g.KB2)]
     masses = [float(getr(h, ib, g.KBM)) for ib in blocks if iget(h, ib, g.KBFIX) != g.FIXED]

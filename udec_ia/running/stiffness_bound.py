@@ -22,6 +22,7 @@ import numpy as np
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tensor import ROUND
 from udec_ia.layout import offsets as g
@@ -200,3 +201,29 @@ def rate_of(stiffness: Array, drag: Array, mass: Array) -> Array:
 
 def reals(h: Memory, at: Array, k: Offset) -> Array:
     return np.asarray(getr(h, at, k), np.float64)
+
+
+def damped_step(h: Memory, step: float) -> float:
+    """The critical time-step with the damping of `h`, `step` being that without it.
+
+    A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
+    damping at the frequency w. What swings as fast as the step lets it turns about in each cycle: LOCAL and
+    COMBINED damping then add f times the force that turns it, so that joints are 1 + f times as stiff.
+    """
+    if step == 0:
+        return 0.0
+    step /= _stiffened(h)
+    share = float(h.cr[g.BETA]) / step
+    return step / (math.hypot(1, share) + share)
+
+
+def undamped_step(h: Memory, step: float) -> float:
+    """The critical time-step without damping, where `step` is that with it."""
+    beta = float(h.cr[g.BETA])
+    return math.sqrt((step + beta) ** 2 - beta**2) * _stiffened(h)
+
+
+def _stiffened(h: Memory) -> float:
+    """By how much LOCAL and its kind of damping raise the frequency of what turns about in every cycle."""
+    mode = mode_of(h)
+    return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and mode.stiffens else 1.0

@@ -1,10 +1,10 @@
 """Scaled masses: every degree of freedom gets the inertial mass that makes it as quick as the quickest.
 
 A step dt is stable for a row of the stiffness matrix with the sum k and the dashpots d if its mass is at
-least k dt^2/4 + d dt/2 (ops.run.rows). With dt the safe bound of the true masses, that is the mass that it
-gets: all that the step would be needlessly short for becomes lighter, and comes to rest in fewer steps. The
-weight stays that of the true mass. So the state of rest is the same if it does not depend on the way there,
-and time on the way has no meaning. What nothing holds keeps its mass.
+least k dt^2/4 + d dt/2 (running.stiffness_bound). With dt the safe bound of the true masses, that is the mass
+that it gets: all that the step would be needlessly short for becomes lighter, and comes to rest in fewer
+steps. The weight stays that of the true mass. So the state of rest is the same if it does not depend on the
+loading path, and time on the way has no meaning. What nothing holds keeps its mass.
 
 A contact that is made on the way makes a row stiffer. Each block and each grid-point at a corner has room for
 one contact more; when contacts have been made, masses are scaled anew, every hundred cycles (MSCALE). What
@@ -28,8 +28,7 @@ from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import NMAT
-from udec_ia.ops.run.damped import undamped
-from udec_ia.ops.run.rows import OVERFLOWS, Array, Rows
+from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Rows, undamped_step
 
 SHARE = (
     4  # what a contact adds to a row over its stiffness: on both blocks, along and across, and by its lever
@@ -73,7 +72,7 @@ def scale_anew(array: MainArray) -> None:
     """The same for the time-step as it is, if contacts have been made since."""
     h = array.h
     if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
-        step = undamped(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
+        step = undamped_step(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
         relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
         before = _factors(h, relaxations)
         _put_factors(array, Rows(h, even=True), step)

@@ -1,4 +1,4 @@
-"""A run that gains energy from nowhere: the time-step is judged before it, the energy on the way.
+"""The monitor of energy from nowhere: it judges the time-step before a run, and the energy on the way.
 
 No mode is faster than the safe bound, so a step below it makes no vibration grow (timestep.py). Even then a
 block that strikes another may leave faster than it came: a mass m that meets a stiffness K at the very
@@ -16,9 +16,9 @@ take. What there is,
 may be more, by errors of the formulation (docs/energy.md) and as velocities are known at half steps: a
 vibration with w dt below 1.8, 0.9 of the critical step, has up to ten times the energy that a small step
 would give it. If there is more, no load has made it. The work of friction counts, so that a stack that
-rattles is found as well as one that is thrown off; a joint law of the user's that gives energy reduces it by
-as much (constitutive.joint_laws). Of a block law of the user's nothing is known: blocks that follow one may
-swell by themselves, and are not suspected.
+rattles is found as well as one that is thrown off; a user's joint law that gives energy reduces it by
+as much (constitutive.joint_laws). Nothing is known of a user's block law: blocks that follow one may swell by
+themselves, and such runs are not suspected.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.advice.chatter_monitor import JUDGE
+from udec_ia.advice.step_warnings import fraction_line, safe_fraction, step_warning
 from udec_ia.errors import OUT_OF_NOWHERE, UdecError
 from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
@@ -39,10 +41,9 @@ from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, s
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.common.number_limits import last_digit
-from udec_ia.ops.run.chatter import JUDGE
-from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.timestep import bound, fraction_line, instability, kind_of, safe_fraction
+from udec_ia.running.critical_step import bound
+from udec_ia.running.group_names import name_of
+from udec_ia.running.stiffness_bound import Limit, damped_step
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
@@ -71,8 +72,8 @@ class Account:
     grain: float
 
 
-class Runaway:
-    """Watches one model. tell: takes warnings. safe: the safe bound of the time-step, as found last."""
+class EnergyMonitor:
+    """Monitors one model. tell: takes warnings. safe: the safe bound of the time-step, as found last."""
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
@@ -86,26 +87,26 @@ class Runaway:
         """Find the safe bound if it may have changed, or `anew`; warn of a step above it, once for each."""
         h = array.h
         step, made = float(h.cr[g.TDEL]), int(h.ci[g.NMADE])
-        left = damped(h, step)  # of a critical step like this one
-        if alike(step, left, *self._judged[:2]) and made == self._judged[2] and not anew:
+        left = damped_step(h, step)  # of a critical step like this one
+        if _alike(step, left, *self._judged[:2]) and made == self._judged[2] and not anew:
             return
         self._judged = step, left, made
         self.safe = bound(array)
-        self._suspected = step > SUSPECT * damped(h, self.safe.step)
-        warning = instability(array, self.safe)
-        if warning and not alike(step, left, *self._warned):
+        self._suspected = step > SUSPECT * damped_step(h, self.safe.step)
+        warning = step_warning(array, self.safe)
+        if warning is not None and not _alike(step, left, *self._warned):
             self._warned = step, left
             self.tell(warning)
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
-        """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow laws of the user's."""
+        """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow the user's laws."""
         self._own_laws = own_laws
         if not self._suspected or own_laws:
             self._account = None
             return
-        now, account = stock(array.h), self._account
+        now, account = _stock(array.h), self._account
         if account is None:
-            self._account = Account(now, now, float(array.h.cd[g.WDRIVE]), grain(array))
+            self._account = Account(now, now, float(array.h.cd[g.WDRIVE]), _grain(array))
             return
         begun, ended = account.begun, account.ended
         changed = Stock(
@@ -118,7 +119,7 @@ class Runaway:
     def end(self, array: MainArray) -> None:
         """A CYCLE has ended."""
         if self._account is not None:
-            self._account = replace(self._account, ended=stock(array.h))
+            self._account = replace(self._account, ended=_stock(array.h))
 
     def ahead(self, h: Memory) -> int:
         """Cycles until the next look. It depends on the number of the cycle alone."""
@@ -133,7 +134,7 @@ class Runaway:
             self.begin(array, self._own_laws)
         if account is None or h.ci[g.MCTOT] % LOOK:
             return
-        now, begun = stock(h), account.begun
+        now, begun = _stock(h), account.begun
         lifted = now.potential - begun.potential
         there = now.stored + now.friction - begun.friction + max(lifted, 0.0)
         driven = float(h.cd[g.WDRIVE]) - account.driven + float(power_of_loads(h)) * float(h.cr[g.TDEL])
@@ -145,24 +146,24 @@ class Runaway:
         h = array.h
         _, largest, at = liveliest(h, soft_in(h))
         step = float(h.cr[g.TDEL])
-        share = step / damped(h, self.safe.step)
+        share = step / damped_step(h, self.safe.step)
         self._account = None
         fraction = min(safe_fraction(array, share), float(h.cr[g.FRAC]) / 2)  # a safe step was not enough
         detail = (
             f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "
-            f"put in {came:.3g}: {kind_of(h, int(at))} leads with {largest:.3g}. The time-step "
+            f"put in {came:.3g}: {name_of(h, int(at))} leads with {largest:.3g}. The time-step "
             f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
         advice = f"go back to where you began or saved, and take {fraction_line(h, fraction)}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))
 
 
-def alike(step: float, beta: float, other_step: float, other_beta: float) -> bool:
+def _alike(step: float, beta: float, other_step: float, other_beta: float) -> bool:
     """True if time-steps are the same but for what deformable blocks make of them, and BETA is the same."""
     return other_step / OTHER_STEP < step < other_step * OTHER_STEP and beta == other_beta
 
 
-def stock(h: Memory) -> Stock:
+def _stock(h: Memory) -> Stock:
     """What there is now."""
     soft = soft_in(h)
     moving = liveliest(h, soft)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
@@ -170,7 +171,7 @@ def stock(h: Memory) -> Stock:
     return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(height(h)))
 
 
-def grain(array: MainArray) -> float:
+def _grain(array: MainArray) -> float:
     """Energy that blocks can gain or lose between a place and the next that the reals know, or within a step.
 
     Where places are rounded to the digit d, a block moves by d in a step or not at all; and at rest under

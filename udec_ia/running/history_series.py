@@ -1,4 +1,4 @@
-"""Recording while cycles run: what the histories in IA() ask for is gathered into series of numbers.
+"""The series of numbers that histories record, and the runs of cycles that fill them.
 
 A compiled loop fills a block of rows (kernels.drive.watch); between two pieces of a run the rows are handed
 on to the series. Rows that were handed on before are passed over, so nothing is lost or doubled when Ctrl-C
@@ -7,6 +7,7 @@ comes between the two.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,19 +18,18 @@ from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.kernels.drive.recording import measures, record
 from udec_ia.kernels.drive.watch import run_watched
+from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions, places
-from udec_ia.ops.run.unrest import Unrest
 
 ROWS = 1024  # rows that a compiled piece can fill
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
-FAR = 1 << 60  # cycles that no run has
 NEVER = -1.0  # force ratio that is never reached
 NO_MARKS = np.zeros(0, np.uint8)
 NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 
 
 def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-    """Up to `n` cycles that nobody watches, by the same machine code; returns how many were completed.
+    """Up to `n` cycles of which nothing is recorded, by the same machine code; returns how many were done.
 
     laws, marks: see kernels.drive.watch.run_watched.
     """
@@ -46,8 +46,8 @@ class Series:
     """The numbers of one history.
 
     number: of the history. name, unit, text: of the field. group: kind and last address of its group, "" if
-    there is none. place: where the group was when it was chosen by a point, else "". lost: True once the
-    group has gone and the user has been told so.
+    it has none. place: where the group was when it was chosen by a point, else "". lost: True once the
+    group has disappeared and the user was warned.
     """
 
     def __init__(self, number: int, definition: Definition, place: str = "") -> None:
@@ -112,13 +112,17 @@ class Series:
             self.count += len(new)
 
 
-class Watch:
-    """Runs cycles of `array` and hands what is recorded to `series`.
+Marks = Callable[[Memory, int], Any]  # bytes for the marks of contacts, of a run of so many cycles to come
 
-    ratio: to within which there must be rest to stop. reached: True when there was, after a cycle of this
-    run: forces are those of the properties, loads and laws of now only when the contacts have been passed
-    through with them. lost: those of `series` whose groups were found to have gone since they were last
-    looked at. mean: the mean unbalanced force counts, not the greatest. unrest: notes what moves on the way.
+
+class Recording:
+    """Runs cycles of `array` and adds what is recorded to `series`.
+
+    ratio: to within which the model must be at rest to stop. mean: the mean unbalanced force counts, not the
+    greatest. marks: of contacts that open and close (kernels.drive.openings).
+    reached: True when the model was at rest after a cycle of this run: forces are those of the present
+    properties, loads and laws only when the contacts have been passed through with them.
+    lost: those of `series` whose groups have disappeared since they were last looked at.
     """
 
     def __init__(
@@ -127,39 +131,36 @@ class Watch:
         series: list[Series],
         ratio: float = NEVER,
         mean: bool = False,
-        unrest: Unrest | None = None,
+        marks: Marks = lambda h, n: NO_MARKS,
     ) -> None:
         self.array = array
         self.series = series
         self.ratio = float(ratio)  # a kernel is compiled for one type
         self.mean = mean
-        self.unrest = unrest
         self.reached = False
         self.lost: list[Series] = []
+        self._marks = marks
+        self._last = 0  # cycle that the run ends with
         self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
 
-    def begin(self) -> None:
-        """Look at the state before the first cycle, groups being where they will stay."""
+    def begin(self, n: int) -> None:
+        """Record the state before the first of `n` cycles, groups being where they will stay."""
+        self._last = int(self.array.h.ci[g.MCTOT]) + n
         self.look()
         self._places = places(self.array)
         self._rows = np.empty((ROWS, 2 + len(self.series)))
         if len(self._places):
             record(self.array.h, self._places, self._rows, self._count, measures(self.array.h))
         self.hand_on()
-        if self.unrest is not None:
-            self.unrest.begin(self.array)
 
-    def ahead(self) -> int:
-        """Cycles until something is to be noted that no compiled loop notes."""
-        return FAR if self.unrest is None else self.unrest.ahead(self.array.h)
-
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
+    def run(self, n: int, laws: Any) -> int:
         """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
 
-        laws, marks: see kernels.drive.watch.run_watched.
+        laws: see kernels.drive.watch.run_watched.
         """
         h, done, full = self.array.h, 0, True
         recorded = self._places, self._rows, self._count
+        marks = self._marks(h, self._last - int(h.ci[g.MCTOT]))
         called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio, self.mean, marks)
         while done < n and full:
             try:
@@ -169,12 +170,10 @@ class Watch:
             done += int(completed)
             if full and has_to_judge(h):
                 break
-        if self.unrest is not None:
-            self.unrest.note(self.array)
         return done
 
     def look(self) -> None:
-        """See where the groups are now, and which have gone."""
+        """Find where the groups are now, and which have disappeared."""
         for number, definition in enumerate(definitions(self.array), 1):
             if number > len(self.series):
                 self.series.append(Series(number, definition))
@@ -185,7 +184,7 @@ class Watch:
                 self.lost.append(series)
 
     def hand_on(self) -> int:
-        """Let the series have the rows that are filled, if they have not; returns the number of rows."""
+        """Add the rows that are filled to the series; returns the number of rows."""
         if self._count[0] == 0:
             return 0
         rows = self._rows[: self._count[0]].copy()
@@ -194,22 +193,3 @@ class Watch:
             series.add(rows[due][:, [0, 1, 2 + i]])
         self._count[0] = 0
         return len(rows)
-
-
-class Around(Watch):
-    """A watch of which only `run` is another's: all else is done, and known, by `inner`."""
-
-    def __init__(self, inner: Watch) -> None:
-        self.inner = inner
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
-
-    def begin(self) -> None:
-        self.inner.begin()
-
-    def look(self) -> None:
-        self.inner.look()
-
-    def hand_on(self) -> int:
-        return self.inner.hand_on()

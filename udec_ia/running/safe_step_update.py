@@ -1,13 +1,13 @@
-"""A safe time-step in a run: it is judged again when contacts have been made, and shortened if need be.
+"""A safe time-step in a run: it is updated when contacts have been made, and shortened if need be.
 
-FRACTION f SAFE takes f of a bound that holds for the contacts of the moment. In the very cycle in which more
-have been made, still open (in large models a few cycles later: kernels.drive.cycle), and every 1000 cycles,
-as blocks turn, slide and strain, the bound is found anew. A step that is longer than f of it becomes f of it,
-for the rest of the run: a step that only ever shrinks does not go to and fro as contacts come and go. What is
-due hangs on the number of the cycle and the state alone, so that it does not matter how cycles are cut into
-CYCLEs.
+FRACTION f SAFE takes f of a bound that holds for the present contacts. The bound is found anew in the very
+cycle in which more contacts have been made, still open (in large models a few cycles later:
+kernels.drive.cycle), and every 1000 cycles, as blocks turn, slide and strain. A step that is longer than f of
+it becomes f of it, for the rest of the run: a step that only ever shrinks does not go to and fro as contacts
+come and go. When an update is due depends on the number of the cycle and the state alone, so that it does not
+matter how cycles are cut into CYCLEs.
 
-Masses that are scaled are scaled anew instead, every hundred cycles (ops.run.scaling).
+Masses that are scaled are scaled anew instead, every hundred cycles (running.mass_scaling).
 """
 
 from __future__ import annotations
@@ -18,39 +18,35 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.rows import Limit
-from udec_ia.ops.run.scaling import RESCALE, scale_anew
-from udec_ia.ops.run.timestep import bound
+from udec_ia.running.critical_step import bound
+from udec_ia.running.mass_scaling import RESCALE, scale_anew
+from udec_ia.running.stiffness_bound import damped_step
 
 JUDGE = 1000  # cycles
 
 
-def ahead(array: MainArray, n: int) -> int:
-    """Cycles, at most `n`, until the step or the masses may be due."""
+def cycles_to_update(array: MainArray, n: int) -> int:
+    """Cycles, at most `n`, until the step or the masses may be due for an update."""
     ci = array.h.ci
     every = RESCALE if ci[g.LSCALE] else JUDGE if ci[g.LSAFE] else n
     return min(n, every - int(ci[g.MCTOT]) % every)
 
 
-def renew(array: MainArray) -> Limit | None:
-    """What is due between two cycles; the bound if it has made the time-step shorter."""
+def update_step(array: MainArray) -> None:
+    """Shorten a safe time-step, or scale masses anew, if that is due between two cycles."""
     h = array.h
     if h.ci[g.LSCALE]:
         if h.ci[g.MCTOT] % RESCALE == 0:
             scale_anew(array)
     elif h.ci[g.LSAFE] and (has_to_judge(h) or h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
-        safe = bound(array)
-        step = float(h.cr[g.FRAC]) * damped(h, safe.step)
+        step = float(h.cr[g.FRAC]) * damped_step(h, bound(array).step)
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
             put_step(array, step)
-            return safe
-    return None
 
 
 def put_step(array: MainArray, step: float) -> None:
-    """The time-step := `step`, and the factors of damping that follow.
+    """Set the time-step to `step`, and the factors of damping that follow from it.
 
     Errors 13 and 16 if damping is too strong for it.
     """
