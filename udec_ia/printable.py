@@ -3,7 +3,8 @@
 A terminal obeys what it is sent. A name out of a file can hold escape sequences, marks that turn the line
 round, or bytes that are no text, and it can be as long as it likes: all that is not plainly visible becomes
 an escape, as Python writes it, and the end of what is long is left out. What is said in words keeps to the
-width of a terminal."""
+width of a terminal.
+"""
 
 from __future__ import annotations
 

@@ -12,8 +12,7 @@ from matplotlib import colormaps
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.output.drawn_outlines import snapshot
-from udec_ia.output.field_drawing import field, measure
+from udec_ia.output.drawn_outlines import field, measure, snapshot
 from udec_ia.output.plot_frames import Frame, What
 from udec_ia.verify.grids import generate, rectangle
 

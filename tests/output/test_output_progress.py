@@ -9,7 +9,7 @@ import pytest
 from support.handmade_map import two_blocks
 
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.output import progress
+from udec_ia.output import run_progress as progress
 from udec_ia.output.run_progress import LINES, Progress, Report, summary
 
 

@@ -20,7 +20,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.heap_map import heap_map
 from udec_ia.layout import offsets as g
-from udec_ia.output import histories
+from udec_ia.output import history_files as histories
 from udec_ia.output.drawn_outlines import snapshot
 from udec_ia.output.plot_frames import Frame, What
 from udec_ia.reader.atlas import Atlas

@@ -1,7 +1,8 @@
 """Drawing on paper: blocks, contacts, domains and addresses, each on the axes of a matplotlib figure.
 
 What stands still has the colour of its material, hatched if it is fixed; what moves from state to state
-gets a shade for each state, the darker the later."""
+gets a shade for each state, the darker the later.
+"""
 
 from __future__ import annotations
 

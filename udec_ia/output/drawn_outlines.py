@@ -1,4 +1,4 @@
-"""Outlines of blocks, contacts and domains as arrays for drawing, also of a heap that may be damaged."""
+"""States of the block system as arrays for drawing: outlines, contacts, domains, stresses and velocities."""
 
 from __future__ import annotations
 
@@ -11,9 +11,69 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
-from udec_ia.output.field_drawing import Field, field
-from udec_ia.reader.atlas import KINDS, Atlas
-from udec_ia.reader.list_walks import groups, kind_of, loop, point, reverse
+from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
+
+CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
+    "s11": "stress 11 (Pa)",
+    "s12": "stress 12 (Pa)",
+    "s22": "stress 22 (Pa)",
+    "pressure": "pressure (Pa)",
+    "shear": "greatest shear stress (Pa)",
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """Moving points (n): address, place (m) and velocity (m/s). Zones (k): corners (k, 3, 2), stress (k, 3).
+
+    middle (m, 2), stress (m, 3): of all zones, and then of the simply-deformable blocks in list order.
+    """
+
+    address: Any
+    place: Any
+    velocity: Any
+    zone: Any
+    middle: Any
+    stress: Any
+
+
+def field(h: Memory) -> Field:
+    """A copy of points and stresses of the present state. Unsound if the heap cannot be walked."""
+    blocks = list(groups(h, "block"))
+    hard = [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF]
+    points = [ig for ib in blocks for ig in members(h, ib, "gridpoint")]
+    zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
+    simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    place = np.concatenate([_reals(h, hard, g.KX, g.KY), _reals(h, points, g.KXG, g.KYG)])
+    velocity = np.concatenate([_reals(h, hard, g.KXD, g.KYD), _reals(h, points, g.KXDG, g.KYDG)])
+    at = {address: i for i, address in enumerate(hard + points)}
+    rows = np.array([[at[iget(h, iz, g.KZG, i)] for i in range(3)] for iz in zones], int).reshape(-1, 3)
+    zone_stress = _reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
+    centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    return Field(
+        np.array(hard + points, np.int64),
+        place,
+        velocity,
+        place[rows],
+        np.concatenate([place[rows].mean(axis=1), np.array(centres).reshape(-1, 2)]),
+        np.concatenate([zone_stress, _reals(h, simple, g.KS111, g.KS112, g.KS122)]),
+    )
+
+
+def _reals(h: Memory, addresses: Any, *names: Offset) -> Any:
+    at = np.array(addresses, np.int64)
+    return np.stack([_real(h, at, k) for k in names], axis=-1)
+
+
+def measure(stress: Any, name: str) -> Any:
+    """One number for each stress (k, 3): see CONTOURS."""
+    s11, s12, s22 = stress.T
+    if name == "pressure":
+        return -(s11 + s22) / 2
+    if name == "shear":
+        return np.hypot((s11 - s22) / 2, s12)
+    return {"s11": s11, "s12": s12, "s22": s22}[name]
+
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
 ARC_POINTS = 6  # points on an arc where a domain's polygon follows it
@@ -107,13 +167,13 @@ def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
     lists = [list(reverse(h, block))[::-1] for block in blocks]
     corners = np.array([corner for one in lists for corner in one], np.int64)
     return Outlines(
-        corner=_points(h, corners, g.KXP, g.KYP),
-        centre=_points(h, corners, g.KXCP, g.KYCP),
-        radius=_reals(h, corners, g.KRAD),
+        corner=_reals(h, corners, g.KXP, g.KYP),
+        centre=_reals(h, corners, g.KXCP, g.KYCP),
+        radius=_real(h, corners, g.KRAD),
         rounding=float(h.cr[g.DTOL]),
         corner_address=corners,
         first=np.cumsum([0, *map(len, lists)]),
-        centroid=_points(h, np.array(blocks, np.int64), g.KX, g.KY),
+        centroid=_reals(h, np.array(blocks, np.int64), g.KX, g.KY),
         fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
         material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
         address=np.array(blocks, np.int64),
@@ -121,12 +181,8 @@ def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
     )
 
 
-def _reals(h: Memory, addresses: Any, k: tuple[int, int, int]) -> Any:
+def _real(h: Memory, addresses: Any, k: Offset) -> Any:
     return np.array(getr(h, addresses, k), np.float64)
-
-
-def _points(h: Memory, addresses: Any, kx: tuple[int, int, int], ky: tuple[int, int, int]) -> Any:
-    return np.stack([_reals(h, addresses, kx), _reals(h, addresses, ky)], axis=-1)
 
 
 def curves(o: Outlines) -> tuple[Any, Any, Any]:
@@ -211,8 +267,8 @@ def _reach(start: Any, way: Any, line: Any) -> float:
 
 
 def _apex(h: Memory, corners: Any) -> Any:
-    points = _points(h, corners, g.KXP, g.KYP), _points(h, corners, g.KXCP, g.KYCP)
-    return apex(*points, _reals(h, corners, g.KRAD))
+    points = _reals(h, corners, g.KXP, g.KYP), _reals(h, corners, g.KXCP, g.KYCP)
+    return apex(*points, _real(h, corners, g.KRAD))
 
 
 def _unit(v: Any) -> Any:
@@ -233,9 +289,9 @@ def contact_forces(h: Memory) -> Contacts:
     ).reshape(-1, 2)
     iads = np.array(addresses, np.int64)
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
-    fn, fs = _reals(h, iads, g.KCFN)[:, None], _reals(h, iads, g.KCFS)[:, None]
+    fn, fs = _real(h, iads, g.KCFN)[:, None], _real(h, iads, g.KCFS)[:, None]
     return Contacts(
-        place=_points(h, iads, g.KXC, g.KYC),
+        place=_reals(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
         virtual=np.array([code == g.VIRTUAL for code in codes], bool),
         link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
@@ -246,10 +302,10 @@ def contact_forces(h: Memory) -> Contacts:
 def domain_polygons(h: Memory) -> Iterator[Domain]:
     """All domains, as polygons along the rounded outlines of the blocks around them."""
     for domain in groups(h, "domain"):
-        yield Domain(domain, np.array(list(_loop_points(h, domain))), domain == h.ci[g.IODPNT])
+        yield Domain(domain, np.array(list(_loop_reals(h, domain))), domain == h.ci[g.IODPNT])
 
 
-def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
+def _loop_reals(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
     """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7).
 
     Each step begins where the last one ended, but for a virtual contact: there the loop crosses to the other
@@ -309,61 +365,3 @@ def _arc(
     turn = (np.arctan2(stop[1] - cy, stop[0] - cx) - first + np.pi) % (2.0 * np.pi) - np.pi
     for angle in first + np.linspace(0.0, turn, ARC_POINTS):
         yield cx + r * float(np.cos(angle)), cy + r * float(np.sin(angle))
-
-
-FAR = 100.0  # times the median distance of corners from their middle: nothing sound is further away
-BEYOND = 1e30  # m: no arc is there
-
-
-def outlines_left(atlas: Atlas) -> tuple[Outlines, int]:
-    """The outlines of all blocks that are whole and near, and the number of the others."""
-    every = atlas.groups["block"].tolist()
-    with np.errstate(all="ignore"):
-        whole = outlines(atlas.h, [ib for ib in every if is_whole(atlas, ib)])
-        arcs = np.abs(np.concatenate([whole.centre, whole.radius[:, None]], axis=1)) < BEYOND
-        good = is_near(whole.corner, whole.corner) & arcs.all(axis=1)
-        near = is_near(whole.centroid, whole.corner)
-        near[near] = np.logical_and.reduceat(good, whole.first[:-1])[near] if len(good) else False
-    rounding = whole.rounding if 0.0 <= whole.rounding < BEYOND else 0.0
-    return part(replace(whole, rounding=rounding), near), len(every) - int(near.sum())
-
-
-def part(o: Outlines, chosen: Any) -> Outlines:
-    """Some of the blocks: those with True in `chosen` (m,)."""
-    corners = np.diff(o.first)
-    of_blocks = ("centroid", "fixed", "material", "address", "kind")
-    of_corners = ("corner", "centre", "radius", "corner_address")
-    return replace(
-        o,
-        first=np.cumsum([0, *corners[chosen]]),
-        **{name: getattr(o, name)[chosen] for name in of_blocks},
-        **{name: getattr(o, name)[np.repeat(chosen, corners)] for name in of_corners},
-    )
-
-
-def is_whole(atlas: Atlas, ib: int) -> bool:
-    """True if the reverse list of a block comes round, and all its corners are those of the block."""
-    starts, corner = memoryview(atlas.starts), KINDS.index("corner") + 1
-    first = ip = iget(atlas.h, ib, g.KP)
-    seen: set[int] = set()
-    while ip not in seen:
-        if not 0 < ip < len(starts) or starts[ip] != corner or iget(atlas.h, ip, g.KNB) != ib:
-            return False
-        seen.add(ip)
-        ip = iget(atlas.h, ip, g.KR)
-    return ip == first and len(seen) > 2
-
-
-def is_near(places: Any, corners: Any) -> Any:
-    """True for each of `places` (n, 2) in m that is finite and not far from where corners (m, 2) are."""
-    finite = corners[np.isfinite(corners).all(axis=1)]
-    if not len(finite):
-        return np.zeros(len(places), bool)
-    middle = np.median(finite, axis=0)
-    reach = FAR * np.median(np.abs(finite - middle).max(axis=1))
-    return np.isfinite(places).all(axis=1) & (np.abs(places - middle).max(axis=1, initial=0.0) <= reach)
-
-
-def points(atlas: Atlas, at: Any, kx: Offset, ky: Offset) -> Any:
-    """Places (n, 2) in m of groups at some addresses."""
-    return np.stack([np.asarray(getr(atlas.h, at, k), np.float64) for k in (kx, ky)], axis=-1)

@@ -28,15 +28,8 @@ from udec_ia.output.block_drawing import (
     title,
     write_as,
 )
-from udec_ia.output.drawn_outlines import (
-    Outlines,
-    State,
-    apex,
-    domain_polygons,
-    is_near,
-    outlines_left,
-    points,
-)
+from udec_ia.output.drawn_outlines import Outlines, State, apex, domain_polygons
+from udec_ia.output.place_picture import is_near, outlines_left, points
 from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, NAMES, Atlas
 from udec_ia.reader.kind_colours import COLOURS

@@ -2,7 +2,8 @@
 
 NAME-history.csv has a line for every cycle at which something was recorded, and a column for each history: a
 field is empty where a history was not due, and `nan` once its group has gone. NAME-history.h5 has a group
-for each history. Both are extended after every CYCLE, and are whole at every moment (GrowingFile)."""
+for each history. Both are extended after every CYCLE, and are whole at every moment (GrowingFile).
+"""
 
 from __future__ import annotations
 

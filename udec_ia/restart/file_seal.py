@@ -5,7 +5,8 @@ HDF5 leaves a "user block" at the front of a file to its users. Ours is a text t
 library sees the file, because that library trusts what it reads: damaged metadata can make it crash.
 
 Code that reads a file reports what is wrong by RefusedError; `refusing` makes error 29 of that, and of
-anything else that can go wrong between the disk and the array."""
+anything else that can go wrong between the disk and the array.
+"""
 
 from __future__ import annotations
 

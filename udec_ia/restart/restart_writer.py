@@ -2,7 +2,8 @@
 
 The HDF5 part is made in memory and sealed there, so that neither a full disk nor a kill can leave HDF5
 with half a file. It then goes to a temporary file in the same folder, is forced to the disk and renamed:
-whatever happens, the name stands for the old file or the new one, never for a part of either."""
+whatever happens, the name stands for the old file or the new one, never for a part of either.
+"""
 
 from __future__ import annotations
 
