@@ -137,7 +137,10 @@ class Variables:
         return filled if put_in else line
 
     def _check_numbers(self, line: Line) -> None:
-        """Error 10 where a value and what stands beside it make another number: 0.5 and 1E8 make 0.51E8."""
+        """Error 10 where a value and what stands beside it make another number: 0.5$KN would be 0.51E8.
+
+        Braces, as in 0.5${KN}, say that this is wanted.
+        """
         for token in tokens(line):
             for put in line.put_in:
                 inside = token.column <= put.first and put.end <= token.end
@@ -145,6 +148,8 @@ class Variables:
                 if inside and token.text.lstrip("+-") != value.lstrip("+-") and NUMBER.fullmatch(token.text):
                     written = line.written or line
                     use = written.text[put.at - 1 : put.after - 1]
+                    if use.startswith("${"):
+                        continue
                     detail = f"{use} = {value} beside another number would make {token.text}"
                     advice = "separate them by a blank; a deck does not calculate, so give the product"
                     raise at(UdecError(10, detail, advice), Token(use, written, put.at))

@@ -8,9 +8,10 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.layout.offsets import DTOL
+from udec_ia.layout.offsets import DTOL, KTD
 from udec_ia.methods.state import State
 from udec_ia.ops.commands import boundary_conditions as bounds
 from udec_ia.ops.commands import model_settings
@@ -18,12 +19,18 @@ from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, number_of_con
 from udec_ia.ops.commands.change_or_delete_blocks import change, delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
-from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate, generate_automatically
+from udec_ia.ops.commands.generate_zones import (
+    NEAR,
+    block_to_zone,
+    generate,
+    generate_automatically,
+    inertia_ratio,
+)
 from udec_ia.ops.commands.initial_stress import insitu
 from udec_ia.ops.commands.split_blocks import split, why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, reals, rows, whole
-from udec_ia.ops.run.remarks import on_tension
+from udec_ia.ops.run.remarks import on_new_material, on_tension
 from udec_ia.transaction import command
 
 P = ParamSpec("P")
@@ -103,6 +110,8 @@ class Blocks(State):
         conditions = number_of_conditions(self.array.h)
         kind = None if type is None else str(type).lower()
         changed = change(self.array, (x1, x2, y1, y2), kind, material, constitutive)
+        if changed and material is not None:
+            self.remark(on_new_material(self.array, changed, material))
         self._tell_lost(conditions)
         return changed
 
@@ -139,6 +148,7 @@ class Blocks(State):
         triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
         conditions = number_of_conditions(self.array.h)
         ib = block_to_zone(self.array, (x1, x2, y1, y2))
+        spin = float(getr(self.array.h, ib, KTD))
         if mode.lower() == "manual":
             if not points or not triples:
                 raise UdecError(
@@ -161,7 +171,23 @@ class Blocks(State):
         else:
             raise UdecError(22, mode, "take manual or automatic", parameter="mode")
         self._tell_lost(conditions)
+        self._report_inertia(ib, spin)
         return ib
+
+    def _report_inertia(self, ib: int, spin: float) -> None:
+        """Report the moment of inertia of block `ib` with zones, and a spin that is not `spin` any more."""
+        h = self.array.h
+        ratio, now = inertia_ratio(h, ib), float(getr(h, ib, KTD))
+        if ratio > 1.005:
+            self.inform(
+                f"masses at grid-points make the moment of inertia of block@{ib} {ratio:.2f} times that of "
+                "the body: it turns more slowly; smaller zones have less of this"
+            )
+        if now != spin:
+            self.tell(
+                f"block@{ib} spins at {now:.4g} rad/s, and had {spin:.4g}: its moment of inertia has grown, "
+                "and its angular momentum stays"
+            )
 
     boundary = command(on_shapes(bounds.boundary))
 

@@ -61,6 +61,15 @@ def on_properties(array: MainArray, material: int, values: dict[str, float | Non
             )
 
 
+def on_new_material(array: MainArray, many: int, material: int) -> Iterator[str]:
+    """CHANGE: a material whose density comes too late."""
+    if array.h.ci[g.MCTOT]:
+        yield (
+            f"masses were made before the first cycle: {counted(many, 'block')} of material {material} now "
+            "will keep mass and weight; a new density counts after a new START"
+        )
+
+
 def on_fraction(f: float) -> Iterator[str]:
     """FRACTION: a step in which nothing happens."""
     if f < TINY:
