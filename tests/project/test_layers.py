@@ -183,6 +183,8 @@ BELOW = {  # layers that a layer imports
     "verify": {"errors", "files", "compiling", "heap", "layout", "model", "output", "printable"},
     "model": {
         "advice",
+        "remark",
+        "running",
         "counting",
         "debug",
         "deck",
