@@ -157,6 +157,7 @@ BELOW = {  # layers that a layer imports
     },
     "command_line": {
         "debug",
+        "deck",
         "diverge",
         "errors",
         "compiling",
