@@ -20,12 +20,10 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from udec_ia.trade.candidates import BEYOND, rounded
-from udec_ia.trade.levers import Setting
-from udec_ia.trade.limit import limit
-from udec_ia.trade.shop import Options, Shop
-from udec_ia.trade.steps import share_of_bound
-from udec_ia.trade.trade import Price, trade
+from udec_ia.studies.accuracy_study import Price, trade
+from udec_ia.studies.extrapolation import limit
+from udec_ia.studies.setting_runner import Options, Shop
+from udec_ia.studies.settings import BEYOND, Setting, rounded, share_of_bound
 
 FINE = 2 ** (1 / 4)
 TOLERANCES = (1e-2, 3e-3, 1e-3)

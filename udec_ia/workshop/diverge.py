@@ -17,8 +17,8 @@ from udec_ia.printable import printable
 from udec_ia.workshop.common import command, given, variables
 
 if TYPE_CHECKING:
-    from udec_ia.diverge import Divergence, Run
     from udec_ia.inspect.look.listing import Listing
+    from udec_ia.studies.divergence import Divergence, SteppedRun
 
 VERBS = ("diverge",)
 TEXT = "run two decks, word schemes or restart files side by side, and find where they differ first"
@@ -107,41 +107,38 @@ def _run(
     laws: list[str] | None,
     values: dict[str, str],
     out: str,
-) -> Run:
-    from udec_ia.diverge import of_deck, of_state
+) -> SteppedRun:
     from udec_ia.model import Model
+    from udec_ia.studies.divergence import of_deck, of_state
+    from udec_ia.studies.study_run import read_deck
 
     if args.cycles is not None:
         return of_state(Model.restore(path, out=out, constitutive=laws), args.cycles)
     model = Model(build=build, out=out, name=path.stem, constitutive=laws)
-    return of_deck(model, _text(path), path.name, values, (Path(), path.parent))
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8-sig", errors="replace")
+    return of_deck(model, read_deck(path), path.name, values, (Path(), path.parent))
 
 
 def _diverge(args: argparse.Namespace) -> Listing:
     """What a deck writes goes to a folder that is taken away. An error of a run is trouble: ValueError."""
-    from udec_ia.diverge import Judge, diverge
     from udec_ia.inspect.look import Listing
+    from udec_ia.studies.divergence import StateComparison, find_divergence
 
     builds, paths = _builds(args), (args.file, args.other or args.file)
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         try:
             each = zip(paths, builds, _laws(args), _values(args), (first, second), strict=True)
             runs = [_run(args, *one) for one in each]
-            found = diverge(runs[0], runs[1], Judge(args.tolerance))
+            found = find_divergence(runs[0], runs[1], StateComparison(args.tolerance))
         except OSError as error:
             raise ValueError(f"{printable(str(error.filename))}: {error.strerror}") from error
         except UdecError as error:
             raise ValueError(str(error)) from error
         if isinstance(found, int):
             return Listing([f"no difference in {counted(found, 'cycle')}"])
-        return Listing(_said(found, _keep(args, runs, found)), COLUMNS, [tuple(found.off)], 1)
+        return Listing(_sentences(found, _keep(args, runs, found)), COLUMNS, [tuple(found.off)], 1)
 
 
-def _said(found: Divergence, kept: list[Path]) -> list[str]:
+def _sentences(found: Divergence, kept: list[Path]) -> list[str]:
     from udec_ia.printable import printable
 
     when = f"in cycle {found.cycle}"
@@ -154,7 +151,7 @@ def _said(found: Divergence, kept: list[Path]) -> list[str]:
     return [f"they differ first {when}{line}{where}", f"kept: both states after it, {names}"]
 
 
-def _keep(args: argparse.Namespace, runs: list[Run], found: Divergence) -> list[Path]:
+def _keep(args: argparse.Namespace, runs: list[SteppedRun], found: Divergence) -> list[Path]:
     """Write both states; into the current folder, as `udec run` does."""
     paths = args.keep or [Path(f"{args.file.stem}-{which}.h5") for which in ("first", "second")]
     for path, run, state in zip(paths, runs, found.states, strict=True):
@@ -171,9 +168,9 @@ def _script(args: argparse.Namespace) -> str:
         made = f"of_state(Model.restore(path, constitutive=laws), {args.cycles})"
     return (
         "from pathlib import Path\n\nfrom udec_ia import Model\n"
-        "from udec_ia.diverge import Judge, diverge, of_deck, of_state\n\n"
+        "from udec_ia.studies.divergence import StateComparison, find_divergence, of_deck, of_state\n\n"
         f"given = zip({paths}, {builds}, {_laws(args)}, {_values(args)})\n"
         f"runs = [{made} for path, build, laws, values in given]\n"
-        f"found = diverge(*runs, Judge({args.tolerance}))\n"
+        f"found = find_divergence(*runs, StateComparison({args.tolerance}))\n"
         "print(found if isinstance(found, int) else (found.cycle, found.in_pass, found.line, *found.off))"
     )

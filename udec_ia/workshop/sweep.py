@@ -48,9 +48,8 @@ def add_commands(commands: Any) -> None:
 
 def _sweep(args: argparse.Namespace) -> Listing:
     from udec_ia.inspect.look import Listing
-    from udec_ia.study.ranges import grid
-    from udec_ia.study.runs import DIED, ERROR
-    from udec_ia.study.sweep import sweep
+    from udec_ia.studies.study_run import DIED, ERROR
+    from udec_ia.studies.sweep import grid, sweep
 
     values, options = given(args.set), _options(args)
     stream = sys.stderr if args.json else sys.stdout
@@ -61,10 +60,10 @@ def _sweep(args: argparse.Namespace) -> Listing:
     columns = [
         name for name in found.table.columns if name in values or name in SHOWN or name in _asked(found)
     ]
-    rows = zip(*(found.table.listed(name) for name in columns), strict=True)
+    rows = zip(*(found.table.column(name) for name in columns), strict=True)
     written = f"written: {', '.join(str(path) for path in found.files)}"
     failed = all(result.status in (ERROR, DIED) for result in found.results)
-    return Listing([*found.said, written], tuple(columns), [*rows], status=int(failed))
+    return Listing([*found.summary, written], tuple(columns), [*rows], status=int(failed))
 
 
 def _asked(found: Any) -> set[str]:

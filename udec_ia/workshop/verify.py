@@ -16,7 +16,7 @@ from udec_ia.workshop.common import command
 
 if TYPE_CHECKING:
     from udec_ia.inspect.look.listing import Listing
-    from udec_ia.verify.catalogue import Problem
+    from udec_ia.studies.verification import Problem
 
 VERBS = ("verify",)
 TEXT = "run problems with exact or published answers; exit status 1 if an error is above its tolerance"
@@ -40,9 +40,9 @@ def add_commands(commands: Any) -> None:
 
 
 def _problems(args: argparse.Namespace) -> list[Problem]:
-    from udec_ia.verify.catalogue import find, names
+    from udec_ia.studies.verification import find_problem, problem_names
 
-    return [find(name) for name in args.names or names()]
+    return [find_problem(name) for name in args.names or problem_names()]
 
 
 def _chosen(option: str, given: str | None, default: str, known: Any) -> list[str]:
@@ -56,7 +56,7 @@ def _chosen(option: str, given: str | None, default: str, known: Any) -> list[st
 def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Word schemes and types of blocks."""
     from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-    from udec_ia.verify.case import BLOCKS
+    from udec_ia.studies.verification import BLOCKS
 
     builds = _chosen("--build", args.build, DEFAULT_SCHEME, ALL_SCHEMES)
     return builds, _chosen("--blocks", args.blocks, ",".join(BLOCKS), BLOCKS)
@@ -65,8 +65,8 @@ def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 def _verify(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.words import scheme
     from udec_ia.inspect.look.listing import Listing
-    from udec_ia.verify.page import COLUMNS, brief, rows, write
-    from udec_ia.verify.run import run
+    from udec_ia.studies.verification import solve_problems
+    from udec_ia.studies.verification_page import COLUMNS, brief_rows, result_rows, write_page
 
     problems, (builds, blocks) = _problems(args), _choice(args)
     if args.list:
@@ -75,8 +75,8 @@ def _verify(args: argparse.Namespace) -> Listing:
         ]
         return Listing([], ("problem", "blocks", "bits of a real", "what is asked"), named)
     results = []
-    for result in run(problems, builds, blocks):
-        print(result.said(), file=sys.stderr, flush=True)
+    for result in solve_problems(problems, builds, blocks):
+        print(result.line(), file=sys.stderr, flush=True)
         results.append(result)
     if not results:
         raise ValueError(
@@ -85,15 +85,15 @@ def _verify(args: argparse.Namespace) -> Listing:
         )
     wrong = sum(not one.holds for one in results)
     many = counted(len(results), "case")
-    said = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
+    lines = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
     short = [one.name for one in problems if any(scheme(build).real_bits < one.reals for build in builds)]
     if short:
-        said.append(
+        lines.append(
             f"not run with 32-bit reals, which are too coarse for what they measure: {', '.join(short)}"
         )
     if args.out is not None:
-        said.append(f"written: {write(results, args.out, _command(args))}")
-    return Listing(said, COLUMNS, list((rows if args.json else brief)(results)), int(wrong > 0))
+        lines.append(f"written: {write_page(results, args.out, _command(args))}")
+    return Listing(lines, COLUMNS, list((result_rows if args.json else brief_rows)(results)), int(wrong > 0))
 
 
 def _command(args: argparse.Namespace) -> str:
@@ -106,8 +106,9 @@ def _command(args: argparse.Namespace) -> str:
 def _script(args: argparse.Namespace) -> str:
     builds, blocks = _choice(args)
     return (
-        "from udec_ia.verify.catalogue import find, names\nfrom udec_ia.verify.run import run\n\n"
-        f"for result in run(map(find, {args.names or 'names()'}), {builds}, {blocks}):\n"
-        "    print(result.said())\n    for answer in result.answers:\n"
+        "from udec_ia.studies.verification import find_problem, problem_names, solve_problems\n\n"
+        f"problems = map(find_problem, {args.names or 'problem_names()'})\n"
+        f"for result in solve_problems(problems, {builds}, {blocks}):\n"
+        "    print(result.line())\n    for answer in result.answers:\n"
         "        print('   ', answer.what, answer.computed, answer.exact, answer.tolerance, answer.why)"
     )
