@@ -31,8 +31,8 @@ def compile_for(build: str) -> str:
     from support.mechanics_scenes import on_base
 
     from udec_ia import Model, UdecError
+    from udec_ia.checker import check_links
     from udec_ia.heap.interpreting import Sparing
-    from udec_ia.inspect.check import check_links
 
     Sparing.at_once = True
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]

@@ -30,12 +30,13 @@ from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.inspect.change import convert, renumber
-from udec_ia.inspect.table import table
+from udec_ia.heap_tools.convert_word_scheme import convert
+from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.kernels.body.law_call_numba import MATERIAL_SIZE, _jump
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.ops.run.watch import run_unwatched
+from udec_ia.reader.group_tables import table
 from udec_ia.restart import load_to_change, save_changed
 
 ROOT = Path(__file__).parent.parent

@@ -32,17 +32,17 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia import Model
+from udec_ia.checker import check, check_links
+from udec_ia.checker.checked_state import State
+from udec_ia.checker.integer_codes import allowed
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-from udec_ia.inspect.check import check, check_links
-from udec_ia.inspect.check.codes import allowed
-from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.reading import TABLE
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field
 from udec_ia.ops.run.watch import Series
+from udec_ia.reader.field_reading import TABLE
 from udec_ia.restart import load, save
 
 TAKEN, REFUSED = 5, 100  # one in so many of the changes that are taken or refused goes through a file

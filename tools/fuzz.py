@@ -27,13 +27,13 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.checker import Violation, check, check_links
 from udec_ia.deck.language import COMMANDS, required
 from udec_ia.deck.monitor import RESTART_FILE, Monitor
 from udec_ia.deck.reader import Statement, statements
 from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-from udec_ia.inspect.check import Violation, check, check_links
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.rounding import STRAINED

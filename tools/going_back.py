@@ -17,14 +17,14 @@ import numpy as np
 
 from udec_ia import Model
 from udec_ia.debug.answers import last_hit, wrote
-from udec_ia.debug.places import place
 from udec_ia.debug.probes import Changed
 from udec_ia.debug.session import Debugger
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import statements
 from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
-from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, TABLE, Atlas
+from udec_ia.reader.places import place
 
 QUIET = re.compile(r"(PLOT|PRINT|SAVE|STOP|END)\b.*", re.IGNORECASE)  # commands that do not run
 

@@ -16,10 +16,10 @@ import numpy as np
 from numba import njit
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.table import table
-from udec_ia.inspect.walk import loop
 from udec_ia.kernels.contact.changes import TURNED
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.list_walks import loop
 
 # Flags of the program's kernels; no counting of references to arrays, which its kernels do not have either.
 F = TypeVar("F", bound=Callable[..., Any])

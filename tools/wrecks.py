@@ -46,9 +46,9 @@ from udec_ia import cli
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import working_time
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.look.atlas import KINDS
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
+from udec_ia.reader.atlas import KINDS
 from udec_ia.restart import info, load, save
 
 BATCH = 1000  # cases to a process

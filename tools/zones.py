@@ -16,9 +16,9 @@ from soa import compiled
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.jit import kernel
-from udec_ia.inspect.table import table
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
 
 
 class Numbers(NamedTuple):

@@ -18,14 +18,14 @@ from threading import current_thread, main_thread
 from typing import Any
 
 import udec_ia
+from udec_ia.command_line import LOOKS, add_commands
+from udec_ia.command_line import VERBS as WORKSHOP
+from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
 from udec_ia.layout.table import StaleLayout
 from udec_ia.printable import printable
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
-from udec_ia.workshop import LOOKS, add_commands
-from udec_ia.workshop import VERBS as WORKSHOP
-from udec_ia.workshop.common import given, variables, word_scheme
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", *WORKSHOP)

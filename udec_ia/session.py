@@ -17,12 +17,12 @@ import numpy as np
 from udec_ia.files import last_number
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import compile_seconds
-from udec_ia.inspect.table import table
-from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.log import Log, Step
 from udec_ia.ops.run.solution import in_short
 from udec_ia.ops.run.watch import Series, Watch
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.list_walks import Unsound
 from udec_ia.recorder import Recorder
 
 if TYPE_CHECKING:

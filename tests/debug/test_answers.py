@@ -14,13 +14,13 @@ from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.debug.answers import RENUMBERED, born, why, wrote, wrote_within
-from udec_ia.debug.places import named, place
 from udec_ia.debug.session import Debugger
 from udec_ia.debug.tracing import Trace
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import getr
-from udec_ia.inspect.look.atlas import KINDS, Atlas
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas
+from udec_ia.reader.places import named, place
 
 
 @pytest.fixture(scope="module")

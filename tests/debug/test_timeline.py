@@ -12,14 +12,14 @@ from support.debugger_decks import PILE
 
 from udec_ia import Model
 from udec_ia.debug.answers import last_hit
-from udec_ia.debug.places import place
 from udec_ia.debug.probes import Changed, Contacts
 from udec_ia.debug.session import Debugger, Resume
 from udec_ia.debug.timeline import Gone
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import iget
-from udec_ia.inspect.look.atlas import KINDS, TABLE, Atlas
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, TABLE, Atlas
+from udec_ia.reader.places import place
 
 KEPT_CYCLES = 460
 

@@ -14,11 +14,11 @@ from support import random_deformable_scenes as soft_scenes
 from support import random_scenes as scenes
 
 from udec_ia import Model
+from udec_ia.checker import check
+from udec_ia.checker.block_outlines import outlines
+from udec_ia.checker.checked_state import State
 from udec_ia.heap import walks
 from udec_ia.heap.interpreting import Sparing, interpreted
-from udec_ia.inspect.check import check
-from udec_ia.inspect.check.groups import State
-from udec_ia.inspect.check.outlines import outlines
 from udec_ia.kernels.audit import faces
 from udec_ia.kernels.audit.outlines import in_polygon, in_rounded
 from udec_ia.layout import offsets as g

@@ -20,7 +20,8 @@ from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.heap.words import scheme
-from udec_ia.inspect.change import convert, renumber
+from udec_ia.heap_tools.convert_word_scheme import convert
+from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.layout import offsets as g
 
 STEPS: list[Callable[[Model], Any]] = [

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.array import MainArray, variable
-from udec_ia.inspect.table import table
 from udec_ia.layout import offsets
 from udec_ia.layout.table import lay_out, read_table
+from udec_ia.reader.group_tables import table
 
 TABLE = read_table()
 KINDS = [group.name for group in TABLE.groups]

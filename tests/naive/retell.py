@@ -16,8 +16,8 @@ import numpy as np
 
 from naive.layout import count_words
 from udec_ia.heap.array import MainArray, variable
-from udec_ia.inspect.table import table as rows_of
 from udec_ia.layout.table import COMMON_TYPES, Group, Table, read_table
+from udec_ia.reader.group_tables import table as rows_of
 from udec_ia.restart.layout import text
 from udec_ia.restart.seal import SIZE, seal
 

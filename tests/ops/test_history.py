@@ -15,13 +15,13 @@ from support.handmade_map import two_blocks
 from support.mechanics_scenes import at, block, standing, value
 
 from udec_ia import Model, UdecError
+from udec_ia.checker import check, check_links
 from udec_ia.heap.accessors import getr, iget, puti
-from udec_ia.inspect.check import check, check_links
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.history import define, named
-from udec_ia.ops.commands.recordable import recordable
 from udec_ia.ops.run.watch import ROWS, Watch
+from udec_ia.reader.recordable_numbers import recordable
 
 KINDS = ("block", "corner", "contact", "domain")
 

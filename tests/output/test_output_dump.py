@@ -9,10 +9,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, puti, putr
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.walk import corners, groups
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.output.dump import dump
+from udec_ia.reader.list_walks import corners, groups
 
 
 def words(text: str) -> dict[int, int]:

@@ -22,7 +22,6 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.walk import corners, groups
 from udec_ia.layout import offsets as g
 from udec_ia.output.animate import MAX_STATES, Animation
 from udec_ia.output.draw import LARGEST, limits, moved_blocks, scale_for, to_draw
@@ -40,6 +39,7 @@ from udec_ia.output.outline import (
     snapshot,
 )
 from udec_ia.output.plot import Frame, Plots, What
+from udec_ia.reader.list_walks import corners, groups
 
 ROUNDED_AREA = 1.0 - (4.0 - np.pi) * ROUNDING**2
 # a quarter circle drawn as n chords loses R^2 (pi/4 - (n/2) sin(pi/2n)) of its area

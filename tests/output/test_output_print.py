@@ -9,10 +9,10 @@ from support.mechanics_scenes import box, model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.walk import boundary, corners, groups, loop
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output.printout import LINE, printout
+from udec_ia.reader.list_walks import boundary, corners, groups, loop
 from udec_ia.studies.verification_tools import fan
 
 EVERYTHING = ("blocks", "contacts", "corners", "domains", "list", "dlist")

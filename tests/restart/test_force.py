@@ -12,16 +12,16 @@ import pytest
 from support.every_group_kind import every_kind
 
 from udec_ia import Model
+from udec_ia.checker import check, unjudged
 from udec_ia.cli import main
 from udec_ia.deck.monitor import Monitor, run_deck
 from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import statements
 from udec_ia.errors import UdecError
-from udec_ia.inspect.check import check, unjudged
-from udec_ia.inspect.table import table
-from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart import info, look_into, see
 
 PRINTED = ["blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones", "boundaries"]

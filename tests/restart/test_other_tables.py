@@ -20,7 +20,8 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import variable
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.translate import TranslationError, translate, words_of
+from udec_ia.heap_tools.field_translation import translate
+from udec_ia.heap_tools.written_state import TranslationError, words_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import TABLE, parse, read_table
 from udec_ia.restart import info, look_into, see

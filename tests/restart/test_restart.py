@@ -18,11 +18,11 @@ from support.handmade_map import two_blocks
 from support.mechanics_scenes import box, model, on_base
 
 from udec_ia import Model
+from udec_ia.checker import check_links
 from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find, lose
 from udec_ia.heap.words import ALL_SCHEMES, scheme
-from udec_ia.inspect.check import check_links
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.restart import info, load, save

@@ -11,8 +11,8 @@ import pytest
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
-from udec_ia.inspect.table import table
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
 from udec_ia.studies.divergence import Divergence, StateComparison, find_divergence, of_deck, of_state
 
 DECK = """\

@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from udec_ia.inspect.look.atlas import NAMES
+from udec_ia.reader.atlas import NAMES
 from udec_ia.view.page import WEB
 
 SEEN_AS = {

@@ -20,7 +20,7 @@ from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import ALL_SCHEMES
-from udec_ia.inspect.look import Atlas
+from udec_ia.reader.atlas import Atlas
 from udec_ia.view import Page, page
 
 INTS = {16: "h", 32: "i", 64: "q"}

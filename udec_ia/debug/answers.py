@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from udec_ia.debug.places import Place, named
 from udec_ia.debug.probes import Born, Changed, Probe, shown
 from udec_ia.debug.timeline import Timeline
 from udec_ia.debug.tracing import Access, Trace
 from udec_ia.heap.accessors import Memory
-from udec_ia.inspect.look.atlas import KINDS, Atlas
-from udec_ia.inspect.look.names import called
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas
+from udec_ia.reader.group_names import called
+from udec_ia.reader.places import Place, named
 
 MANY = 12  # origins of a value that are told
 RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"

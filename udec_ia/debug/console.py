@@ -14,7 +14,6 @@ from typing import Any, TextIO
 
 from udec_ia.debug import answers
 from udec_ia.debug.looks import Looks
-from udec_ia.debug.places import place
 from udec_ia.debug.probes import COMPARED, Changed, Contacts, Probe, Where, shown
 from udec_ia.debug.session import Debugger, Leave, Resume
 from udec_ia.debug.timeline import Gone
@@ -22,10 +21,11 @@ from udec_ia.deck.parser import NO_DECK, RESTART_FILE
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.inspect.change import patch
-from udec_ia.inspect.look.atlas import TABLE
+from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 from udec_ia.printable import folded
+from udec_ia.reader.atlas import TABLE
+from udec_ia.reader.places import place
 from udec_ia.signals import dealt_with, hold, passing
 
 INSIDE = ("pass", "group", "write")

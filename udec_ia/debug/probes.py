@@ -11,13 +11,13 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from udec_ia.debug.places import Place
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.look.atlas import Atlas
-from udec_ia.inspect.look.condition import satisfying
-from udec_ia.inspect.table import addresses, table
-from udec_ia.inspect.walk import Unsound
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.conditions import satisfying
+from udec_ia.reader.group_tables import addresses, table
+from udec_ia.reader.list_walks import Unsound
+from udec_ia.reader.places import Place
 
 GROUPS_MADE = [g.MFREE, g.JUNK, g.NBLK, g.NDOM, g.NMADE, g.NBROKE]  # one changes when a group comes or goes
 COMPARED: dict[str, Callable[[Any, Any], bool]] = {

@@ -20,9 +20,9 @@ from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import Line, Statement, tokens
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.look.atlas import Atlas
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
+from udec_ia.reader.atlas import Atlas
 from udec_ia.signals import poll
 
 PIECE_SECONDS = 0.02

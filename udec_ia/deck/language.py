@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.recordable import QUANTITIES, recordable
+from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
 
 MANY = 20  # choices that are told by the name of their argument, not one by one
 SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments

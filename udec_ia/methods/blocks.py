@@ -9,7 +9,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.change import patch
+from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import DTOL
 from udec_ia.methods.state import State
 from udec_ia.ops.commands import boundary as bounds
@@ -215,7 +215,7 @@ class Blocks(State):
     def patch(self, assignments: str) -> None:
         """PATCH: give words of the array other values by name, as in "block@88.KXD = 0.5, FRAC = 0.1".
 
-        All of them, and only if the state is sound with them (inspect.change.patch): else error 10, 28 or 30.
+        All of them, and only if the state is sound with them (patch_words.py): else error 10, 28 or 30.
         """
         self._ready(sound=False)
         patch(self.array, assignments)

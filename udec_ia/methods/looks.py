@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from udec_ia.checker import check, unjudged
 from udec_ia.errors import UdecError
-from udec_ia.inspect.check import check, unjudged
-from udec_ia.inspect.table import table
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.methods.state import State
 from udec_ia.ops.common.limits import whole
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
+from udec_ia.reader.group_tables import table
 from udec_ia.transaction import looking
 
 
@@ -20,7 +20,7 @@ class Looks(State):
     """What they return or write is all that they do."""
 
     def table(self, kind: str) -> Any:
-        """One row a group: `address`, then the fields by the names of the table (see inspect.table)."""
+        """One row a group: `address`, then the fields by the names of the table (reader/group_tables.py)."""
         return table(self.array, kind)
 
     def check(self) -> list[Any]:

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import SupportsIndex, TypeVar
 
+from udec_ia.checker import check_shapes
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.lent import Writes, lend
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.inspect.check import check_shapes
 from udec_ia.layout.offsets import LREADY
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.split import Boxes

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
-from udec_ia.inspect.walk import groups, members
 from udec_ia.layout import offsets as g
+from udec_ia.reader.list_walks import groups, members
 
 CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
     "s11": "stress 11 (Pa)",

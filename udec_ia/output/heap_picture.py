@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from udec_ia.checker import check_links
 from udec_ia.counting import counted
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check import check_links
-from udec_ia.inspect.look.atlas import KINDS, NAMES, Atlas
-from udec_ia.inspect.look.cover import FINE, cover, stretch
-from udec_ia.inspect.look.kinds import COLOURS
-from udec_ia.inspect.look.listing import Listing
+from udec_ia.heap_tools.heap_map import FINE, cover, stretch
 from udec_ia.layout import offsets as g
 from udec_ia.output.draw import INK, POINT, diameter, draw_outlines, limits, paper, scale_for, title
 from udec_ia.output.outline import Outlines, State, apex, domain_polygons
 from udec_ia.output.picture import picture_path, write_as
 from udec_ia.output.remains import is_near, outlines_left, points
+from udec_ia.reader.atlas import KINDS, NAMES, Atlas
+from udec_ia.reader.kind_colours import COLOURS
+from udec_ia.reader.listing import Listing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.inspect.walk import groups, kind_of, loop, point, reverse
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 from udec_ia.output.field import Field, field
+from udec_ia.reader.list_walks import groups, kind_of, loop, point, reverse
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
 ARC_POINTS = 6  # points on an arc where a domain's polygon follows it

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.inspect.look.atlas import KINDS, Atlas, Span
-from udec_ia.inspect.look.kinds import COLOURS
-from udec_ia.inspect.look.listing import Listing
-from udec_ia.inspect.look.names import called
-from udec_ia.inspect.look.place import homes
-from udec_ia.inspect.look.pointers import pointers
-from udec_ia.inspect.look.what import what
+from udec_ia.heap_tools.all_pointers import pointers
+from udec_ia.heap_tools.word_report import what
 from udec_ia.layout import offsets as g
 from udec_ia.output.draw import INK, draw_addresses, draw_outlines, paper, scale_for, title
 from udec_ia.output.outline import Outlines
 from udec_ia.output.picture import picture_path, write_as
 from udec_ia.output.remains import is_near, outlines_left, part, points
+from udec_ia.reader.atlas import KINDS, Atlas, Span
+from udec_ia.reader.group_names import called
+from udec_ia.reader.group_place import homes
+from udec_ia.reader.kind_colours import COLOURS
+from udec_ia.reader.listing import Listing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.files import put_in_place
-from udec_ia.inspect.look.atlas import NOTHING, Atlas
-from udec_ia.inspect.look.graph import Edge, Graph, Node, colour, dot, neighbourhood, said
-from udec_ia.inspect.look.kinds import COLOURS
-from udec_ia.inspect.look.listing import Listing
+from udec_ia.heap_tools.pointer_graph import Edge, Graph, Node, colour, dot, neighbourhood, said
 from udec_ia.output.draw import INK
 from udec_ia.output.picture import picture_path, write_as
+from udec_ia.reader.atlas import NOTHING, Atlas
+from udec_ia.reader.kind_colours import COLOURS
+from udec_ia.reader.listing import Listing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +33,7 @@ Place = tuple[float, float]
 def draw(atlas: Atlas, address: int, out: str | Path, depth: int = 1) -> Listing:
     """Draw the pointers around the group at `address` to the file `out`, as PNG, SVG or DOT.
 
-    Raises as `inspect.look.graph.neighbourhood` does, ValueError for another kind of file, error 31 if it
+    Raises as `pointer_graph.neighbourhood` does, ValueError for another kind of file, error 31 if it
     cannot be written.
     """
     from matplotlib import rc_context

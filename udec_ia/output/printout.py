@@ -20,7 +20,12 @@ import numpy as np
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
-from udec_ia.inspect.walk import (
+from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, read_table
+from udec_ia.ops.commands.energy import Balance, balance
+from udec_ia.ops.run.watch import Series
+from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,
     boundary,
@@ -32,11 +37,6 @@ from udec_ia.inspect.walk import (
     members,
     point,
 )
-from udec_ia.kernels.body.fdef import strain_rates
-from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, read_table
-from udec_ia.ops.commands.energy import Balance, balance
-from udec_ia.ops.run.watch import Series
 
 T = TypeVar("T")
 LINE = 120

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Offset, getr, iget
-from udec_ia.inspect.look.atlas import KINDS, Atlas
 from udec_ia.layout import offsets as g
 from udec_ia.output.outline import Outlines, outlines
+from udec_ia.reader.atlas import KINDS, Atlas
 
 FAR = 100.0  # times the median distance of corners from their middle: nothing sound is further away
 BEYOND = 1e30  # m: no arc is there

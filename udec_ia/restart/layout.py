@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from udec_ia.heap.census import CHOICES
-from udec_ia.inspect.meaning import in_words
+from udec_ia.heap_tools.table_translation import in_words
 from udec_ia.layout.table import COMMON_TYPES, RATIOS, Field, Group, HeadCode, Table, lay_out
 from udec_ia.printable import printable
 

@@ -2,7 +2,7 @@
 
 Nothing in the file is believed before it is tested: seal, format, completeness, field table, word
 widths, types and shapes, checksums, bounds, and at last the lists and pointers of the heap itself.
-A file that was written with another field table is read by the names of that table (inspect/translate).
+A file that was written with another field table is read by the names of that table (field_translation.py).
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.checker import check_links
 from udec_ia.heap.array import MainArray, variable
 from udec_ia.heap.words import ALL_SCHEMES, Scheme
-from udec_ia.inspect.check import check_links
-from udec_ia.inspect.meaning import news
-from udec_ia.inspect.translate import TranslationError, Words, translate
+from udec_ia.heap_tools.field_translation import translate
+from udec_ia.heap_tools.table_translation import news
+from udec_ia.heap_tools.written_state import TranslationError, Words
 from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.ops.run.watch import Series

@@ -14,11 +14,11 @@ import numpy as np
 
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.walk import Unsound, groups
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history import Definition, definitions
-from udec_ia.ops.commands.recordable import HISTORY, by_codes
 from udec_ia.ops.run.watch import Series
+from udec_ia.reader.list_walks import Unsound, groups
+from udec_ia.reader.recordable_numbers import HISTORY, by_codes
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
 from udec_ia.restart.refusal import RefusedError

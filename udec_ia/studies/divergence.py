@@ -34,10 +34,8 @@ from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import interpreted, observe
-from udec_ia.inspect.compare import Compared, compare
-from udec_ia.inspect.compare.compare import Differing
-from udec_ia.inspect.compare.side import Side
-from udec_ia.inspect.look.atlas import KINDS
+from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.memory import keep_spare
@@ -46,6 +44,7 @@ from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.cycle import prepare, raise_error
 from udec_ia.ops.run.replay import Replay
 from udec_ia.ops.run.watch import SOLVE_LIMIT, run_unwatched
+from udec_ia.reader.atlas import KINDS
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 STOPS = 1000  # times that a cycle may stop for memory

@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.table import addresses as listed
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
+from udec_ia.reader.group_tables import addresses as listed
 from udec_ia.studies.observer import RunObserver
 from udec_ia.studies.study_run import StudyRun
 

@@ -17,16 +17,16 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.choose import choose
-from udec_ia.inspect.look.atlas import Atlas, Word
-from udec_ia.inspect.look.condition import satisfying
-from udec_ia.inspect.table import addresses
 from udec_ia.kernels.drive.recording import measured
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy import balance
-from udec_ia.ops.commands.recordable import Recordable
 from udec_ia.ops.run.solution import Solution
 from udec_ia.ops.run.watch import Series
+from udec_ia.reader.atlas import Atlas, Word
+from udec_ia.reader.conditions import satisfying
+from udec_ia.reader.group_tables import addresses
+from udec_ia.reader.nearest_group import choose
+from udec_ia.reader.recordable_numbers import Recordable
 
 FOLLOWED = ("block", "corner", "gridpoint", "zone")
 PLACES = {"block": ("KX", "KY"), "gridpoint": ("KXG", "KYG")}  # of what has a displacement

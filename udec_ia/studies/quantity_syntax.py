@@ -23,10 +23,10 @@ from typing import NamedTuple
 
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import DEFAULT_SCHEME, scheme
-from udec_ia.inspect.look.atlas import KINDS, Atlas
-from udec_ia.inspect.look.condition import Wrong, satisfying
 from udec_ia.ops.commands.energy import Balance
-from udec_ia.ops.commands.recordable import recordable
+from udec_ia.reader.atlas import KINDS, Atlas
+from udec_ia.reader.conditions import Wrong, satisfying
+from udec_ia.reader.recordable_numbers import recordable
 from udec_ia.studies import quantities as forms
 from udec_ia.studies.quantities import DISPLACEMENTS, OF_SERIES, OVER, PLACES, Quantity, State
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.checker import check
 from udec_ia.heap.array import MainArray
-from udec_ia.inspect.check import check
-from udec_ia.inspect.look.atlas import NAMES, TABLE, UNUSED, Atlas, Span
 from udec_ia.printable import MESSAGE, printable
+from udec_ia.reader.atlas import NAMES, TABLE, UNUSED, Atlas, Span
 
 FAULTS = 1000  # violations that the page lists
 LINES = 2000  # lines of the deck that it shows, the last ones

@@ -6,11 +6,11 @@ from typing import Any
 
 from udec_ia.heap.census import CHOICES
 from udec_ia.heap.junk import JNEXT
-from udec_ia.inspect.check.codes import in_words
-from udec_ia.inspect.look.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED
-from udec_ia.inspect.look.fields import NOT_ALLOWED
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, Layout, layouts, read_table
+from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED
+from udec_ia.reader.field_reading import in_words
+from udec_ia.reader.field_rows import NOT_ALLOWED
 
 TABLE = read_table()
 

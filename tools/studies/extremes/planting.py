@@ -25,8 +25,8 @@ ROOT = Path(__file__).parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from udec_ia import Model, UdecError  # noqa: E402
+from udec_ia.checker import check  # noqa: E402
 from udec_ia.heap.accessors import putr  # noqa: E402
-from udec_ia.inspect.check import check  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 from udec_ia.layout.table import read_table  # noqa: E402
 

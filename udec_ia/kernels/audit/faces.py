@@ -16,7 +16,7 @@ UNKNOWN = -2  # of a place that no walk has come to
 
 @over_arrays
 def passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> None:
-    """The next passage around a domain for each that is known: see inspect/check/map.py."""
+    """The next passage around a domain for each that is known: see checker/contact_map.py."""
     for r in range(len(lists)):
         start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
         first = last = -1

@@ -59,7 +59,7 @@ def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, lim
 
 @over_arrays
 def standing(o: Outlines, code: Any, corner: Any, others: Any, edge: int, places: Any) -> None:
-    """The places of contacts of these codes on one of their blocks, as inspect/check/place.py has them.
+    """The places of contacts of these codes on one of their blocks, as checker/contact_places.py has them.
 
     corner, others: the corner on that block, and on the other; edge: code of those that stand on an edge.
     places (n x 4): how far before the start of its segment a contact is, and beyond its end; the lever; and

@@ -17,9 +17,9 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.memory import find
 from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.recordable import Recordable, by_codes, recordable
 from udec_ia.ops.common.limits import whole
 from udec_ia.ops.common.memory import require
+from udec_ia.reader.recordable_numbers import Recordable, by_codes, recordable
 
 CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}
 

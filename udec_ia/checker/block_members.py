@@ -1,0 +1,222 @@
+"""Invariant 6: what belongs together names each other, and belongs to the same block.
+
+    corner -> grid-point and grid-point -> corner are mutual
+    the corners and grid-points that a group names are those of its own block
+    every corner of a block with zones has a grid-point, and no other has; a point of an edge is not rounded
+    the zones of a block fill it side to side: every side of a zone is that of one other zone, the other way
+    round, or an edge of the outline; every edge is such a side; every grid-point belongs to a zone
+
+Sides that pair so close the surface but for the outline. So the areas of the zones add up to that of the
+outline, and if none is turned over (invariant 7) there is neither gap nor overlap.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from udec_ia.checker.checked_state import State
+from udec_ia.checker.ring_arrays import corner_before
+from udec_ia.reader.field_reading import TABLE, Numbers, names
+
+OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block
+COUNTS = {"KFNG": "gridpoint", "KFNZ": "zone"}  # of an fdef group
+KGP, *_ = names("corner", "backlink")
+KCOR, *_ = names("gridpoint", "backlink")
+KZG, *_ = names("zone", "triple")
+KFMIX = "KFMIX"
+
+
+def check_members(state: State) -> None:
+    """Invariant 6, and the counts of each block with zones (invariant 5)."""
+    _check_mutual(state)
+    _check_same_block(state)
+    _check_counts(state)
+    _check_zoned(state)
+    _check_cover(state)
+
+
+def _check_mutual(state: State) -> None:
+    """Links back and forth between groups of two kinds."""
+    for kind, addresses in state.address.items():
+        for name, target, back in _mutual(kind) if len(addresses) else ():
+            values = state.column(kind, name)
+            row = state.rows(target, values)
+            answer = np.append(state.column(target, back), 0)[row]
+            for k in np.flatnonzero((row >= 0) & (answer != addresses)):
+                state.report(
+                    6,
+                    f"{name} of {kind}@{addresses[k]} is {values[k]}, "
+                    f"but {back} of {target}@{values[k]} is {answer[k]}",
+                )
+
+
+@cache
+def _mutual(kind: str) -> list[tuple[str, str, str]]:
+    """Fields of `kind` that lead to groups of another kind, that kind, and its field that leads back.
+
+    Of several between the same two kinds the first answers the first, and so on.
+    """
+    targets = dict.fromkeys(field.target for field in TABLE.group(kind).fields if field.role == "backlink")
+    return [
+        (name, target, back)
+        for target in targets
+        if target is not None
+        for name, back in zip(_backlinks(kind, target), _backlinks(target, kind), strict=False)
+    ]
+
+
+def _backlinks(kind: str, target: str) -> list[str]:
+    fields = TABLE.group(kind).fields
+    return [field.name for field in fields if field.role == "backlink" and field.target == target]
+
+
+def block_of(state: State, kind: str) -> Numbers | None:
+    """The block that each group of `kind` belongs to, or acts on; None if it has none, or two."""
+    hosts = names(kind, "host")
+    if kind in OF_BLOCK:
+        return state.owner[kind]
+    if kind == "block":
+        return state.address[kind]
+    return state.column(kind, hosts[0]) if len(hosts) == 1 else None
+
+
+def _check_same_block(state: State) -> None:
+    """Corners, grid-points and zones that a group names are those of its own block."""
+    for kind, addresses in state.address.items():
+        mine = block_of(state, kind)
+        if mine is None or not len(addresses):
+            continue
+        for field in TABLE.group(kind).fields:
+            if field.target not in OF_BLOCK or field.role not in ("member", "backlink", "triple"):
+                continue
+            for i in range(field.count):
+                values = state.column(kind, field.name, i)
+                row = state.rows(field.target, values)
+                theirs = np.append(state.owner[field.target], 0)[row]
+                for k in np.flatnonzero((row >= 0) & (theirs != mine)):
+                    state.report(
+                        6,
+                        f"{field.name} of {kind}@{addresses[k]} is {values[k]}, a {field.target} of "
+                        f"block@{theirs[k]} and not of block@{mine[k]}",
+                    )
+
+
+def _check_counts(state: State) -> None:
+    """The numbers of grid-points and zones that each block with zones says it has."""
+    rows = state.rows("block", state.owner["fdef"])
+    for name, kind in COUNTS.items():
+        noted = state.column("fdef", name)
+        there = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
+        for k in np.flatnonzero(noted != there[rows]):
+            text = next(field.text for field in TABLE.group("fdef").fields if field.name == name)
+            state.report(
+                5,
+                f"{name} of fdef@{state.address['fdef'][k]}, the {text}, is {noted[k]}, "
+                f"but counting gives {there[rows[k]]}",
+            )
+
+
+def zoned(state: State) -> Numbers:
+    """Addresses of the blocks that have grid-points."""
+    return np.unique(state.owner["gridpoint"])
+
+
+def _check_zoned(state: State) -> None:
+    corners, points = state.address["corner"], state.column("corner", KGP)
+    with_zones = np.isin(state.owner["corner"], zoned(state))
+    for k in np.flatnonzero((points != 0) != with_zones):
+        block = state.owner["corner"][k]
+        what = "0, but its block has zones" if with_zones[k] else f"{points[k]}, but its block has no zones"
+        state.report(6, f"{KGP} of corner@{corners[k]} is {what}: block@{block}")
+    marked, at = state.column("gridpoint", "KGEDGE") == 1, state.column("gridpoint", KCOR)
+    radius = np.append(state.column("corner", "KRAD"), 0)[state.rows("corner", at)]
+    for k in np.flatnonzero(marked & ((at == 0) | (radius != 0))):
+        what = "is inside its block" if at[k] == 0 else f"stands at corner@{at[k]}, which is rounded"
+        point = state.address["gridpoint"][k]
+        state.report(6, f"KGEDGE of gridpoint@{point} is 1, but the grid-point {what}")
+
+
+def _check_cover(state: State) -> None:
+    zones, points = state.address["zone"], state.address["gridpoint"]
+    if not len(zones) and not len(points):
+        return
+    triples = np.stack([state.column("zone", KZG, i) for i in range(3)], axis=1)
+    rows = state.rows("gridpoint", triples)
+    known = np.isin(state.owner["zone"], state.rings.block) & (rows >= 0).all(axis=1)
+    zones, rows = zones[known], rows[known]
+    n = len(points)
+    start, end = rows.ravel(), np.roll(rows, -1, axis=1).ravel()
+    side = start * n + end
+    zone = np.repeat(np.arange(len(zones)), 3)
+    order = np.argsort(side, kind="stable")
+    for k in np.flatnonzero(side[order[1:]] == side[order[:-1]]):
+        one, two = order[k], order[k + 1]
+        state.report(
+            6,
+            f"zone@{zones[zone[one]]} and zone@{zones[zone[two]]} lie on the same side of the "
+            f"line from gridpoint@{points[start[one]]} to gridpoint@{points[end[one]]}",
+        )
+    outline, corner = _outline(state)
+    for k in np.flatnonzero(~np.isin(outline, side)):
+        state.report(6, f"no zone stands on the edge that ends at corner@{corner[k]}")
+    inner = np.isin(end * n + start, side)
+    for k in np.flatnonzero(~inner & ~np.isin(side, outline)):
+        state.report(
+            6,
+            f"zone@{zones[zone[k]]} has no neighbour beyond its side from gridpoint@{points[start[k]]} to "
+            f"gridpoint@{points[end[k]]}, which is no edge of the block",
+        )
+    alone = np.ones(n, bool)
+    alone[start] = False
+    for k in np.flatnonzero(alone & np.isin(state.owner["gridpoint"], state.rings.block)):
+        state.report(6, f"gridpoint@{points[k]} belongs to no zone")
+    _check_pairs(state)
+
+
+def _outline(state: State) -> tuple[Numbers, Numbers]:
+    """The edges of blocks with zones, as sides between grid-points, and the corner at the end of each."""
+    rings = state.rings
+    end = np.flatnonzero(~rings.contact)
+    ends = [
+        state.rows("gridpoint", state.read(rings.item[index], KGP)) for index in (corner_before(rings), end)
+    ]
+    known = (ends[0] >= 0) & (ends[1] >= 0)
+    return (ends[0] * len(state.address["gridpoint"]) + ends[1])[known], rings.item[end][known]
+
+
+def _check_pairs(state: State) -> None:
+    """Zones that are pairs for mixed discretisation have a common side: four grid-points in all."""
+    paired = state.owner["fdef"][state.column("fdef", KFMIX) == 1]
+    rows = np.flatnonzero(np.isin(state.owner["zone"], paired))
+    owner = state.owner["zone"][rows]
+    new = np.flatnonzero(np.concatenate(([True], owner[1:] != owner[:-1]))) if len(rows) else rows
+    place = np.arange(len(rows)) - np.repeat(new, np.diff(np.append(new, len(rows))))
+    first = np.flatnonzero(place % 2 == 0)
+    second = np.minimum(first + 1, len(rows) - 1)
+    triples = np.stack([state.column("zone", KZG, i)[rows] for i in range(3)], axis=1)
+    four = np.sort(np.hstack((triples[first], triples[second])), axis=1)
+    distinct = 1 + np.count_nonzero(np.diff(four, axis=1), axis=1)
+    for k in np.flatnonzero((distinct != 4) | (owner[first] != owner[second]) | (first == second)):
+        zone = state.address["zone"][rows[first[k]]]
+        state.report(6, f"{KFMIX} of block@{owner[first[k]]} is 1, but zone@{zone} is no pair with the next")
+
+
+def check_zone_areas(state: State) -> None:
+    """Invariant 7: no zone is flat or turned over, and grid-points are where their corners are."""
+    x, y = (np.append(state.column("gridpoint", name), np.nan) for name in ("KXG", "KYG"))
+    rows = [state.rows("gridpoint", state.column("zone", KZG, i)) for i in range(3)]
+    (x1, x2, x3), (y1, y2, y3) = ([values[row] for row in rows] for values in (x, y))
+    area = ((x3 - x1) * (y2 - y1) - (x2 - x1) * (y3 - y1)) / 2
+    for k in np.flatnonzero(area <= 0):
+        state.report(7, f"the area of zone@{state.address['zone'][k]}, clockwise, is {area[k]}: not positive")
+    row = state.rows("gridpoint", state.column("corner", KGP))
+    for corner, point, values in (("KXP", "KXG", x), ("KYP", "KYG", y)):
+        here = state.column("corner", corner)
+        for k in np.flatnonzero((row >= 0) & (here != values[row])):
+            state.report(
+                7,
+                f"{corner} of corner@{state.address['corner'][k]} is {here[k]}, "
+                f"but {point} of its grid-point is {values[row[k]]}",
+            )

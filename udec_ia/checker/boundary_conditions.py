@@ -1,0 +1,116 @@
+"""Invariant 6 for boundary conditions and signals: a condition acts on one place, which it holds as it says.
+
+    a condition acts on a grid-point if the block has zones, else on a corner or on the block itself
+    one on a corner carries the load of an edge that begins or ends there, and is given no velocities; where
+    the other end has a condition of its own that names this one's corner, this one names that of the other
+    the velocities that a condition gives are held at its grid-point or block
+    a FUNCTION has a number of its own and points, a sine has neither
+
+That a grid-point or block holds a velocity that no condition gives is sound: it keeps what it has.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.checker.block_members import zoned
+from udec_ia.checker.checked_state import State
+from udec_ia.layout import offsets as g
+from udec_ia.reader.field_reading import KR
+
+
+def check_bounds(state: State) -> None:
+    """Invariant 6."""
+    if len(state.address["bound"]):
+        _check_places(state)
+        _check_edges(state)
+        _check_held(state)
+    _check_signals(state)
+
+
+def _check_places(state: State) -> None:
+    """One of a grid-point, a corner or the block itself."""
+    bounds, block = state.address["bound"], state.column("bound", "KUB")
+    point, corner = (state.column("bound", name) != 0 for name in ("KUG", "KUP"))
+    with_zones = np.isin(block, zoned(state))
+    for k in np.flatnonzero(point != with_zones):
+        what = "no grid-point of it" if with_zones[k] else "a grid-point"
+        has = "has zones" if with_zones[k] else "has none"
+        state.report(6, f"bound@{bounds[k]} acts on {what}, but block@{block[k]} {has}")
+    for k in np.flatnonzero(point & corner):
+        state.report(6, f"bound@{bounds[k]} acts on a grid-point and on a corner: only one may be named")
+    for k in np.flatnonzero(corner & (state.column("bound", "KUFIX") != 0)):
+        state.report(6, f"bound@{bounds[k]} gives velocities to a corner")
+
+
+def _check_edges(state: State) -> None:
+    """The other end of an edge is a corner beside, and the conditions at both ends name each other.
+
+    BOUNDARY puts the two next to each other. FREE may take one away; SPLIT then clears the name in the other.
+    """
+    bounds, corner, other = (
+        state.address["bound"],
+        *(state.column("bound", name) for name in ("KUP", "KUQ")),
+    )
+    before = np.append(state.column("corner", KR), 0)
+    rows = [state.rows("corner", values) for values in (corner, other)]
+    beside = (before[rows[0]] == other) | (before[rows[1]] == corner)
+    for k in np.flatnonzero((other != 0) & ((corner == 0) | ~beside)):
+        state.report(
+            6,
+            f"KUQ of bound@{bounds[k]} is corner@{other[k]}, but no edge leads there from {corner[k]} (KUP)",
+        )
+    alone = ~np.isin(other * state.free + corner, corner * state.free + other)
+    for one, two in (slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1)):
+        lost = (corner[one] != 0) & (other[one] == 0) & (other[two] == corner[one]) & alone[two]
+        for k in np.flatnonzero(lost):
+            state.report(
+                6,
+                f"bound@{bounds[two][k]} names the edge to corner@{corner[one][k]}, "
+                f"but bound@{bounds[one][k]} beside it, on that corner, names no edge",
+            )
+
+
+def _check_held(state: State) -> None:
+    """Velocities that are given are not calculated."""
+    bounds, given = state.address["bound"], state.column("bound", "KUFIX")
+    fixed = state.column("block", "KBFIX")
+    along_x, along_y = fixed & (g.FIXED | g.GIVEN_X) != 0, fixed & (g.FIXED | g.GIVEN_Y) != 0
+    held = along_x * g.ALONG_X + along_y * g.ALONG_Y  # of a block, in the code of a grid-point
+    for kind, name, field, values in (
+        ("gridpoint", "KUG", "KGFIX", state.column("gridpoint", "KGFIX")),
+        ("block", "KUB", "KBFIX", held),
+    ):
+        acts = state.column("bound", "KUG") == 0 if kind == "block" else True
+        row = state.rows(kind, state.column("bound", name))
+        for k in np.flatnonzero(acts & (row >= 0) & (given & ~np.append(values, 0)[row] != 0)):
+            target = state.address[kind][row[k]]
+            state.report(
+                6,
+                f"bound@{bounds[k]} gives velocities (KUFIX is {given[k]}), but {field} of {kind}@{target} "
+                f"is {state.get(int(target), field)}, which does not hold them",
+            )
+
+
+def _check_signals(state: State) -> None:
+    signals, number = state.address["signal"], state.column("signal", "KTNUM")
+    first = state.column("signal", "KTP")
+    for k in np.flatnonzero((number != 0) != (first != 0)):
+        what = "no points" if number[k] else "points, which a sine does not have"
+        state.report(6, f"KTNUM of signal@{signals[k]} is {number[k]}, but it has {what}")
+    order = np.argsort(number, kind="stable")
+    for k in np.flatnonzero((number[order[1:]] == number[order[:-1]]) & (number[order[1:]] != 0)):
+        one, two = order[k], order[k + 1]
+        state.report(6, f"signal@{signals[one]} and signal@{signals[two]} are both FUNCTION {number[one]}")
+
+
+def check_times(state: State) -> None:
+    """Invariant 7: the times of a FUNCTION ascend."""
+    time, following = state.column("tabpoint", "KTPT"), state.column("tabpoint", "KTPN")
+    row = state.rows("tabpoint", following)
+    for k in np.flatnonzero((row >= 0) & ~(np.append(time, 0.0)[row] > time)):
+        state.report(
+            7,
+            f"KTPT of tabpoint@{following[k]} is {np.append(time, 0.0)[row[k]]}, "
+            f"not after {time[k]} of the point before it",
+        )

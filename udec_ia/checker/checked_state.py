@@ -1,0 +1,113 @@
+"""Which groups are in use: the first thing that the checker finds out, and all else stands on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from udec_ia.checker.ring_arrays import lay_out
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.walks import STRETCH, rows_of
+from udec_ia.layout import offsets as g
+from udec_ia.reader.field_reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
+from udec_ia.reader.group_lists import Lists
+
+ROWS_OF = Sparing(rows_of, 1e6, LOOKS)  # addresses
+
+LOST = "are in no group"  # what is said of words that no list leads to
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One broken relation: the number of the invariant, and a message that names both its ends."""
+
+    invariant: int
+    message: str
+
+    def __str__(self) -> str:
+        return f"invariant {self.invariant}: {self.message}"
+
+    @property
+    def misleads(self) -> bool:
+        """False for words that no list leads to: they are lost, and no routine will ever come to them."""
+        return not self.message.endswith(LOST)
+
+
+class State(Lists):
+    """All groups in use, and the violations found so far. rings: the clockwise lists that close."""
+
+    def __init__(self, array: MainArray) -> None:
+        super().__init__(array)
+        self.found: list[Violation] = []
+        self._columns: dict[str, Numbers] = {}
+        self._nth_at = np.zeros(len(self.kind_at), np.uint8)  # among those of its kind in the stretch
+        self._before: dict[str, Numbers] = {}  # by kind: groups that begin before each stretch
+        self._row: dict[str, Numbers] = {}  # by kind: row of the groups in the order of their addresses
+        for kind in LISTED:
+            self._check_links_back(kind, self.addresses(kind))
+        self.addresses("corner")
+        assert self.boundaries is not None
+        self.rings = lay_out(self, self.boundaries, self.rows)
+        self.boundaries = None  # it takes room
+        for group in TABLE.groups:
+            self.addresses(group.name)
+
+    def report(self, invariant: int, message: str) -> None:
+        """Add a violation."""
+        self.found.append(Violation(invariant, message))
+
+    def astray(self, source: str, iad: int, kind: str) -> None:
+        """Nothing: all pointers that lead astray are told together."""
+
+    def violations(self) -> list[Violation]:
+        """What was found, each once, in the order of the invariants; words that no list leads to last."""
+        return sorted(dict.fromkeys(self.found), key=lambda one: (not one.misleads, one.invariant))
+
+    def tolerance(self, name: str) -> float:
+        """A real of the common block."""
+        return float(self.h.cr[getattr(g, name)])
+
+    def column(self, kind: str, name: str, i: int = 0) -> Numbers:
+        """The same of all groups of `kind` in use; it is read once and kept."""
+        key = f"{name}+{i}"
+        if key not in self._columns:
+            self._columns[key] = self.read(self.address[kind], name, i)
+        return self._columns[key]
+
+    def forget(self) -> None:
+        """Keep no column: what comes now needs others, and room."""
+        self._columns.clear()
+
+    def leave_lists(self) -> None:
+        """Keep no list either, nor where groups begin: what comes now looks at none."""
+        del self.rings, self.kind_at, self._nth_at, self._before, self._row
+        self.forget()
+
+    def rows(self, kind: str, addresses: Numbers) -> Numbers:
+        """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
+        at, found = addresses.ravel(), np.empty(addresses.size, INDEX)
+        before, row, code = self._before[kind], self._row[kind], KIND_CODE[kind]
+        ROWS_OF(len(at), at, code, self.kind_at, self._nth_at, before, row, self._shift, found)
+        return found.reshape(addresses.shape)
+
+    def _enter(self, kind: str, at: Numbers) -> None:
+        """Groups of `kind` are in use at the addresses `at`, all different."""
+        super()._enter(kind, at)
+        place = self.place(at)
+        order = np.argsort(place, kind="stable")
+        in_order = place[order]
+        before = np.searchsorted(in_order, np.arange(0, len(self.kind_at), STRETCH)).astype(INDEX)
+        self._nth_at[in_order] = np.arange(len(at)) - before[in_order // STRETCH]
+        self._before[kind], self._row[kind] = before, order.astype(INDEX)
+
+    def _check_links_back(self, kind: str, at: Numbers) -> None:
+        """Those of a main list, if it has any."""
+        for back in names(kind, "back"):
+            (link,) = names(kind, "next")
+            before, noted = np.concatenate(([0], at[:-1])), self.read(at, back)
+            for row in np.flatnonzero(noted != before[: len(at)]).tolist():
+                source = f"{link} of {kind}@{at[row - 1]}" if row else TABLE.group(kind).list_head
+                text = f"{back} of {kind}@{at[row]} is {noted[row]}"
+                self.report(2, f"{text}, but {source} leads here from {before[row]}")

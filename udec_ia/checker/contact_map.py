@@ -1,0 +1,221 @@
+"""Invariants 3, 4 and 5: the lists of the blocks, the loops of the domains, Euler's formula.
+
+Every contact stands in the lists of two blocks, so it can be passed in two ways: having come along the
+list of KB1 one goes on along KB2, and the other way round. To go on along a block to its next contact and
+to change the block there is a permutation of these passages; its cycles are the faces of the map. Each
+must be the loop of one domain.
+
+All lists are looked at together, as arrays; only what is wrong is looked at by itself.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from udec_ia.checker.checked_state import State
+from udec_ia.counting import counted
+from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.heap.walks import ill_linked
+from udec_ia.kernels.audit.faces import cycles, passages, pieces
+from udec_ia.layout import offsets as g
+from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
+from udec_ia.reader.kernel_rows import told
+
+PASSAGES, CYCLES = Sparing(passages, 1.7e6, LOOKS), Sparing(cycles, 3e6, LOOKS)  # items, passages
+ILL_LINKED = Sparing(ill_linked, 5e5, LOOKS)  # items
+PIECES = Sparing(pieces, 6e5, LOOKS)  # contacts
+KNB, *_ = names("corner", "host")
+KLB, *_ = names("corner", "clockback")
+BACK = names("contact", "clockback")[:2]
+SIDES = names("contact", "loop")[:2]
+AHEAD = names("contact", "associate")[:2]
+KDLOOP, *_ = names("domain", "loop")
+
+
+def check_map(state: State) -> None:
+    """Invariants 3, 4 and 5."""
+    _check_corners(state)
+    _check_items(state)
+    _check_contacts(state)
+    _check_virtual(state)
+    _check_loops(state)
+    _check_counts(state)
+    _check_connected(state)
+
+
+def _check_corners(state: State) -> None:
+    """Every block has at least three corners."""
+    rings = state.rings
+    corners = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(rings.item) else rings.count
+    for k in np.flatnonzero(corners < 3):
+        state.report(3, f"block@{rings.block[k]} has {counted(corners[k], 'corner')}")
+
+
+def _check_items(state: State) -> None:
+    """Corners name their block and the one before; links back mirror the list; contacts know their corner."""
+    rings = state.rings
+    of_lists = np.column_stack((rings.block, rings.first, rings.count)), rings.item, rings.side
+    fields = (KNB, KR, KLB, *AHEAD, *BACK)
+    steps = tuple(state.offset[name] - 1 for name in fields)
+    for k, which, noted, wanted in told(
+        ILL_LINKED, len(rings.item), 4, state.h.ia, *of_lists, rings.before, rings.corner, steps
+    ).tolist():
+        item, block, name = rings.item[k], rings.block[rings.owner[k]], fields[which]
+        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {noted}"
+        if name == KNB:
+            why = f"the corner stands in the list of block@{block}"
+        elif name == KR:
+            why = f"clockwise corner@{wanted} precedes it"
+        elif name in AHEAD:
+            why = f"the first corner after it on block@{block} is {wanted}"
+        else:
+            why = f"{state.link(int(block), wanted)} leads to it, on block@{block}"
+        state.report(3, f"{what}, but {why}")
+
+
+def _check_contacts(state: State) -> None:
+    """Invariant 4: each contact stands in the lists of both its blocks and in the contact list."""
+    rings, contacts = state.rings, state.address["contact"]
+    one, two = (state.column("contact", name) for name in HOSTS)
+    for k in np.flatnonzero(one == two):
+        state.report(4, f"contact@{contacts[k]} names block@{one[k]} in {HOSTS[0]} and in {HOSTS[1]}")
+    for name, block, at in zip(HOSTS, (one, two), rings.at, strict=True):
+        out = np.flatnonzero((at < 0) & (one != two))
+        for k in out[np.isin(block[out], rings.block)] if len(out) else out:
+            state.report(
+                4,
+                f"contact@{contacts[k]} names block@{block[k]} in {name}, but is not in the block's list",
+            )
+    for i in np.flatnonzero(rings.contact & (rings.row < 0)):
+        block = rings.block[rings.owner[i]]
+        state.report(
+            4, f"contact@{rings.item[i]} stands in the list of block@{block}, but not in the contact list"
+        )
+
+
+def _check_virtual(state: State) -> None:
+    """Invariants 4 and 9: a virtual contact is a bridge of the map and carries no force."""
+    virtual = state.column("contact", "KCCOD") == g.VIRTUAL
+    left, right = (state.column("contact", side) for side in SIDES)
+    for row in np.flatnonzero(virtual & (left != right)):
+        contact = state.address["contact"][row]
+        state.report(
+            4,
+            f"contact@{contact} is virtual, but no bridge: "
+            f"{SIDES[0]} is {left[row]}, {SIDES[1]} is {right[row]}",
+        )
+    for name in ("KCFN", "KCFS"):
+        force = state.column("contact", name)
+        for row in np.flatnonzero(virtual & (force != 0)):
+            contact = state.address["contact"][row]
+            state.report(9, f"contact@{contact} is virtual, but {name} is {force[row]}")
+
+
+def _passages(state: State) -> Numbers:
+    """For each passage the next one around its domain.
+
+    Passage 2 row + side is that of the contact in `row` after which block KB1 (side 0) or KB2 (side 1) is
+    walked. One more at the end stands for all that leads to a block whose list is broken.
+    """
+    rings = state.rings
+    nowhere = 2 * len(state.address["contact"])
+    following = np.full(nowhere + 1, nowhere)
+    PASSAGES(len(rings.item), rings.lists, rings.contact, rings.row, rings.side, following)
+    return following
+
+
+def _check_loops(state: State) -> None:
+    """Invariant 4: each closed loop is labelled by one domain all around, each domain has one loop."""
+    following = _passages(state)
+    of_loop = np.empty_like(following)
+    CYCLES(len(following), following, of_loop)
+    of_loop = of_loop[:-1]
+    stands = state.rings.at.T.ravel() >= 0
+    closed = stands & (of_loop >= 0)
+    whole = len(state.rings.block) == len(state.address["block"]) and bool((closed == stands).all())
+    label = np.column_stack([state.column("contact", side) for side in SIDES[::-1]]).ravel()
+    starts = np.flatnonzero(of_loop == np.arange(len(of_loop)))
+    for start in np.unique(of_loop[closed][label[closed] != label[of_loop[closed]]]):
+        label[start] = _label(state, following, label, int(start))
+    order = starts[np.argsort(label[starts], kind="stable")]
+    contact = state.address["contact"]
+    for k in np.flatnonzero(label[order[1:]] == label[order[:-1]]):
+        before, start = order[k], order[k + 1]
+        state.report(
+            4,
+            f"the loop through contact@{contact[start // 2]} and the loop through "
+            f"contact@{contact[before // 2]} both name domain@{label[start]}",
+        )
+    _check_domains(state, label[starts], whole)
+
+
+def _label(state: State, following: Numbers, label: Numbers, start: int) -> int:
+    """The domain that most passages of a loop name, and a violation for each that does not."""
+    loop = [start]
+    while following[loop[-1]] != start:
+        loop.append(int(following[loop[-1]]))
+    labels = label[loop].tolist()
+    domain = Counter(labels).most_common(1)[0][0]
+    for passage, named in zip(loop, labels, strict=True):
+        if named != domain:
+            contact, side = state.address["contact"][passage // 2], SIDES[1 - passage % 2]
+            state.report(
+                4,
+                f"{side} of contact@{contact} is {named}, "
+                f"but the contact stands on the loop of domain@{domain}",
+            )
+    return int(domain)
+
+
+def _check_domains(state: State, with_loop: Numbers, whole: bool) -> None:
+    """Each domain knows a contact of its loop, and has one."""
+    domains, contact = state.address["domain"], state.column("domain", KDLOOP)
+    if not len(state.address["contact"]):
+        for k in np.flatnonzero(contact != 0):
+            state.report(4, f"{KDLOOP} of domain@{domains[k]} is {contact[k]}, but there are no contacts")
+        return
+    row = state.rows("contact", contact)
+    beside = np.zeros(len(domains), bool)
+    for side in SIDES:
+        beside |= state.column("contact", side)[row] == domains
+    for k in np.flatnonzero((row < 0) | ~beside):
+        what = f"{KDLOOP} of domain@{domains[k]} is"
+        if row[k] < 0:
+            state.report(4, f"{what} {contact[k]}, which is no contact in use")
+        else:
+            state.report(4, f"{what} contact@{contact[k]}, which does not stand on its loop")
+    if whole:
+        without = np.ones(len(domains) + 1, bool)  # one more, for row -1
+        without[state.rows("domain", with_loop)] = False
+        for k in np.flatnonzero(without[:-1]):
+            state.report(4, f"no loop of contacts belongs to domain@{domains[k]}")
+
+
+def _check_counts(state: State) -> None:
+    """Invariant 5: blocks - contacts + domains = 2, and the counts of the common block are true."""
+    blocks, contacts, domains = (len(state.address[kind]) for kind in ("block", "contact", "domain"))
+    if blocks and blocks - contacts + domains != 2:
+        state.report(5, f"{blocks} blocks - {contacts} contacts + {domains} domains is not 2")
+    if not blocks and contacts + domains:
+        state.report(
+            5, f"there are no blocks, but {counted(contacts, 'contact')} and {counted(domains, 'domain')}"
+        )
+    virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == g.VIRTUAL))
+    soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != g.MRIG))
+    counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
+    for name, count in counts.items():
+        if state.common(name) != count:
+            text = next(field.text for field in TABLE.common if field.name == name)
+            state.report(5, f"{name}, the {text}, is {state.common(name)}, but counting gives {count}")
+
+
+def _check_connected(state: State) -> None:
+    """Invariant 5: from any block every other one is reached over contacts, real or virtual."""
+    blocks = state.address["block"]
+    one, two = (state.rows("block", state.column("contact", name)) for name in HOSTS)
+    smallest = np.empty(len(blocks), INDEX)
+    PIECES(len(one), one, two, smallest)
+    for block in blocks[smallest != 0]:
+        state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")

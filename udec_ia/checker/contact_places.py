@@ -1,0 +1,136 @@
+"""Invariants 3 and 7: each contact stands where its code says, and in physical order along the boundary.
+
+A contact stands on the edge that ends at a corner, or on the arc of the corner. Both are measured clockwise
+from the start of the edge, the arc by its length. Positions may be off by GTOL, which keeps codes from
+flickering; and a contact does not pass a corner while another contact stands between them, so it may pass a
+cycle late.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from udec_ia.checker.checked_state import State
+from udec_ia.checker.contact_overlaps import Touches
+from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.standing import PASSED_OVER, disordered, standing
+from udec_ia.layout import offsets as g
+from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers
+from udec_ia.reader.kernel_rows import told
+
+STANDING = Sparing(standing, 2e5, LOOKS)  # contacts
+DISORDERED = Sparing(disordered, 2e6, LOOKS)  # items
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the contacts stand on one of their two blocks; arrays with one element for each contact.
+
+    corner: index of the first corner after the contact. on_edge: True on the edge, False on the arc.
+    under, over: distances by which it is outside its segment, before the start and after the end; negative
+    inside. On an arc they are those of the other circle's centre; lever: what they are along the arc, as a
+    part of that, where the other circle is a large one, or else 1. along: position, clockwise from the start
+    of the edge.
+    """
+
+    corner: Numbers
+    on_edge: Numbers
+    under: Numbers
+    over: Numbers
+    lever: Numbers
+    along: Numbers
+
+
+def place(o: Outlines, touch: Touches, side: int) -> Place:
+    """The places of all contacts on side 0 (block KB1) or 1 (KB2).
+
+    On an edge it is what touches it, the other circle or an end of a blunt arc, that must stand between the
+    roundings. Of two arcs each must face the other's centre. An arc on an edge may face another way: its
+    block has been tilted. Two edges that meet in a point without a radius part the ground between them at
+    their bisector.
+    """
+    k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
+    edge = g.EDGE_CORNER if side == 0 else g.CORNER_EDGE
+    places = np.empty((len(k), 4))
+    STANDING(len(k), o, touch.code, k, other, edge, places)
+    return Place(k, touch.code == edge, *places.T)
+
+
+def check_places(state: State, o: Outlines, touch: Touches) -> None:
+    """Invariants 3 and 7."""
+    if not len(touch.row):
+        return
+    along = []
+    for side in (0, 1):
+        here = place(o, touch, side)
+        _check_segment(state, o, touch, here, side)
+        along.append(here.along.copy())  # the rest takes room
+    state.forget()
+    _check_order(state, touch, along)
+
+
+def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
+    contacts = state.address["contact"][touch.row]
+    block = state.column("contact", HOSTS[side])[touch.row]
+    force = state.column("contact", "KCFN")[touch.row]
+    sharp = ~((o.r > 0) | o.pointed)
+    for k in np.flatnonzero(sharp[here.corner] & ~here.on_edge):
+        if touch.code[k] == g.CORNER_CORNER or (touch.overlap[k] <= 0 and force[k] == 0):
+            corner = o.corner[here.corner[k]]
+            state.report(7, f"contact@{contacts[k]} stands on the arc of corner@{corner}, which has none")
+    slack = state.tolerance("GTOL") + touch.slack
+    for beyond, step, what in ((here.under, -1, "before the start"), (here.over, 1, "after the end")):
+        for k in np.flatnonzero(beyond > slack):
+            corner = here.corner[k] if step > 0 else o.before[here.corner[k]]
+            concave = here.on_edge[k] and o.r[corner] < 0
+            waits = concave or _waits(state, int(touch.row[k]), side, step)
+            far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
+            if beyond[k] > far and not (concave and force[k] != 0):
+                segment = "edge" if here.on_edge[k] else "arc"
+                state.report(
+                    7,
+                    f"contact@{contacts[k]} stands on the {segment} of corner@{o.corner[here.corner[k]]} of "
+                    f"block@{block[k]}, but lies {beyond[k]} {what} of it",
+                )
+
+
+def _waits(state: State, row: int, side: int, step: int) -> bool:
+    """True if another contact stands between the contact and the corner, or has passed it just before."""
+    rings = state.rings
+    here = int(rings.at[side, row])
+    if here < 0:
+        return False
+    along = rings.after if step > 0 else rings.before
+    one = along[here]
+    return bool(rings.contact[one] or rings.contact[along[one]])
+
+
+def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
+    """Contacts between two corners follow each other clockwise.
+
+    Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
+    the program compares them along its chord. Only two closed contacts with different blocks can be made up
+    to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
+    an open contact would be given up.
+    """
+    rings, contacts = state.rings, state.address["contact"][touch.row]
+    index = np.where(state.column("contact", "KCCOD") == g.VIRTUAL, INDEX(PASSED_OVER), INDEX(-1))
+    index[touch.row] = np.arange(len(touch.row))
+    hosts = [state.column("contact", name)[touch.row] for name in HOSTS]
+    near = state.tolerance("FTOL") + state.tolerance("HTOL")
+    slack = touch.slack + near / 2
+    of_lists = rings.lists, rings.contact, rings.row, rings.side
+    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
+    for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):
+        block = rings.block[owner]
+        others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}
+        wedge = touch.overlap[one] > 0 and touch.overlap[two] > 0 and len(others) > 1
+        if behind > slack[one] + slack[two] + (state.tolerance("ETOL") if wedge else 0.0):
+            state.report(
+                3,
+                f"contact@{contacts[one]} stands before contact@{contacts[two]} in the list of "
+                f"block@{block}, but lies {behind} behind it",
+            )

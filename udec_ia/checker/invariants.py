@@ -1,0 +1,110 @@
+"""The checker: proves that a main array holds a sound map of blocks, or says all that is wrong.
+
+    1. every word below MFREE is in exactly one group, in use or junk; nothing points into junk
+    2. every pointer is 0, where it may be, or the base of a group of its kind; the main lists are linked both
+       ways; codes are in their range
+    3. clockwise lists close, contacts in physical order; links back and reverse lists mirror them
+    4. each contact is in the lists of both its blocks and on the loops of both its domains; loops close; what
+       hangs on a virtual contact lies in the domain in which it hangs; the outer domain lies around them all
+    5. blocks - contacts + domains = 2; the counts of the common block and of zones are true, and tolerances
+       are those of the rounding length
+    6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
+    7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
+    8. no two blocks overlap or touch without a contact between them
+    9. force sums are finite, virtual contacts carry none
+
+What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say,
+the checker comes to an end and raises nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.checker.block_members import check_members, check_zone_areas
+from udec_ia.checker.block_outlines import check_outlines, outlines
+from udec_ia.checker.boundary_conditions import check_bounds, check_times
+from udec_ia.checker.checked_state import State, Violation
+from udec_ia.checker.common_block import check_common
+from udec_ia.checker.connected_pieces import check_pieces
+from udec_ia.checker.contact_map import check_map
+from udec_ia.checker.contact_overlaps import check_contacts, touches
+from udec_ia.checker.contact_places import check_places
+from udec_ia.checker.integer_codes import check_codes
+from udec_ia.checker.memory_words import check_memory
+from udec_ia.checker.missing_contacts import check_complete
+from udec_ia.checker.outer_domain import check_outer
+from udec_ia.checker.pointer_targets import check_pointers
+from udec_ia.checker.real_numbers import check_numbers
+from udec_ia.checker.recorded_histories import check_histories
+from udec_ia.heap.array import MainArray
+from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.layout import offsets as g
+from udec_ia.reader.field_reading import KIND_CODE
+
+
+def check_links(array: MainArray) -> list[Violation]:
+    """The violations that would mislead a routine that follows pointers: invariants 1 to 6, and codes."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        _check_links(state)
+    return state.violations()
+
+
+def check_shapes(array: MainArray) -> list[Violation]:
+    """Those that would mislead a routine that cuts outlines: of the links, of numbers and of the outlines."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        _check_links(state)
+        _check_shapes(state)
+    return state.violations()
+
+
+def check(array: MainArray) -> list[Violation]:
+    """All violations of the invariants in `array`, by number, lost words last; none when it is sound.
+
+    A cycle that has stopped half-way, as the memory was full, has moved blocks that their contacts are yet to
+    follow: these are not compared with the outlines then.
+    """
+    with np.errstate(all="ignore"):
+        state = State(array)
+        _check_links(state)
+        state.forget()
+        shapes = _check_shapes(state)
+        if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
+            check_pieces(state, shapes)
+            state.forget()
+            touching = touches(state, shapes)
+            state.forget()
+            check_contacts(state, shapes, touching)
+            state.forget()
+            check_places(state, shapes, touching)
+            state.forget()
+            check_complete(state, shapes, touching)
+    return state.violations()
+
+
+def _check_shapes(state: State) -> Outlines | None:
+    """Numbers and outlines; the outlines, or None if there are none."""
+    check_numbers(state)
+    check_zone_areas(state)
+    check_times(state)
+    shapes = outlines(state)
+    if shapes is not None:
+        check_outlines(state, shapes)
+    return shapes
+
+
+def _check_links(state: State) -> None:
+    check_common(state)
+    check_pointers(state)
+    if state.found:  # else every pointer leads to a group that a list leads to
+        state.tell_lost(*KIND_CODE)
+    check_memory(state)
+    check_codes(state)
+    check_histories(state)
+    check_map(state)
+    state.forget()
+    check_outer(state)
+    check_members(state)
+    check_bounds(state)

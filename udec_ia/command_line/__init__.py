@@ -1,0 +1,43 @@
+"""Commands of the shell: tools on restart files, the debugger, sweeps, trade-off studies and verification.
+
+Each file here holds the commands of one kind. A command is one function of the library, which works the same
+on a model that runs; --python prints how to call it, --json prints what programs can read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.command_line import (
+    change_commands,
+    check_command,
+    debug,
+    diff_command,
+    diverge_command,
+    info_command,
+    look_commands,
+    sweep_command,
+    trade_command,
+    verify_command,
+    view_command,
+)
+
+READ_ONLY = (check_command, look_commands, diff_command, change_commands)  # commands that run nothing
+PARTS = (
+    info_command,
+    *READ_ONLY,
+    debug,
+    diverge_command,
+    sweep_command,
+    trade_command,
+    view_command,
+    verify_command,
+)
+VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
+LOOKS = tuple(verb for part in READ_ONLY for verb in part.VERBS)
+
+
+def add_commands(commands: Any) -> None:
+    """Add these commands to those of `udec`."""
+    for part in PARTS:
+        part.add_commands(commands)

@@ -1,0 +1,116 @@
+"""What all commands of the workshop have in common: --json, --python, and how they end."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.printable import folded
+
+if TYPE_CHECKING:
+    from udec_ia.reader.listing import Listing, Tables
+
+MISUSE = 2
+SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}
+Look = Callable[[argparse.Namespace], "Listing | Tables"]
+Script = Callable[[argparse.Namespace], str]
+
+
+def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> argparse.ArgumentParser:
+    """A command that prints what `look` finds, or with --python the lines of `script`.
+
+    What these raise as IndexError or ValueError is a wrong argument. The parser that is returned has no
+    arguments yet but --json and --python.
+    """
+    parser: argparse.ArgumentParser = commands.add_parser(verb, help=text, description=text)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument(
+        "--python", action="store_true", help="print how to do the same in Python, and do nothing else"
+    )
+    parser.set_defaults(action=partial(_obey, verb, look, script))
+    return parser
+
+
+def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
+    """The argument FILE."""
+    parser.add_argument(name, type=Path, metavar=name.upper(), help="a restart file, sound or damaged")
+
+
+def word_scheme(parser: argparse.ArgumentParser) -> None:
+    """The argument --build NAME."""
+    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+
+    parser.add_argument(
+        "--build",
+        choices=ALL_SCHEMES,
+        default=DEFAULT_SCHEME,
+        help="widths of integers and reals in bits (default: %(default)s)",
+    )
+
+
+def variables(parser: argparse.ArgumentParser) -> None:
+    """The argument --set NAME=VALUE."""
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="value of a variable of the deck ($NAME), in place of its DEFAULT; repeatable",
+    )
+
+
+def given(texts: Sequence[str]) -> dict[str, str]:
+    """The values of --set, by name. ValueError for what is none."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equal, value = (part.strip() for part in text.partition("="))
+        if not equal:
+            raise ValueError(f"--set {text}: give a name and a value, as in --set F=0.4")
+        if name.upper() in found:
+            raise ValueError(f"--set {text}: {name} has a value already")
+        found[name.upper()] = value
+    return found
+
+
+def seconds(option: str, text: str) -> float:
+    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
+    found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
+    if found is None:
+        raise ValueError(f"{option} {text}: give a time as in 60s, 5m or 1h")
+    return float(found[1]) * SECONDS[found[2]]
+
+
+def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:
+    try:
+        if args.python:
+            print(script(args))
+            return 0
+        found = look(args)
+    except (IndexError, ValueError) as error:
+        print(folded(f"udec {verb}: {error}"), file=sys.stderr)
+        return MISUSE
+    except UdecError as error:
+        if error.number == DAMAGED and "file" in args:  # it is no run that has done this
+            error.advice = f"udec check {args.file} lists all that is wrong in it"
+        raise
+    _print(found, args.json)
+    return found.status
+
+
+def _print(found: Listing | Tables, as_json: bool) -> None:
+    """In colours to a terminal, as plain text elsewhere; line by line, however long it is."""
+    if as_json:
+        sys.stdout.writelines(found.json())
+        sys.stdout.write("\n")
+    elif sys.stdout.isatty():
+        from udec_ia.command_line.coloured_listing import show
+
+        show(found, sys.stdout)
+    else:
+        sys.stdout.writelines(f"{line.text}\n" for line in found.lines())

@@ -1,0 +1,55 @@
+"""The command that shows restart files in a browser.
+
+udec view FILE ... --out view.html
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.command_line.command_options import command
+
+if TYPE_CHECKING:
+    from udec_ia.reader.listing import Listing
+
+VERBS = ("view",)
+TEXT = "write a page for a browser that shows IA() beside the blocks, for one state or several"
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    view = command(commands, "view", TEXT, _view, _script)
+    view.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a restart file, sound or damaged")
+    view.add_argument(
+        "--out",
+        type=Path,
+        default=Path("view.html"),
+        metavar="PAGE",
+        help="the page to be written (default: %(default)s)",
+    )
+
+
+def _view(args: argparse.Namespace) -> Listing:
+    from udec_ia.reader.listing import Listing
+    from udec_ia.restart import deck_in, look_into
+    from udec_ia.view import Page
+
+    page = Page()
+    for path in args.files:
+        page.add(look_into(path), path.name, deck_in(path))
+    return Listing([f"{page.write(args.out)}: open it in a browser", *page.left_out()])
+
+
+def _script(args: argparse.Namespace) -> str:
+    files = [str(path) for path in args.files]
+    return f"""from pathlib import Path
+
+from udec_ia.restart import deck_in, look_into
+from udec_ia.view import Page
+
+page = Page()
+for path in map(Path, {files!r}):
+    page.add(look_into(path), path.name, deck_in(path))  # of a model: model.array, any name, model.deck_log
+print(f"{{page.write({str(args.out)!r})}}: open it in a browser", *page.left_out(), sep="\\n")"""

@@ -1,0 +1,1 @@
+"""Tools on the whole heap: print, search, compare, convert and patch it, and measure facilities."""

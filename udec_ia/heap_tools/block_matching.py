@@ -1,0 +1,148 @@
+"""Which block of one state is which of the other: the main list tells, whatever has come or gone in it.
+
+If both lists have equally many blocks, and each one in turn the corners and the mass of the other, that is
+it: the blocks may have moved anywhere. Else those are matched first that nothing else can be: the only blocks
+of their mass, which no motion changes, and those that have hardly moved, as long as they come in the same
+order in both lists. Between two of these, blocks match from the front and from the back as far as corners and
+mass agree; all, where there are equally many, and else those that have hardly moved. Who is left over was
+made or deleted. Before there are masses, sizes stand for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.row_matching import Pairs, fold, only_ones, rising
+
+ALIKE = 0.01  # share of its size or mass by which a block may be another
+MASSES = 1e5  # steps of mass, to a factor of e, by which blocks are told apart
+CELLS = (1e-3, 0.03, 0.5, 1.0)  # of cells that blocks are looked for in, as shares of the median size
+SHIFTS = (
+    (0.0, 0.0),
+    (0.5, 0.0),
+    (0.0, 0.5),
+    (0.5, 0.5),
+)  # of the cells: near a border of one, within another
+FAR = 2.0**30  # cells
+
+
+class Blocks(NamedTuple):
+    """Blocks in the order of their list: addresses, number of corners, size, mass, coordinates; each (n,).
+
+    rings: the corners of all, block by block, each from KP on anticlockwise.
+    """
+
+    at: Any
+    corners: Any
+    size: Any
+    mass: Any
+    x: Any
+    y: Any
+    rings: Any
+
+    def some(self, rows: Any) -> Blocks:
+        """Those of some rows, with the rings of all."""
+        at, corners, size, mass, x, y = (column[rows] for column in self[:-1])
+        return Blocks(at, corners, size, mass, x, y, self.rings)
+
+    def ring(self, rows: Any) -> Any:
+        """The corners of the blocks of some rows, ascending."""
+        chosen = np.zeros(len(self.at), bool)
+        chosen[rows] = True
+        return self.rings[np.repeat(chosen, self.corners)]
+
+
+def blocks_of(side: Side) -> Blocks:
+    """The blocks of a heap."""
+    at = side.listed("block")
+    rings, corners = side.along("corner", side.column("block", "KP", at), "KR")
+    fields = ("KBRO", "KBM", "KX", "KY")
+    size, mass, x, y = (side.column("block", name, at).astype(np.float64) for name in fields)
+    return Blocks(at, corners, size, mass, x, y, rings)
+
+
+def aligned(one: Blocks, two: Blocks) -> Pairs:
+    """Rows of the one (n,) and of the other (n,) that are the same block, ascending."""
+    count = len(one.at)
+    if not all(bool((blocks.mass > 0).all()) for blocks in (one, two)):  # there are none before CYCLE
+        one, two = (blocks._replace(mass=blocks.size) for blocks in (one, two))
+    if count == len(two.at) and bool(alike(one, two, "mass").all()):
+        return np.arange(count), np.arange(count)
+    a, b = _anchors(one, two)
+    parts: list[tuple[Any, Any]] = [(a, b)]
+    ends = np.append(a, count), np.append(b, len(two.at))
+    starts = np.append(0, a + 1), np.append(0, b + 1)
+    for k in np.flatnonzero((ends[0] > starts[0]) & (ends[1] > starts[1])).tolist():
+        rows = np.arange(starts[0][k], ends[0][k]), np.arange(starts[1][k], ends[1][k])
+        parts.append(_between(one, two, *rows))
+    a, b = (np.concatenate(rows) for rows in zip(*parts, strict=True))
+    order = np.argsort(a)
+    return a[order], b[order]
+
+
+def alike(one: Blocks, two: Blocks, what: str = "size") -> Any:
+    """True for each row where both have the same corners and size, or mass."""
+    a, b = getattr(one, what), getattr(two, what)
+    with np.errstate(invalid="ignore"):
+        near = np.abs(a - b) <= ALIKE * np.maximum(np.abs(a), np.abs(b))
+    return (one.corners == two.corners) & near
+
+
+def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
+    """Rows that are matched whatever lies between them. cut: of blocks that may have another shape."""
+    rows = np.arange(len(one.at)), np.arange(len(two.at))
+    found: list[Pairs] = [(rows[0][:0], rows[1][:0])]
+    for keys in _keys(one, two):
+        if not (len(rows[0]) and len(rows[1])):
+            break
+        a, b = only_ones(keys[0][rows[0]], keys[1][rows[1]])
+        a, b = rows[0][a], rows[1][b]
+        good = alike(one.some(a), two.some(b), "mass") | cut
+        found.append((a[good], b[good]))
+        rows = np.setdiff1d(rows[0], a[good], True), np.setdiff1d(rows[1], b[good], True)
+    a, b = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    order = np.argsort(a)
+    a, b = a[order], b[order]
+    kept = rising(b)
+    return a[kept], b[kept]
+
+
+def _keys(one: Blocks, two: Blocks) -> Iterator[tuple[Any, Any]]:
+    """By mass, and by cells, small ones first: keys (n,) and (m,) that may belong to one block of each."""
+    both = one, two
+    with np.errstate(all="ignore"):
+        steps = [_whole(MASSES * np.log(blocks.mass)) for blocks in both]
+    yield fold((one.corners, steps[0]), (two.corners, steps[1]))
+    size = float(np.median(np.concatenate((one.size, two.size))))
+    for cell in CELLS:
+        for by_x, by_y in SHIFTS:
+            with np.errstate(all="ignore"):
+                x = [_whole(blocks.x / (cell * size) + by_x) for blocks in both]
+                y = [_whole(blocks.y / (cell * size) + by_y) for blocks in both]
+            yield fold((x[0], y[0]), (x[1], y[1]))
+
+
+def _whole(values: Any) -> Any:
+    """Reals as whole numbers; what is none, or far away, as one that is far away."""
+    return np.floor(np.clip(np.nan_to_num(values, nan=FAR), -FAR, FAR)).astype(np.int64)
+
+
+def _between(one: Blocks, two: Blocks, a: Any, b: Any) -> Pairs:
+    """Rows of `a` and of `b`, two stretches without an anchor, that are the same block."""
+    if len(a) == len(b):
+        return a, b
+    few = min(len(a), len(b))
+    front = int(np.append(alike(one.some(a[:few]), two.some(b[:few]), "mass"), False).argmin())
+    back = alike(one.some(a[len(a) - few :]), two.some(b[len(b) - few :]), "mass")[::-1]
+    last = min(int(np.append(back, False).argmin()), few - front)
+    rest = a[front : len(a) - last], b[front : len(b) - last]
+    cut = _anchors(one.some(rest[0]), two.some(rest[1]), cut=True)
+    found = [
+        np.concatenate((rows[:front], left[some], rows[len(rows) - last :]))
+        for rows, left, some in zip((a, b), rest, cut, strict=True)
+    ]
+    return found[0], found[1]

@@ -1,0 +1,170 @@
+"""What differs between two states, as text: by field, what only one has, and the greatest differences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from udec_ia.counting import counted
+from udec_ia.heap.array import MainArray
+from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
+from udec_ia.heap_tools.value_comparison import tolerance as limits
+from udec_ia.layout.codes import spelled
+from udec_ia.reader.atlas import KINDS, NAMES, NOTHING, TABLE, Atlas
+from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
+from udec_ia.reader.group_names import names
+from udec_ia.reader.listing import Listing, Tables
+
+LIMIT = 20  # rows of a table, if it is not said how many
+DISTANCES = ("difference", "relative", "ulp", "unit")
+CALLED = ("the first", "the second")
+FIRST = 3.0  # what counts as the share of a difference between numbers that are no reals: more than any other
+
+
+def diff(
+    one: MainArray,
+    two: MainArray,
+    only: Sequence[str] = (),
+    tolerance: Sequence[str] = (),
+    limit: int = LIMIT,
+    called: Sequence[str] = CALLED,
+) -> Tables:
+    """What differs between two states by meaning; status 1 if anything does.
+
+    only: contact, contact.KCFN, common.FRAC ...: what is compared, all if there is none. tolerance: m=1e-6,
+    relative=1e-9, ulp=4 ...: what does not count. limit: rows of a table. called: how the states are called.
+    ValueError for what is none of these.
+    """
+    if limit < 0:
+        raise ValueError(f"{limit} rows: give 0 or more")
+    found = compare(one.h, two.h, only, limits(tolerance))
+    parts = {
+        "summary": Listing(
+            _said(found, (one, two), called), ("kind", "field", "differ", "of", *DISTANCES), _by_field(found)
+        ),
+        "alone": _alone(found, limit, called),
+        "differences": _greatest(found, limit),
+    }
+    return Tables(parts, int(found.differ))
+
+
+def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -> list[str]:
+    """How much differs, in sentences."""
+    numbers = sum(len(one.one) for one in found.fields)
+    differ = f"{numbers} numbers differ" if numbers > 1 else f"{numbers or 'no'} number differs"
+    said = [f"{called[0]} and {called[1]}: {differ} in {_compared(found)}"]
+    for k, what in enumerate(("deleted", "made")):
+        counts = [counted(len(alone[k]), kind) for kind, alone in found.alone.items() if len(alone[k])]
+        if counts:
+            said.append(f"{what}: {', '.join(counts)}")
+    coded = [one for one in found.fields if one.field.name == "KCCOD"]
+    said += [f"re-coded: {counted(len(one.one), one.kind)}" for one in coded]
+    bits = [array.scheme.real_bits for array in arrays]
+    if bits[0] != bits[1]:
+        said.append(f"reals of {bits[0]} and {bits[1]} bits are compared in {min(bits)}")
+    for side, name in zip(found.matching.sides, called, strict=True):
+        said += [
+            f"left out: {counted(words, 'word')} of {name} that nothing leads to"
+            for words in _lost(side.atlas)
+        ]
+    return said
+
+
+def _compared(found: Compared) -> str:
+    """What was looked at."""
+    pairs = found.matching.pairs
+    matched = sum(len(at) for kind, (at, _) in pairs.items() if kind in found.kinds)
+    groups = [f"{counted(matched, 'group')} of both"] if found.kinds - {COMMON} else []
+    return " and ".join([*groups, *(["the common block"] if COMMON in found.kinds else [])])
+
+
+def _lost(atlas: Atlas) -> list[int]:
+    """How many words nothing leads to; [] if there are none."""
+    used = sum(len(at) * atlas.layout[kind].size for kind, at in atlas.groups.items())
+    if used + sum(size for chain in atlas.chains for _, size in chain) == atlas.free - 1:
+        return []
+    first, last, kind = atlas.bounds
+    lost = kind == NAMES.index(NOTHING)
+    words = int((last - first + 1)[lost].sum())
+    return [words] if words else []
+
+
+def _by_field(found: Compared) -> list[tuple[Any, ...]]:
+    """For each field that differs how often, and the greatest difference."""
+    rows: list[tuple[Any, ...]] = []
+    for one in found.fields:
+        greatest = int(np.argmax(np.nan_to_num(one.apart.absolute, nan=inf)))
+        rows.append((one.kind, one.name, len(one.one), one.many, *_distances(one, greatest)))
+    return rows
+
+
+def _distances(one: Differing, row: int) -> tuple[Any, ...]:
+    if not one.field.real:
+        return "", "", "", ""
+    apart = one.apart
+    far = [_short(float(column[row])) for column in (apart.absolute, apart.relative, apart.ulps)]
+    return far[0], far[1], int(far[2]) if far[2] < 1e6 else far[2], one.field.unit.strip("-")
+
+
+def _short(value: float) -> float:
+    """Three digits of how far two numbers are apart."""
+    return float(f"{value:.3g}")
+
+
+def _alone(found: Compared, limit: int, called: Sequence[str]) -> Listing:
+    """Groups that only one state has."""
+    rows: list[tuple[Any, ...]] = []
+    count = 0
+    for side, k in zip(found.matching.sides, (0, 1), strict=True):
+        for alone in found.alone.values():
+            count += len(alone[k])
+            shown = alone[k][: max(limit - len(rows), 0)]
+            rows += [(called[k], name) for name in names(side.atlas, shown)] if len(shown) else []
+    said = [f"the first {limit} of {count} groups that only one has:"] if count > limit else []
+    return Listing(said, ("only in", "group"), rows)
+
+
+def _greatest(found: Compared, limit: int) -> Listing:
+    """The differences one by one: of codes, counts and pointers first, then of reals by their shares."""
+    best = [(share, one, row) for one in found.fields for share, row in _first(one, limit)]
+    best.sort(key=lambda differing: -differing[0])
+    rows = [_row(found, one, row) for _, one, row in best[:limit]]
+    many = sum(len(one.one) for one in found.fields)
+    said = [f"the greatest {limit} of {many}, by their share of the greatest value of the field:"]
+    return Listing(said if many > limit else [], ("group", "field", "first", "second", *DISTANCES), rows)
+
+
+def _first(one: Differing, limit: int) -> list[tuple[float, int]]:
+    """The greatest differences of a field, and their rows; of equal ones the first."""
+    shares = np.nan_to_num(one.share, nan=FIRST) if one.field.real else np.full(len(one.one), FIRST)
+    rows = np.arange(len(shares))
+    if 0 < limit < len(shares):
+        rows = np.flatnonzero(shares >= np.partition(shares, -limit)[-limit])
+    order = rows[np.argsort(-shares[rows], kind="stable")][:limit]
+    return list(zip(shares[order].tolist(), order.tolist(), strict=True))
+
+
+def _row(found: Compared, one: Differing, row: int) -> tuple[Any, ...]:
+    a, b = int(one.one[row]), int(one.two[row])
+    name = COMMON_BLOCK if one.kind == COMMON else f"{one.kind}@{a}" + (f"/{b}" if a != b else "")
+    field = f"{one.name}({a + 1})" if one.kind == COMMON and one.field.count > 1 else one.name
+    first, second = (
+        _shown(side, one, values[row].item())
+        for side, values in zip(found.matching.sides, one.values, strict=True)
+    )
+    if first == second and isinstance(second, str):  # what has the name of a group there, and is not it
+        second += ", another"
+    return name, field, first, second, *_distances(one, row)
+
+
+def _shown(side: Side, one: Differing, value: int | float) -> int | float | str:
+    """A value; the group that a pointer leads to, or the name of a code."""
+    if isinstance(value, int) and (one.field.target or one.field.name in ADDRESSES):
+        kind = side.atlas.starts[value] if 0 < value < side.atlas.free else 0
+        return f"{KINDS[kind - 1]}@{value}" if kind else value
+    codes = spelled(TABLE.codes_of(one.field.name), value) if isinstance(value, int) else []
+    return "+".join(code.name for code in codes) or value

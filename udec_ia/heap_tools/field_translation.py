@@ -1,0 +1,248 @@
+"""The words of a state, field by field, by another table and in words of other widths."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.words import Scheme
+from udec_ia.heap_tools.table_translation import (
+    HISTORY,
+    KIND,
+    NUMBER,
+    Meaning,
+    UnknownError,
+    head_codes,
+    in_words,
+    is_alike,
+    may_be_0,
+    same_words,
+)
+from udec_ia.heap_tools.translated_groups import Places
+from udec_ia.heap_tools.word_fit import Fit
+from udec_ia.heap_tools.written_state import (
+    AT_FAULT,
+    COMMON,
+    FREE,
+    JUNK,
+    TOP,
+    Faults,
+    Rows,
+    TranslationError,
+    Words,
+)
+from udec_ia.layout.table import Field, Group, Table, lay_out
+
+PIECE = 8192  # groups that are written together: they fit in the machine's caches
+
+
+def translate(state: Words, table: Table, scheme: Scheme) -> Words:
+    """The same state by `table` in words of `scheme`. Raises TranslationError.
+
+    Where groups go: places.py. Reals of fewer bits are rounded.
+    """
+    counted = state.integer("IHPNT") != 0  # a history knows a variable by its number
+    work = Translation(state, table, scheme)
+    if scheme == state.scheme and same_words(state.table, table, counted):
+        ia, common = state.ia, work.variables()
+    else:
+        work.move()
+        ia = np.zeros(0 if work.faults else work.used, scheme.int_type)
+        common = {}
+        if not work.faults:
+            work.write(ia)
+            common = work.variables()
+    if work.fit.first:
+        work.faults.add(
+            f"{work.fit.first} is {work.fit.first.value}, too large for {scheme.name}", work.fit.misfits
+        )
+    if work.faults:
+        raise TranslationError(work.faults.told())
+    return Words(table, scheme, ia, common)
+
+
+class Translation:
+    """One state on its way into other words.
+
+    faults: what has found no place so far, but for numbers that do not fit, which `fit` tells. places: where
+    groups go; None while every word stays as it is.
+    """
+
+    def __init__(
+        self, state: Words, table: Table, scheme: Scheme, found: dict[str, Any] | None = None
+    ) -> None:
+        """found: as Places takes it."""
+        self.state, self.table, self.scheme = state, table, scheme
+        self.meaning = Meaning(state.table, table)
+        self.faults, self.fit, self.found = Faults(), Fit(), found
+        self.places: Places | None = None
+
+    def move(self) -> None:
+        """Give the groups their places. If there are faults now, nothing else can be done."""
+        self.places = Places(self.state, self.found)
+        sizes = {group.name: lay_out(group, self.scheme.ratio).size for group in self.table.groups}
+        self.places.move(sizes, self.faults)
+        if self.used > self.scheme.top_address:
+            self.faults.add(
+                f"{self.used} words are needed, and {self.scheme.name} has no addresses for so many"
+            )
+
+    @property
+    def used(self) -> int:
+        """The words that the groups and the junk list take."""
+        return self.places.used if self.places else len(self.state.ia)
+
+    @property
+    def room(self) -> int:
+        """Those of IA(): as many as before, unless the groups need more or the addresses end before."""
+        ratio = self.scheme.ratio
+        return min(max(self.state.integer(TOP), self.used, ratio), self.scheme.top_address) // ratio * ratio
+
+    def write(self, ia: Any) -> None:
+        """Write the words into `ia` (used,), which is 0."""
+        assert self.places is not None
+        places, groups = self.places, {group.name: group for group in self.table.groups}
+        for kind, at in places.at.items():
+            if not len(at):  # of a kind that may not be known here
+                continue
+            rows: Any = sliding_window_view(ia, lay_out(groups[kind], self.scheme.ratio).size, writeable=True)
+            for first in range(0, len(at), PIECE):
+                piece = slice(first, first + PIECE)
+                words = self._groups(groups[kind], Rows(kind, at[piece]))
+                rows[places.start[kind][piece] - 1] = words
+        for link in (JNEXT, JSIZE, JSIZES) if places.stays else ():
+            first = places.junk[places.junk[:, 1] > link[0], 0] - 1 + link[0]
+            ia[first] = self.state.ia[first]
+
+    def _groups(self, group: Group, rows: Rows) -> Any:
+        """The words of groups by the new table, a row each."""
+        old, new = (lay_out(one, s.ratio) for one, s in self._both(group))
+        words = sliding_window_view(self.state.ia, old.size)[rows.at - 1]
+        reals = words.view(self.state.scheme.real_type)
+        before = {field.name: field for field in self.state.table.group(group.name).fields}
+        held = {}
+        for name, field in before.items():
+            first = old.offset[name] - field.real
+            held[name] = (reals if field.real else words)[:, first : first + field.count]
+        if group.name == HISTORY and {KIND, NUMBER} <= {*before} and self.table is not self.state.table:
+            self._renumber(held, rows)
+        words = np.zeros((len(rows), new.size), self.scheme.int_type)
+        reals = words.view(self.scheme.real_type)
+        for field, values in self._translated(rows, before, group.fields, held):
+            first = new.offset[field.name] - field.real
+            (reals if field.real else words)[:, first : first + field.count] = values
+        return words
+
+    def _both(self, group: Group) -> list[tuple[Group, Scheme]]:
+        """A kind of group by the old table and by the new one, with the schemes that they are in."""
+        return [(self.state.table.group(group.name), self.state.scheme), (group, self.scheme)]
+
+    def variables(self) -> dict[str, Any]:
+        """The common block."""
+        before = {field.name: field for field in self.state.table.common}
+        held = {name: np.reshape(self.state.common[name], (1, -1)) for name in before}
+        told = self._translated(Rows(COMMON, ()), before, self.table.common, held)
+        found = {field.name: row[0] for field, row in told}
+        if self.places is not None:
+            found |= {FREE: np.array([self.used + 1]), TOP: np.array([self.room])}
+            if not self.places.stays:
+                found |= {JUNK: np.zeros(1, np.int64), AT_FAULT: np.zeros(1, np.int64)}
+        return found
+
+    def _translated(
+        self, rows: Rows, before: dict[str, Field], fields: tuple[Field, ...], held: dict[str, Any]
+    ) -> list[tuple[Field, Any]]:
+        """The values of `fields`, from what the fields `before` held, by name: one row each."""
+        kind = rows.kind
+        names = {field.name for field in fields}
+        for name, old in before.items():
+            if name not in names and not (kind and self._is_head_of_one(kind, old)):
+                self._refuse(
+                    held[name] != 0, rows, name, held[name], f"and that field is {self._gone(name)} here"
+                )
+        found = []
+        for field in fields:
+            values = np.zeros((len(rows), field.count), self._type(kind, field))
+            if field.name in before:
+                self._put(values, rows, before[field.name], field, held[field.name])
+            else:
+                self._begin(values, rows, field)
+            found.append((field, values))
+        return found
+
+    def _is_head_of_one(self, kind: str, field: Field) -> bool:
+        """True for a head code that says no more than the kind of the group does."""
+        return field.role == "head" and len(head_codes(self.state.table, kind)) == 1
+
+    def _gone(self, name: str) -> str:
+        """What is known of a field that the new table has not."""
+        old = next((one for one in self.table.retired if one.name == name), None)
+        return f"retired since layout {old.until} ({old.text})" if old else "not known"
+
+    def _type(self, kind: str, field: Field) -> Any:
+        """Type of the numbers of a field by the new table."""
+        if field.type == "double":
+            return np.float64
+        return self.scheme.real_type if field.real else self.scheme.int_type if kind else np.int64
+
+    def _put(self, values: Any, rows: Rows, old: Field, new: Field, held: Any) -> None:
+        """Let `values` of the field `new` be what the field `old` of the name has `held`."""
+        many = min(old.count, new.count) if is_alike(old, new) else 0
+        self._refuse(held[:, many:] != 0, rows, old.name, held[:, many:], f"but it is {in_words(new)} here")
+        held = held[:, :many]
+        if new.target is not None:
+            held = self._renewed(rows, old, new, held)
+        elif not new.real and old.name not in (KIND, NUMBER):
+            held = self._recoded(rows, old, new, held)
+        values[:, :many] = self.fit.take(rows, new, held, values.dtype)
+
+    def _begin(self, values: Any, rows: Rows, field: Field) -> None:
+        """A field that is new is 0, or the head code of a kind that has one."""
+        kind = rows.kind
+        codes = head_codes(self.table, kind) if field.role == "head" and kind else []
+        if len(codes) == 1:
+            values[:] = codes[0].value
+        elif codes or not may_be_0(field):
+            self._refuse(values == 0, rows, field.name, values, "as it is new, but must not be 0")
+
+    def _renewed(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
+        """Pointers to where the groups are now."""
+        if self.places is None:
+            return held
+        moved, astray = self.places.followed(held, str(new.target))
+        self._refuse(astray, rows, old.name, held, f"but there is no {new.target} at that address")
+        return moved
+
+    def _recoded(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
+        """Codes by their new numbers."""
+        if self.table is self.state.table:
+            return held
+        different = np.unique(held)
+        try:
+            codes = self.meaning.codes(old, new, rows.kind, different.tolist())
+        except UnknownError as error:
+            self.faults.add(f"{old.name} of {rows.kind or 'the common block'} {error}")
+            return held
+        if not codes:
+            return held
+        return np.array([codes[value] for value in different.tolist()])[np.searchsorted(different, held)]
+
+    def _renumber(self, held: dict[str, Any], rows: Rows) -> None:
+        """What histories record, which they know by numbers of kinds and fields."""
+        for row, (kind, number) in enumerate(zip(held[KIND][:, 0], held[NUMBER][:, 0], strict=True)):
+            try:
+                held[KIND][row, 0], held[NUMBER][row, 0] = self.meaning.recorded(int(kind), int(number))
+            except UnknownError as error:
+                self.faults.add(f"history@{rows.at[row]} {error}")
+                return
+
+    def _refuse(self, wrong: Any, rows: Rows, name: str, held: Any, what: str) -> None:
+        """A fault for the groups that `wrong` is true of."""
+        bad = np.flatnonzero(wrong.any(axis=1))
+        if len(bad):
+            (value,) = held[bad[0]][wrong[bad[0]]][:1]
+            phrase = f"{rows.called(name, bad[0])} is {value}, {what}"
+            self.faults.add(phrase, len(bad), rows.kind, name, what)

@@ -1,0 +1,219 @@
+"""Which group of one heap is which of the other: by its place in the map, and not by its address.
+
+    block      by its place in the block list, whatever has come or gone there (blocks.py)
+    corner     by its place round its block, counted from KP (rings.py), else by where it lies
+    extension  of a block or a domain: that of a block or domain that matches
+    gridpoint  by its place in the list of its block, zones too; if their number has changed, by its corner
+    contact    by the two corners that name its segments, else by the two blocks and one of these, else by the
+               blocks alone; of several in the order of the contact list
+    domain     by the contacts around it: the two that have most of them in common
+    bound      by what it acts on, a signal by its number, a history by what it records, a relaxation by
+               what it is of; of several in the order of their list
+    tabpoint   by its place in its signal
+
+Where one state has more groups of one key than the other, these wait. What is left over matches if all
+pointers of matched groups that lead to the one lead to the other, too: so a broken link loses no group that
+other links hold. Those that have waited come then, in turn. What is left at last was made or deleted.
+
+A rule looks at addresses only to follow a pointer, so states that were renumbered, or written in other words,
+match group by group. Nothing is trusted: of a damaged heap the groups that the census reaches are matched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap_tools.block_matching import aligned, alike, blocks_of
+from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.ring_matching import turned
+from udec_ia.heap_tools.row_matching import Pairs, elected, fold, in_turn, unanimous
+from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, TABLE, choices
+
+ROUNDS = 20  # of looking for what is left over, each from what the one before has found
+KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is, the best ones first
+    "gridpoint": [("KCOR",)],
+    "contact": [("KCP1", "KCP2"), ("KB1", "KB2", "KCP1"), ("KB1", "KB2", "KCP2"), ("KB1", "KB2")],
+    "signal": [("KTNUM",)],
+    "bound": [("KUB", "KUG", "KUP", "KUQ")],
+    "history": [("KHK", "KHF", "KHG")],
+    "relax": [("KRXB", "KRXG")],
+}
+OPTIONAL = ("signal", "bound", "history", "relax")  # kinds whose keys may be 0
+
+
+class Matching:
+    """The groups of two heaps, matched. sides: both.
+
+    pairs: for each kind the addresses (n,) in the one and in the other of groups that match.
+    """
+
+    def __init__(self, one: Memory, two: Memory) -> None:
+        self.sides = Side(one), Side(two)
+        self.pairs: dict[str, Pairs] = {kind: (np.zeros(0, np.int64),) * 2 for kind in KINDS}
+        self._count = 0
+        self._blocks_and_corners()
+        for kind, owner, field in (("sdef", "block", "KBEX"), ("fdef", "block", "KBEX")):
+            self._extensions(kind, owner, field)
+        self._chains("gridpoint", "fdef", "KFG", "KG")
+        self._chains("zone", "fdef", "KFZ", "KZ")
+        self._by_keys("gridpoint")
+        self._by_keys("contact")
+        self._domains()
+        self._extensions("jointext", "domain", "KDEX")
+        self._by_keys("signal")
+        self._chains("tabpoint", "signal", "KTP", "KTPN")
+        self._by_keys("bound")
+        self._by_keys("history")
+        self._by_keys("relax")
+        self._rest()
+        for kind in KEYS:
+            self._by_keys(kind, as_many=False)
+        self._rest()
+
+    @cached_property
+    def in_place(self) -> bool:
+        """True if every group matches one of its own address: then equal pointers mean equal groups."""
+        whole = all(not len(at) for kind in KINDS for at in self.left(kind))
+        return whole and all(np.array_equal(a, b) for a, b in self.pairs.values())
+
+    def left(self, kind: str) -> Pairs:
+        """Addresses of groups that match none: those of the one (n,), and those of the other (m,)."""
+        one, two = self.sides
+        return one.left(kind), two.left(kind)
+
+    def _join(self, kind: str, one: Any, two: Any) -> None:
+        """The groups at the addresses (n,) and (n,) match."""
+        for side, at in zip(self.sides, (one, two), strict=True):
+            side.give_numbers(at, self._count + 1)
+        self._count += len(one)
+        before = self.pairs[kind]
+        self.pairs[kind] = np.concatenate((before[0], one)), np.concatenate((before[1], two))
+
+    def _blocks_and_corners(self) -> None:
+        one, two = (blocks_of(side) for side in self.sides)
+        a, b = aligned(one, two)
+        self._join("block", one.at[a], two.at[b])
+        same = one.corners[a] == two.corners[b]
+        a, b = a[same], b[same]
+        ours, many = one.ring(a), one.corners[a]
+        needed = np.where(alike(one.some(a), two.some(b)), many, 1)
+        self._join("corner", ours, turned(self.sides, (ours, two.ring(b)), many, needed))
+        self._same_places()
+
+    def _chains(self, kind: str, owner: str, head: str, link: str) -> None:
+        """Groups in lists that begin at the field `head` of matched owners, where both are of one length."""
+        found, many = [], []
+        for side, at in zip(self.sides, self.pairs[owner], strict=True):
+            groups, lengths = side.along(kind, side.column(owner, head, at), link)
+            found.append(groups)
+            many.append(lengths)
+        same = many[0] == many[1]
+        one, two = (at[np.repeat(same, lengths)] for at, lengths in zip(found, many, strict=True))
+        self._join(kind, one, two)
+
+    def _same_places(self) -> None:
+        """Corners that are left over: those of one block that lie in one place, to 32-bit reals."""
+        left = self.left("corner")
+        keys, known = [], []
+        for side, at in zip(self.sides, left, strict=True):
+            with np.errstate(over="ignore"):
+                xy = [side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")]
+            host = side.meant(side.word("corner", "KNB"), at)
+            keys.append([host, *((values + 0).view(np.int32) for values in xy)])
+            known.append(host > 0)
+        self._with_equal("corner", left, keys, known)
+
+    def _with_equal(
+        self, kind: str, left: Sequence[Any], keys: Sequence[Any], known: Sequence[Any], as_many: bool = False
+    ) -> None:
+        """Of the groups that are left those with equal columns of `keys`, where they are known, in turn."""
+        rows = [np.flatnonzero(one) for one in known]
+        columns = [[column[some] for column in one] for one, some in zip(keys, rows, strict=True)]
+        one, two = in_turn(*fold(columns[0], columns[1]), as_many)
+        self._join(kind, left[0][rows[0][one]], left[1][rows[1][two]])
+
+    def _extensions(self, kind: str, owner: str, field: str) -> None:
+        """What a pointer of matched owners leads to; once, as two of a damaged heap may share it."""
+        at = [side.column(owner, field, to) for side, to in zip(self.sides, self.pairs[owner], strict=True)]
+        held = [side.atlas.holding(kind, to) for side, to in zip(self.sides, at, strict=True)]
+        both = held[0] & held[1]
+        once = [np.unique(to[both], return_index=True)[1] for to in at]
+        first = np.intersect1d(once[0], once[1])
+        self._join(kind, at[0][both][first], at[1][both][first])
+
+    def _by_keys(self, kind: str, as_many: bool = True) -> None:
+        """Groups whose fields of some names say the same, in the order of their list.
+
+        as_many: only where both heaps have equally many of these.
+        """
+        if not all(len(at) for at in self.left(kind)):
+            return
+        lowest = 0 if kind in OPTIONAL else 1
+        left = [side.listed(kind) for side in self.sides]
+        for names in KEYS[kind]:
+            left = [at[side.numbers(at) == 0] for side, at in zip(self.sides, left, strict=True)]
+            keys: list[list[Any]] = []
+            known: list[Any] = []
+            for side, at in zip(self.sides, left, strict=True):
+                words = [side.word(kind, name) for name in names]
+                keys.append([side.meant(word, at) for word in words])
+                good = [one >= lowest for one, word in zip(keys[-1], words, strict=True) if word.field.target]
+                known.append(np.logical_and.reduce([np.ones(len(at), bool), *good]))
+            self._with_equal(kind, left, keys, known, as_many)
+
+    def _domains(self) -> None:
+        """Those that have most contacts in common; the outer one of a block that has no contact."""
+        found = []
+        for side, at in zip(self.sides, self.pairs["contact"], strict=True):
+            outer = np.array([int(side.h.ci[g.IODPNT])])
+            found.append(
+                np.concatenate([*(side.column("contact", name, at) for name in ("KD1", "KD2")), outer])
+            )
+        one, two = self.sides
+        both = one.atlas.holding("domain", found[0]) & two.atlas.holding("domain", found[1])
+        self._join("domain", *elected(found[0][both], found[1][both]))
+
+    def _rest(self) -> None:
+        """What is left over, and all pointers of matched groups agree on."""
+        for _ in range(ROUNDS):
+            before = self._count
+            for kind in KINDS:
+                if kind != "block" and all(len(at) for at in self.left(kind)):
+                    self._join(kind, *self._agreed(kind))
+            if self._count == before:
+                return
+
+    def _agreed(self, kind: str) -> Pairs:
+        """Groups of a kind that all pointers to them agree on."""
+        ways = [self._heads(kind)]
+        for owner in KINDS:
+            for words in zip(*(side.atlas.shapes[owner] for side in self.sides), strict=True):
+                if words[0].field.target and kind in choices(words[0].field.target):
+                    ways.append(
+                        [
+                            side.atlas.gather(word, at)
+                            for side, word, at in zip(self.sides, words, self.pairs[owner], strict=True)
+                        ]
+                    )
+        found: list[Pairs] = []
+        for way in ways:
+            to = [self._if_left(side, kind, at) for side, at in zip(self.sides, way, strict=True)]
+            some = (to[0] != 0) | (to[1] != 0)
+            found.append((to[0][some], to[1][some]))
+        one, two = zip(*found, strict=True)
+        return unanimous(np.concatenate(one), np.concatenate(two))
+
+    def _heads(self, kind: str) -> list[Any]:
+        """Where the pointers of the common block to groups of a kind lead, in both."""
+        heads = [getattr(g, field.name) for field in TABLE.common if field.target == kind]
+        return [side.h.ci[heads] for side in self.sides]
+
+    def _if_left(self, side: Side, kind: str, addresses: Any) -> Any:
+        """The addresses (n,) at which a group of a kind is left; 0 in the place of others."""
+        return np.where(side.atlas.holding(kind, addresses) & (side.numbers(addresses) == 0), addresses, 0)

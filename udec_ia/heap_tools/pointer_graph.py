@@ -1,0 +1,176 @@
+"""What a group points to and what points to it, what those point to, and so on: as a list or in DOT.
+
+Both ways count: a corner is near its block, although only the corner knows it. Groups are taken in waves from
+the one asked for, the nearest first, until there are as many as a picture can show; the rest is counted. A
+pointer to something else than the field table says is shown as what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.counting import counted
+from udec_ia.heap_tools.all_pointers import Pointers, pointers
+from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas
+from udec_ia.reader.field_rows import COMMON
+from udec_ia.reader.group_names import leads_to, names
+from udec_ia.reader.kind_colours import COLOURS
+from udec_ia.reader.listing import Listing
+
+NODES = 40  # groups that a graph shows
+ASTRAY = "astray"  # kind of a node that is no group
+NO_GROUP = 0  # key of the common block, which has no address
+
+
+class Node(NamedTuple):
+    """A group, the common block, or an address without a group. depth: pointers between it and the first."""
+
+    name: str
+    kind: str
+    depth: int
+
+
+class Edge(NamedTuple):
+    """A pointer. told: what it leads to; sound: that is what the field table says."""
+
+    source: int
+    field: str
+    target: int
+    told: str
+    sound: bool
+
+
+class Graph(NamedTuple):
+    """Nodes by address, and the pointers between them. left_out: groups as near that it has no room for."""
+
+    nodes: dict[int, Node]
+    edges: list[Edge]
+    left_out: int
+
+
+def neighbourhood(atlas: Atlas, address: int, depth: int = 1, limit: int = NODES) -> Graph:
+    """The pointers around the group at, or around, `address`: depth of them away, `limit` groups.
+
+    IndexError outside IA(), ValueError for what is no group, or no depth.
+    """
+    span = atlas.span(address)
+    if span.kind not in KINDS:
+        raise ValueError(f"{address} is in words that are {span.kind}: only groups have pointers")
+    if depth < 1:
+        raise ValueError(f"depth {depth}: give the number of pointers to follow, 1 or more")
+    every = list(pointers(atlas))
+    nodes, wave, left_out = {span.first: 0}, np.array([span.first]), 0
+    for away in range(1, depth + 1):
+        near = np.setdiff1d(_near(atlas, every, wave), [*nodes])
+        wave, left_out = near[: limit - len(nodes)], max(len(near) + len(nodes) - limit, 0)
+        nodes |= dict.fromkeys(wave.tolist(), away)
+        if left_out or not len(wave):
+            break
+    edges = list(_edges(atlas, every, nodes))
+    return Graph(_named(atlas, nodes, edges), edges, left_out)
+
+
+def _near(atlas: Atlas, every: list[Pointers], wave: Any) -> Any:
+    """Addresses of the groups that groups of a wave point to, or that point to them."""
+    marked, found = _marks(atlas, wave), [np.zeros(0, np.int64)]
+    for one in every:
+        if one.word is not None:
+            found += [one.to[marked[one.at]], one.at[_at(marked, one.to)]]
+    near = np.unique(np.concatenate(found))
+    return near[atlas.holding("any", near)]
+
+
+def _marks(atlas: Atlas, addresses: Any) -> Any:
+    marked = np.zeros(atlas.free, bool)
+    marked[addresses] = True
+    return marked
+
+
+def _at(marked: Any, to: Any) -> Any:
+    """Whether what pointers lead to is marked; False for what lies outside."""
+    return marked[np.where((to > 0) & (to < len(marked)), to, 0)]
+
+
+def _edges(atlas: Atlas, every: list[Pointers], nodes: dict[int, int]) -> Iterator[Edge]:
+    """All pointers from one of the groups to one of them, or to what is no group, or of the common block."""
+    marked = _marks(atlas, [*nodes])
+    for one in every:
+        to = one.to.astype(np.int64)
+        sound = atlas.holding(one.target, to)
+        known = _at(marked, to)
+        if one.word is None:
+            chosen = np.flatnonzero(known)
+        else:
+            chosen = np.flatnonzero(marked[one.at] & (to != 0) & (known | ~atlas.holding("any", to)))
+        told = leads_to(atlas, one.target, to[chosen])
+        for k, text in zip(chosen.tolist(), told, strict=True):
+            yield Edge(int(one.at[k]), one.name, int(to[k]), text, bool(sound[k]))
+
+
+def _named(atlas: Atlas, depths: dict[int, int], edges: list[Edge]) -> dict[int, Node]:
+    """Nodes for the groups, and for what else the edges lead from and to."""
+    at = np.array([*depths], np.int64)
+    found = {
+        iad: Node(name, KINDS[number - 1], away)
+        for (iad, away), name, number in zip(
+            depths.items(), names(atlas, at), atlas.starts[at].tolist(), strict=True
+        )
+    }
+    for source, _, target, _, _ in edges:
+        if source not in found:
+            found[source] = Node(COMMON, COMMON, depths[target] + 1)
+        if target not in found:
+            name = leads_to(atlas, "any", np.array([target]))[0]
+            found[target] = Node(f"{target}: {name}", ASTRAY, depths[source] + 1)
+    return found
+
+
+def graph(atlas: Atlas, address: int, depth: int = 1) -> Listing:
+    """The same as a list of pointers. Raises as `neighbourhood` does."""
+    found = neighbourhood(atlas, address, depth)
+    rows = [
+        (found.nodes[edge.source].name, edge.field, edge.told)
+        for edge in sorted(found.edges, key=lambda edge: (_depth(found, edge), edge))
+    ]
+    return Listing(said(found), ("from", "field", "to"), rows)
+
+
+def said(found: Graph) -> list[str]:
+    """What is in a graph, and what is not."""
+    first, groups = next(iter(found.nodes.values())), sum(node.kind in KINDS for node in found.nodes.values())
+    many = counted(len(found.edges), "pointer")
+    lines = [f"{many} between {counted(groups, 'group')} around {first.name}"]
+    if found.left_out:
+        furthest = max(node.depth for node in found.nodes.values())
+        left = counted(found.left_out, "more group")
+        lines.append(f"left out: {left} at a distance of {counted(furthest, 'pointer')}, and all beyond")
+    return lines
+
+
+def _depth(found: Graph, edge: Edge) -> int:
+    return min(found.nodes[edge.source].depth, found.nodes[edge.target].depth)
+
+
+def dot(found: Graph) -> str:
+    """A graph in the language of Graphviz."""
+    lines = [
+        "digraph heap {",
+        f'  label="{". ".join(said(found))}";',
+        '  rankdir=LR; node [shape=box, style="rounded,filled", fontname="sans-serif"];',
+    ]
+    for key, node in found.nodes.items():
+        lines.append(
+            f'  "{key}" [label="{node.name}", fillcolor="{colour(node)}30", color="{colour(node)}"];'
+        )
+    for edge in found.edges:
+        style = "" if edge.sound else f', color="{COLOURS[NOTHING]}", style=dashed'
+        lines.append(f'  "{edge.source}" -> "{edge.target}" [label="{edge.field}"{style}];')
+    return "\n".join([*lines, "}", ""])
+
+
+def colour(node: Node) -> str:
+    """The colour of a node, by the kind of its group."""
+    return COLOURS.get(node.kind, COLOURS[NOTHING] if node.kind == ASTRAY else COLOURS[JUNK])

@@ -1,0 +1,174 @@
+"""What differs between two heaps: group by group and field by field, and the variables of the common block.
+
+A pointer differs if it leads to another group, and not if that has another address. The words of the common
+block that say how memory is used are no part of the state, and left out: MEMORY.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.array import variable
+from udec_ia.heap.slack import give_back
+from udec_ia.heap_tools.group_matching import Matching
+from udec_ia.heap_tools.value_comparison import NONE, Apart, Tolerance, reals_apart, whole_apart
+from udec_ia.layout.table import Field
+from udec_ia.reader.atlas import KINDS, TABLE
+
+COMMON = "common"  # what the variables of the common block stand under
+MEMORY = ("JUNK", "MFREE", "MTOP", "NWANT", "NSPARE")
+PIECE = 16384  # pairs that are compared together: they fit in the machine's caches
+ADDRESSES = ("IERAD",)  # variables that are pointers to any group
+
+
+class Differing(NamedTuple):
+    """A field of a kind of groups, or a variable of the common block, whose values differ.
+
+    kind: COMMON for a variable. one, two: addresses (n,) of the groups, or numbers of the elements, from 0.
+    values: in the one (n,) and in the other (n,). greatest: of all values, 0.0 of what are no reals.
+    """
+
+    kind: str
+    field: Field
+    element: int
+    one: Any
+    two: Any
+    values: tuple[Any, Any]
+    apart: Apart
+    greatest: float
+    many: int
+
+    @property
+    def name(self) -> str:
+        """KXD, or KZG(2)."""
+        several = self.field.count > 1 and self.kind != COMMON
+        return self.field.name + (f"({self.element + 1})" if several else "")
+
+    @property
+    def share(self) -> Any:
+        """Differences as shares of the greatest value (n,)."""
+        with np.errstate(invalid="ignore"):
+            return self.apart.absolute / self.greatest if self.greatest > 0 else self.apart.absolute
+
+
+class Compared(NamedTuple):
+    """matching: which group is which. fields: those that differ, in the order of the table.
+
+    alone: by kind the addresses of the groups that only the one (n,) and only the other (m,) has.
+    kinds: of groups that were compared, and COMMON if variables were.
+    """
+
+    matching: Matching
+    fields: list[Differing]
+    alone: dict[str, tuple[Any, Any]]
+    kinds: set[str]
+
+    @property
+    def differ(self) -> bool:
+        """True if anything does."""
+        return bool(self.fields or any(len(one) + len(two) for one, two in self.alone.values()))
+
+
+def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Tolerance = NONE) -> Compared:
+    """Two heaps of any word schemes, sound or damaged.
+
+    only: kinds of groups and fields, such as contact or contact.KCFN, or common.FRAC; all if there are none.
+    ValueError for one that is not known.
+    """
+    wanted = chosen(only)
+    matching = Matching(one, two)
+    give_back()
+    fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
+    fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
+    alone = {kind: matching.left(kind) for kind in KINDS if not only or (kind, "") in wanted}
+    return Compared(matching, fields, alone, {kind for kind, _ in wanted})
+
+
+def chosen(only: Iterable[str]) -> set[tuple[str, str]]:
+    """Kinds and fields of texts such as contact.KCFN; with all fields of a kind that is named alone."""
+    fields = {kind: [one.name for one in TABLE.group(kind).fields] for kind in KINDS}
+    fields[COMMON] = [one.name for one in TABLE.common]
+    found: set[tuple[str, str]] = set()
+    for text in only or fields:
+        kind, dot, name = text.partition(".")
+        if kind not in fields:
+            raise ValueError(f"{text}: {kind} is not a kind of group: choose from {', '.join(fields)}")
+        if dot and name.upper() not in fields[kind]:
+            raise ValueError(f"{text}: {kind} has the fields {', '.join(fields[kind])}")
+        found |= {(kind, name.upper())} if dot else {(kind, one) for one in ("", *fields[kind])}
+    return found
+
+
+def _groups(matching: Matching, wanted: set[tuple[str, str]], tolerance: Tolerance) -> Iterable[Differing]:
+    one, two = matching.sides
+    for kind, at in matching.pairs.items():
+        if not len(at[0]):
+            continue
+        changed = _changed(matching, kind, at)
+        for words in zip(one.atlas.shapes[kind], two.atlas.shapes[kind], strict=True):
+            field = words[0].field
+            alike = not changed[words[0].first : words[0].last + 1].any()
+            if (kind, field.name) not in wanted or (alike and (matching.in_place or not field.target)):
+                continue
+            values = one.atlas.gather(words[0], at[0]), two.atlas.gather(words[1], at[1])
+            yield _differing(matching, (kind, field, words[0].element), at, values, tolerance)
+
+
+def _changed(matching: Matching, kind: str, at: Any) -> Any:
+    """True for each word of a group that differs in any of the pairs at (n,) and (n,); all in two schemes."""
+    one, two = matching.sides
+    size = one.atlas.layout[kind].size
+    if one.h.ia.dtype != two.h.ia.dtype or one.atlas.ratio != two.atlas.ratio:
+        return np.ones(size, bool)
+    found = np.zeros(size, bool)
+    rows = [sliding_window_view(side.h.ia, size) for side in matching.sides]
+    for first in range(0, len(at[0]), PIECE):
+        a, b = (words[where[first : first + PIECE] - 1] for words, where in zip(rows, at, strict=True))
+        found |= (a != b).any(axis=0)
+    return found
+
+
+def _common(matching: Matching, wanted: set[tuple[str, str]], tolerance: Tolerance) -> Iterable[Differing]:
+    one, two = matching.sides
+    for field in TABLE.common:
+        if (COMMON, field.name) in wanted and field.name not in MEMORY:
+            values = variable(one.h, field), variable(two.h, field)
+            at = np.arange(field.count)
+            yield _differing(matching, (COMMON, field, 0), (at, at), values, tolerance)
+
+
+def _differing(
+    matching: Matching, of: tuple[str, Field, int], at: Any, values: tuple[Any, Any], tolerance: Tolerance
+) -> Differing:
+    """What differs of one column of values."""
+    field = of[1]
+    greatest = 0.0
+    if field.real:
+        apart = reals_apart(*values)
+        counts = ~tolerance.allows(field.unit, apart)
+        apart = Apart(*(column[counts] for column in apart))
+        with np.errstate(invalid="ignore"):
+            greatest = float(max(np.max(np.abs(one), initial=0.0) for one in values)) if counts.any() else 0.0
+    elif field.target or field.name in ADDRESSES:
+        apart = whole_apart(_lead_apart(matching, values))
+    else:
+        apart = whole_apart(values[0] != values[1])
+    rows = apart.rows
+    some = values[0][rows], values[1][rows]
+    return Differing(*of, at[0][rows], at[1][rows], some, apart, greatest, len(values[0]))
+
+
+def _lead_apart(matching: Matching, values: tuple[Any, Any]) -> Any:
+    """True for each pointer (n,) of both that does not lead to one group, or to the same nonsense."""
+    numbers, groups = [], []
+    for side, addresses in zip(matching.sides, values, strict=True):
+        numbers.append(side.numbers(addresses))
+        within = (addresses >= 1) & (addresses < side.atlas.free)
+        groups.append(side.atlas.starts[np.where(within, addresses, 0)] > 0)
+    same = (numbers[0] == numbers[1]) & (numbers[0] > 0)
+    return ~(same | ((values[0] == values[1]) & ~groups[0] & ~groups[1]))

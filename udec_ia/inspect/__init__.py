@@ -1,1 +1,0 @@
-"""Looking at the heap from Python: walking its lists, tables of its groups, and the checker."""

@@ -1,0 +1,43 @@
+"""How kinds of groups are told apart at a glance: a letter and a colour each, the same in every picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import cycle
+from string import ascii_lowercase
+
+from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, UNUSED
+
+PALETTE = (  # dark enough for paper, light enough for a dark terminal
+    "#b0762b",
+    "#d1495b",
+    "#7a5bc9",
+    "#2a8fbd",
+    "#5f9e3a",
+    "#2f9e7d",
+    "#93a12c",
+    "#c56aa8",
+    "#8a8f98",
+    "#e08a3c",
+    "#4f74d9",
+    "#43a9a3",
+    "#a8577e",
+    "#b04de0",
+)
+COLOURS = {
+    **dict(zip(KINDS, cycle(PALETTE), strict=False)),
+    JUNK: "#9c968c",
+    NOTHING: "#e0201b",
+    UNUSED: "#e9e6df",
+}
+
+
+def _letters(kinds: Iterable[str]) -> dict[str, str]:
+    """A letter for each kind: of those of its name the first that no kind before it has."""
+    found: dict[str, str] = {}
+    for kind in kinds:
+        found[kind] = next(c for c in (*kind, *ascii_lowercase) if c not in found.values())
+    return found
+
+
+LETTERS = {**_letters(KINDS), JUNK: "-", NOTHING: "?", UNUSED: "."}
