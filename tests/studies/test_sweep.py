@@ -53,7 +53,7 @@ def test_the_table_in_all_its_forms(pile: Path) -> None:
         assert stored.attrs["deck"] == PILE
         assert np.array_equal(stored["v"], table.columns["v"], equal_nan=True)
         assert stored["status"][3] == b"error"
-    assert found.said == ["4 of 4 runs: 2 ended, 2 error"]
+    assert found.summary == ["4 of 4 runs: 2 ended, 2 error"]
 
 
 def test_a_second_sweep_takes_what_is_there(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -187,7 +187,7 @@ def test_pictures_of_an_earlier_sweep_go(pile: Path, capsys: pytest.CaptureFixtu
     sweep("pile.dat", {"F": [0.1, 0.2], "N": 5}, jobs=0, out=folder)
     (folder / "pile.svg").write_text("<?xml of mine>")
     found = sweep("pile.dat", {"F": 0.1, "N": 5}, jobs=0, out=folder)
-    assert found.said[-1] == f"removed, as of an earlier sweep: {folder / 'pile.png'}"
+    assert found.summary[-1] == f"removed, as of an earlier sweep: {folder / 'pile.png'}"
     assert not (folder / "pile.png").exists()
     assert (folder / "pile.svg").read_text() == "<?xml of mine>"
     (folder / "pile.csv").unlink()  # without our table beside it, a picture may be anybody's

@@ -62,9 +62,9 @@ def test_solve_is_left_to_itself_but_not_for_ever() -> None:
     survey = [segment(100_000, 0.001, solve=True), segment(0, 0.001)]
     found = count_cycles(survey, Setting(step=0.5, ratio=0.1))
     assert found.cycles == (None, 0)
-    assert found.references[0] is not None
-    assert found.references[0] > 2 * 100_000
-    assert found.references[1] is None
+    assert found.limits[0] is not None
+    assert found.limits[0] > 2 * 100_000
+    assert found.limits[1] is None
 
 
 def test_the_share_of_the_bound() -> None:

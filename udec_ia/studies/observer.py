@@ -35,6 +35,9 @@ class Clock(Protocol):
 class RunObserver:
     """Observes CYCLEs and SOLVEs, piece by piece. By itself it asks for nothing and does nothing."""
 
+    def command_obeyed(self, array: MainArray) -> None:
+        """A command was obeyed."""
+
     def begin(self, array: MainArray, solves: bool) -> None:
         """One is prepared, and its first cycle follows. solves: it is a SOLVE."""
 
@@ -109,9 +112,11 @@ class StudyObserver(RunObserver):
 
     # ---- during the run
 
-    def command_obeyed(self) -> None:
-        """A command was obeyed."""
-        self._start.look(self.model.array)
+    def command_obeyed(self, array: MainArray) -> None:
+        """See RunObserver."""
+        self._start.look(array)
+        for one in self._others:
+            one.command_obeyed(array)
 
     def is_ended(self) -> bool:
         """True if the run is to end: a rule holds, or the time is up."""
@@ -201,7 +206,7 @@ class _Monitor(Monitor):
         if self.ended:
             return
         super().obey(statement)
-        self._observer.command_obeyed()
+        self._observer.command_obeyed(self._observer.model.array)
         if self._observer.over:
             self.ended = True
 

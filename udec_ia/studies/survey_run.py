@@ -82,13 +82,19 @@ class _Recorder(RunObserver):
         self._cpu = CpuTime()
         self._marks: list[int] = []
         self._before = 0.0
+        self._bounds: tuple[float, float] | None = None  # of the time-step in use
+
+    def command_obeyed(self, array: MainArray) -> None:
+        """See RunObserver: after some commands the time-step is made anew."""
+        if not array.h.ci[g.LREADY]:
+            self._bounds = None
 
     def begin(self, array: MainArray, solves: bool) -> None:
         """See RunObserver."""
         h = array.h
-        limits = 0.0, 0.0
-        if self.asked_for.bounds:
-            limits = estimate(array).step, damped(h, bound(array).step)
+        if self._bounds is None:
+            wanted = self.asked_for.bounds
+            self._bounds = (estimate(array).step, damped(h, bound(array).step)) if wanted else (0.0, 0.0)
         one = Segment(
             int(h.ci[g.NCYC]),
             solves,
@@ -96,7 +102,7 @@ class _Recorder(RunObserver):
             float(h.cr[g.TDEL]),
             float(h.cr[g.FRAC]),
             bool(h.ci[g.LSAFE]),
-            *limits,
+            *self._bounds,
             scaled=bool(h.ci[g.LSCALE]),
         )
         self.segments.append(one)

@@ -13,6 +13,7 @@ The file of a user is run by its path: `udec verify mine.py`. verification_tools
 
 from __future__ import annotations
 
+import io
 import runpy
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -29,6 +30,8 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.words import scheme
 from udec_ia.model import Model
+from udec_ia.output.draw import INK, title
+from udec_ia.output.graph import COLOURS
 from udec_ia.printable import MESSAGE, printable
 
 if TYPE_CHECKING:
@@ -127,14 +130,10 @@ class Case:
 
         x, y: what the axes show.
         """
-        from udec_ia.studies.verification_page import draw_graph
-
         self._graph = draw_graph(self.name, x, y, exact, computed)
 
     def picture(self) -> bytes | None:
         """What was drawn, a PNG; None if nothing was."""
-        from udec_ia.studies.verification_page import png
-
         if self._graph is not None:
             return png(self._graph)
         return None if self._frame is None else png(self._frame.figure())
@@ -269,3 +268,47 @@ def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
         result.failure = printable(" ".join(text.split()), MESSAGE)
     result.seconds = perf_counter() - start
     return result
+
+
+# ---- graphs
+
+
+SIZE = (7.2, 3.4)  # inches of a graph
+DPI = 90
+SHADES = 64  # colours of a file
+
+
+def draw_graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> Figure:
+    """Curves over one pair of axes: `exact` as lines, `computed` as points in the same order of colours."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(SIZE, facecolor="white", layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    title(axes, name)
+    for colour, (label, points) in zip(COLOURS, exact.items(), strict=False):
+        axes.plot(*points, color=colour, linewidth=1.2, label=label)
+    for k, points in enumerate(computed):
+        style: dict[str, Any] = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
+        label = "computed" if k == 0 else "_"  # said once
+        axes.plot(*points, "o", color=COLOURS[k % len(COLOURS)], label=label, **style)
+    axes.set_xlabel(x, fontsize=9, color=INK)
+    axes.set_ylabel(y, fontsize=9, color=INK)
+    axes.grid(color="#e4e0d8", linewidth=0.6)
+    axes.tick_params(labelsize=8, colors=INK, width=0.6)
+    for spine in axes.spines.values():
+        spine.set(linewidth=0.6, color="#8a857c")
+    figure.legend(loc="outside right upper", fontsize=8, frameon=False)
+    return figure
+
+
+def png(figure: Figure) -> bytes:
+    """The picture as a small PNG."""
+    from PIL import Image
+
+    whole, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(whole, format="png", dpi=DPI)
+    with Image.open(whole) as image:
+        image.convert("RGB").quantize(SHADES).save(small, "png", optimize=True)
+    return small.getvalue()
