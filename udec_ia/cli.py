@@ -152,7 +152,7 @@ def _last_of_output() -> None:
 
 def _checked() -> bool:
     """Choose the checked build; False if it is too late for that."""
-    loaded = sys.modules.get("udec_ia.heap.checked")
+    loaded = sys.modules.get("udec_ia.compiling.build_choice")
     if loaded is None:
         os.environ["UDEC_CHECKED"] = "1"
     return loaded is None or bool(loaded.CHECKED)

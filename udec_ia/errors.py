@@ -226,3 +226,7 @@ class UdecError(Exception):
         saved = f"{what} saved in {self.saved}"
         lines += [printable(saved, MESSAGE)] if self.saved else []
         return "\n".join(lines)
+
+
+class WrongAddress(UdecError):
+    """Error 20 of the checked build: a kernel has used a wrong address, and may have changed words before."""

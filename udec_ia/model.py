@@ -20,11 +20,11 @@ from math import inf
 from pathlib import Path
 from typing import TextIO
 
+from udec_ia.compiling.interpreting import mode
 from udec_ia.deck.monitor import run_deck
 from udec_ia.deck.reference import explain, summary
 from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.heap.interpreting import mode
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest

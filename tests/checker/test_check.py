@@ -15,9 +15,9 @@ from support.handmade_map import ROUNDING, SIDE, two_blocks
 from udec_ia.checker import Violation, check
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.memory import find, lose
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, read_table

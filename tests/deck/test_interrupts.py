@@ -13,12 +13,12 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from interrupted.scene import SCENE, state
 from support.mechanics_scenes import side_by_side
+from trials.interrupted_commands import SCENE, state
 
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.signals import Terminated, dealt_with, hold, passing, poll, terminate
 from udec_ia.transaction import Undo

@@ -10,9 +10,9 @@ from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import room
-from udec_ia.heap.words import scheme
+from udec_ia.heap.find_lose import room
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.layout.offsets import JPHASE, MCTOT, NERR, NWANT
 from udec_ia.ops.run import cycle as running
 

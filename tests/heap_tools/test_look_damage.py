@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from support.every_group_kind import every_kind
 
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.all_pointers import who
 from udec_ia.heap_tools.heap_dump import common, dump
 from udec_ia.heap_tools.heap_map import heap_map
@@ -34,7 +34,7 @@ from udec_ia.reader.listing import Listing
 from udec_ia.restart import look_into, save
 
 HEADS = [getattr(g, field.name) for field in read_table().common if field.target] + [g.JUNK]
-WRECKS = Path(__file__).parents[2] / "tools" / "wrecks.py"
+TOOL = Path(__file__).parents[2] / "tools" / "damaged_files.py"
 TRIALS = 30  # in each word scheme
 LOOKS = 6  # at each of them, chosen at random
 SECONDS = 3.0  # of processor time, for these
@@ -157,7 +157,7 @@ def test_a_look_changes_nothing(tmp_path: Path) -> None:
 def test_commands_given_damaged_files() -> None:
     """A part of the tool's: each command ends with a result or a message, the file stays as it is."""
     some = ["info", "check", "dump", "walk", "find", "diff", "convert", "renumber", "patch"]
-    arguments = [sys.executable, str(WRECKS), "--files", "2", "--seed", "3", "--only", *some]
+    arguments = [sys.executable, str(TOOL), "commands", "--files", "2", "--seed", "3", "--only", *some]
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "18 commands, 0 failures" in done.stdout

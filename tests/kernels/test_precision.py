@@ -9,7 +9,7 @@ import pytest
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, putr
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.body.blocks import KEEP
 from udec_ia.kernels.detect.search import arc_on_arc, arc_on_edge
 from udec_ia.kernels.geometry.shape import crad

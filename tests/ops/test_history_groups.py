@@ -11,7 +11,7 @@ from support.handmade_map import two_blocks
 from support.mechanics_scenes import block, push, standing, value
 
 from udec_ia import Model
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history import define, definitions, named
 

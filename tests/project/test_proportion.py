@@ -1,7 +1,7 @@
 """Every command takes time in proportion to what it touches: four times as much, about four times the time.
 
-Where it was once the square, sixteen times. Times are processor times, the best of three; tools/commands.py
-measures all commands at greater sizes.
+Where it was once the square, sixteen times. Times are processor times, the best of three;
+`tools/bench.py commands` measures all commands at greater sizes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.heap_map import heap_map
 from udec_ia.layout import offsets as g

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from udec_ia.checker.ring_arrays import lay_out
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import STRETCH, rows_of
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.untrusted_lists import STRETCH, rows_of
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
 from udec_ia.reader.group_lists import Lists
 
-ROWS_OF = Sparing(rows_of, 1e6, LOOKS)  # addresses
+ROWS_OF = InterpretWhenSmall(rows_of, 1e6)  # addresses
 
 LOST = "are in no group"  # what is said of words that no list leads to
 

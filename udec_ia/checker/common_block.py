@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
+from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import MESSAGES
-from udec_ia.heap.interpreting import interpreted
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
 

@@ -17,13 +17,13 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_map import SIDES
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.reals import place_items
+from udec_ia.heap.untrusted_lists import place_items
 from udec_ia.kernels.audit.faces import areas
 from udec_ia.layout import offsets as g
 
-AREAS, PLACE_ITEMS = Sparing(areas, 9e5, LOOKS), Sparing(place_items, 1e6, LOOKS)  # items
+AREAS, PLACE_ITEMS = InterpretWhenSmall(areas, 9e5), InterpretWhenSmall(place_items, 1e6)  # items
 
 
 def check_outer(state: State) -> None:

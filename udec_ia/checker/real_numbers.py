@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
-from udec_ia.heap.array import variable
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.reals import all_finite
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.main_array import variable
+from udec_ia.heap.untrusted_lists import all_finite
 from udec_ia.reader.field_reading import TABLE, allowed, in_words
 
 COMMON = [field for field in TABLE.common if field.type != "int"]
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
-ALL_FINITE = Sparing(all_finite, 4e5, LOOKS)  # groups
+ALL_FINITE = InterpretWhenSmall(all_finite, 4e5)  # groups
 
 
 def check_numbers(state: State) -> None:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import lay_out_lists
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.untrusted_lists import lay_out_lists
 from udec_ia.layout import offsets as g
 from udec_ia.reader.block_rings import Boundaries, one_before
 from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers
 from udec_ia.reader.group_lists import Lists
 
-LAY_OUT = Sparing(lay_out_lists, 1e6, LOOKS)  # items
+LAY_OUT = InterpretWhenSmall(lay_out_lists, 1e6)  # items
 
 
 @dataclass(frozen=True)

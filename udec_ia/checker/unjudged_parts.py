@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from udec_ia.checker.checked_state import Violation
 from udec_ia.errors import DISORDERED, MESSAGES
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import TABLE
 

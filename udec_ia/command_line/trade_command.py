@@ -155,7 +155,7 @@ def _folder(args: argparse.Namespace) -> Path:
 
 
 def _options(args: argparse.Namespace) -> Options:
-    from udec_ia.heap.words import ALL_SCHEMES
+    from udec_ia.heap.word_scheme import ALL_SCHEMES
     from udec_ia.studies.setting_runner import Options
 
     named: dict[str, Any] = {

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import variable
+from udec_ia.heap.main_array import variable
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.group_names import called, names

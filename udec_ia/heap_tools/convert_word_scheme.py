@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from udec_ia.checker import Violation, check
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.fault_summary import too_coarse
 from udec_ia.heap_tools.fitted_contacts import settle
 from udec_ia.heap_tools.rewrite_heap import Rewritten, rewrite

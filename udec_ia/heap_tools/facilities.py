@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table

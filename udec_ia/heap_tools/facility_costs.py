@@ -15,13 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES, Facility
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.heap_tools.facility_trials import WITHOUT, Trial
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import cycle, prepare
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.runaway import Runaway

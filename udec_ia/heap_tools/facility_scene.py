@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from udec_ia.heap.accessors import HEAD, iget, puti
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import REMEMBER
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.kernels.links.relaxations import lose_relaxations
@@ -18,7 +18,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import forget_blocks
 from udec_ia.ops.commands.change import change_types
 from udec_ia.ops.common.lists import chain
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 
 NEVER = 1e30  # m, a displacement that nothing comes to
 

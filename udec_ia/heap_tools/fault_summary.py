@@ -8,7 +8,7 @@ import numpy as np
 
 from udec_ia.checker import Violation
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
 from udec_ia.reader.group_tables import addresses

@@ -19,7 +19,7 @@ from udec_ia.checker.block_outlines import circles, extent, outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_overlaps import touches
 from udec_ia.heap.accessors import Memory, getr, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 

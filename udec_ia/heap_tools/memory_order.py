@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.relocate import relocate
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.relocation import relocate
 from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g

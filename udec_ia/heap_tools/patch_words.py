@@ -19,7 +19,7 @@ import numpy as np
 
 from udec_ia.checker import Violation, check
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.fault_summary import in_short
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import integers
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.relocate import relocate
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.relocation import relocate
 from udec_ia.heap_tools.movable_groups import junk_words, movable
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table

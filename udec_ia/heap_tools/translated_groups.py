@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.census import CHOICES, list_heads, reached
-from udec_ia.heap.junk import junk_chains
+from udec_ia.heap.junk_list import junk_chains
 from udec_ia.heap_tools.written_state import JUNK, Faults, Words
 from udec_ia.layout.table import lay_out
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.layout import offsets as g

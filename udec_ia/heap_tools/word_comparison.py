@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import MainArray, variable
+from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.comparison_report import CALLED, LIMIT
 from udec_ia.reader.atlas import TABLE, Atlas
 from udec_ia.reader.field_rows import COMMON

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout.table import Table, read_table
 
 JUNK, FREE, TOP = "JUNK", "MFREE", "MTOP"  # variables of the memory

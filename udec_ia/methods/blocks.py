@@ -8,7 +8,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import DTOL
 from udec_ia.methods.state import State

@@ -11,7 +11,7 @@ from udec_ia.checker import check
 from udec_ia.counting import counted
 from udec_ia.deck.monitor import RESTART_FILE
 from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.methods.state import State
 from udec_ia.ops.commands.history import definitions

@@ -10,14 +10,14 @@ from typing import SupportsIndex, TypeVar
 from udec_ia.checker import check_shapes
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.lent import Writes, lend
-from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.tracked_arrays import Writes, lend
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout.offsets import LREADY
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.session import NAME, Session
 from udec_ia.transaction import Undo, beside

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.reader.field_reading import Numbers
 
 ROOM = 100  # rows that are expected
 
 
-def told(kernel: Sparing, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
+def told(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
     """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
 
     groups: how many it goes through; of: int or float.

@@ -23,24 +23,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import interpreted, observe
 from udec_ia.counting import counted
-from udec_ia.debug.session import cycle_statement, cycles_of
-from udec_ia.debug.timeline import Copy, copied
-from udec_ia.debug.tracing import ROOT, UNDER
+from udec_ia.debug.cycle_trace import ROOT, UNDER
+from udec_ia.debug.debugged_run import count_cycles, cycle_statement
+from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.deck.monitor import RESTART_FILE, Monitor
 from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import Line, Statement, statements, tokens
 from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import interpreted, observe
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.compared_heap import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.memory import keep_spare
 from udec_ia.ops.common.soft import soft
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import prepare, raise_error
 from udec_ia.ops.run.replay import Replay
 from udec_ia.ops.run.watch import SOLVE_LIMIT, run_unwatched
@@ -50,7 +50,7 @@ EVERY = 60  # cycles between two comparisons; a multiple of those after which SO
 STOPS = 1000  # times that a cycle may stop for memory
 SHARE, TIMES = 1e-6, 100
 ARMS = {"rad/s": ("m/s", -1), "N": ("N/m", 1)}  # units that are others times or over a length
-States = tuple[Copy, Copy]
+States = tuple[StateCopy, StateCopy]
 
 
 # ---- comparison of two states
@@ -137,7 +137,7 @@ def _finite(values: Any) -> Any:
 class Step(NamedTuple):
     """The state that a run has come to. line: the line of the deck that is next, or was last, "" for none."""
 
-    copy: Copy
+    copy: StateCopy
     cycle: int
     line: str
 
@@ -218,7 +218,7 @@ def _rest_of(statement: Statement) -> tuple[float | None, int]:
     """
     call = parse(statement)
     if call.command.name != "solve":
-        return None, cycles_of(statement)
+        return None, count_cycles(statement)
     if call.named.get("static") or call.named.get("criterion") == "mean":
         return None, 0
     return float(call.positional[0]), int(call.named.get("limit", SOLVE_LIMIT))
@@ -239,7 +239,7 @@ def _to_next(model: Any) -> int:
 
 
 def _step(model: Any, line: str = "") -> Step:
-    return Step(copied(model.array), int(model.array.h.ci[g.MCTOT]), line)
+    return Step(copy_state(model.array), int(model.array.h.ci[g.MCTOT]), line)
 
 
 Pair = tuple[SteppedRun, SteppedRun]
@@ -252,7 +252,7 @@ class _PassStates:
     """The cycle that follows the state in `array`, which is changed. after: name of each pass, and a copy."""
 
     def __init__(self, array: MainArray, laws: LawBook) -> None:
-        self.after: list[tuple[str, Copy]] = []
+        self.after: list[tuple[str, StateCopy]] = []
         self._array, self._name = array, ROOT
         with interpreted(), suppress(UdecError):
             bound = laws.bind(array)
@@ -274,14 +274,14 @@ class _PassStates:
     def _end(self) -> None:
         """The pass is over. What the loop of the passes itself counts is no pass."""
         if self._name != ROOT:
-            self.after.append((self._name, copied(self._array)))
+            self.after.append((self._name, copy_state(self._array)))
 
 
 def _pass_of(frame: FrameType | None) -> str:
     """The routine that the loop of the passes has called; that loop itself if it has called none."""
     name = ROOT
     while frame is not None and frame.f_code.co_name != ROOT:
-        if frame.f_globals not in UNDER:
+        if not frame.f_globals["__name__"].startswith(UNDER):
             name = frame.f_code.co_name
         frame = frame.f_back
     return name
@@ -365,10 +365,10 @@ def _on(runs: Pair, start: States, cycles: int) -> States:
     for run, array in zip(runs, arrays, strict=True):
         with suppress(UdecError):  # which the run has ended with
             Replay(array, run.model.laws).step(cycles)
-    return copied(arrays[0]), copied(arrays[1])
+    return copy_state(arrays[0]), copy_state(arrays[1])
 
 
-def _ready(copy: Copy) -> MainArray:
+def _ready(copy: StateCopy) -> MainArray:
     """The state, prepared to be cycled as CYCLE does."""
     array = copy.array()
     prepare(array)

@@ -18,10 +18,10 @@ from pathlib import Path
 from time import monotonic, perf_counter, thread_time
 from typing import TextIO
 
+from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Variables
 from udec_ia.errors import UdecError
-from udec_ia.heap.compiling import compile_seconds
 from udec_ia.ops.run.solution import in_short, worth_telling
 from udec_ia.studies.observer import ModelWithWarnings, StudyObserver
 from udec_ia.studies.quantity_syntax import read_quantities

@@ -13,7 +13,7 @@ from udec_ia.deck.language import COMMANDS, match
 from udec_ia.deck.monitor import Monitor
 from udec_ia.deck.reader import Statement
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.ops.run.watch import NO_MARKS, Watch

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.recording import measured
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy import balance

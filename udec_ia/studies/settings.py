@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.studies.survey_run import Segment
 
 FIT = 0.06  # the greatest share by which a time-step may be smaller than asked for

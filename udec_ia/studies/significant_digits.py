@@ -32,7 +32,7 @@ from statistics import NormalDist, fmean, stdev
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.studies.perturbed_run import KICKS, PerturbedRun
 from udec_ia.studies.setting_runner import END_TIME, SettingRunner
 from udec_ia.studies.settings import Setting

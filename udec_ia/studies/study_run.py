@@ -22,7 +22,7 @@ from udec_ia.deck.parser import Call, parse
 from udec_ia.deck.reader import statements
 from udec_ia.deck.variables import Values, Variables
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import DEFAULT_SCHEME, scheme
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.run_folder import RESULT

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.damped import damped

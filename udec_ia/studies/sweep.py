@@ -27,7 +27,7 @@ from udec_ia.counting import counted
 from udec_ia.deck.monitor import names_a_file
 from udec_ia.deck.variables import NAME, Value, Variables, spelt
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.studies.execute_run import LOG
 from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities

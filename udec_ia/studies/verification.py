@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.model import Model
 from udec_ia.output.draw import INK, title
 from udec_ia.output.graph import COLOURS

@@ -28,9 +28,9 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
-from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.detect.domains import relative_velocity
@@ -264,7 +264,7 @@ def _corner_through(h: Memory, idm: int) -> int:
     return int64(0)
 
 
-@apart
+@outlined
 def gone_through(h: Memory) -> bool:
     """True, and error 15, if in this step a corner has gone into another block of its domain.
 

@@ -1,4 +1,4 @@
-"""What a cycle calls by its address (heap/apart.py): what is long, and not needed in every cycle or scene.
+"""What a cycle calls by its address: what is long, and not needed in every cycle or scene.
 
 Each is compiled once for a word scheme, and once it is needed, instead of in every kind of cycle there is:
 rigid or deformable, with and without laws of the user's. `passes` finds what a run needs.
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.outlined_calls import entry, entry_if
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.apart import entry, entry_if
 from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through

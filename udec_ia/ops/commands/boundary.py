@@ -18,8 +18,8 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.ranges import edges_between, points_between
 from udec_ia.layout import offsets as g

@@ -9,7 +9,7 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.boxes import meeting
 from udec_ia.kernels.geometry.shape import density_of, makeb
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding

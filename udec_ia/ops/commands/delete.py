@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.map.remove import delb
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import forget_blocks

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import finite, whole
 from udec_ia.ops.common.lists import chain

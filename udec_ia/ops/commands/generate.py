@@ -19,8 +19,8 @@ import numpy as np
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.masses import share_mass
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.geometry.shape import crad

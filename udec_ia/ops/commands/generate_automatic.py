@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.generate import Outline, Place, divide
 from udec_ia.ops.mesh.triangles import Mesh, mesh

@@ -1,7 +1,7 @@
 """HISTORY: what is to be recorded stands in IA(), a group for each history, and so outlives SAVE and RESTART.
 
 A history points to its group. The pointer moves with the group when groups change places, and becomes 0
-when the group is given back (heap.memory.unwatch): it never shows another group's numbers.
+when the group is given back (heap.find_lose.unwatch): it never shows another group's numbers.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import whole

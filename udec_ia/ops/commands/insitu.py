@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import ZERO, Triple

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from udec_ia.errors import OVERLAP_TOO_GREAT, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map
 from udec_ia.kernels.detect.deep_overlap import deep_overlap
 from udec_ia.kernels.detect.update import update_domains

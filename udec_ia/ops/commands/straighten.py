@@ -11,7 +11,7 @@ import math
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.contact.changes import restart
 from udec_ia.kernels.detect.gaps import give_up
 from udec_ia.kernels.geometry.shape import crad, is_edge_point

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.ops.commands.generate import Outline
 from udec_ia.ops.commands.split import ROUNDINGS, Boxes
 from udec_ia.ops.common.limits import last_digit

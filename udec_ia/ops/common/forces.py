@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.force_sums import sum_all_forces
 from udec_ia.ops.common.soft import soft
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, integers, puti
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Group, read_table

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from udec_ia.compiling.build_choice import forget_kinds
 from udec_ia.errors import OVERFLOW, UdecError
 from udec_ia.heap.accessors import size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.kinds import forget
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
@@ -95,5 +95,5 @@ def all_or_nothing(array: MainArray) -> Iterator[None]:
         for part, kept in zip(parts, before, strict=True):
             part[:] = kept
         array.h = h
-        forget(h.ia)
+        forget_kinds(h.ia)
         raise

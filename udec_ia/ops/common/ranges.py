@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import hypot
 
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.ranges import blocks_between
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.limits import finite

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 

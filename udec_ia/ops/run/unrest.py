@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.drive.unbalanced import carried
 from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.kernels.drive.recording import measures, record
