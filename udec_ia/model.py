@@ -16,52 +16,35 @@ import io
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from math import inf
 from pathlib import Path
 from typing import TextIO
 
+from udec_ia.advice.damping_report import UNDAMPED, describe_damping
+from udec_ia.advice.input_warnings import check_damping, check_input
+from udec_ia.advice.rest_diagnosis import RestDiagnosis
+from udec_ia.advice.step_warnings import describe_step
 from udec_ia.compiling.interpreting import mode
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.reference import explain, summary
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import explain, summary
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.memory_order import arrange
-from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
-from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
-from udec_ia.ops.common.limits import not_negative, whole
-from udec_ia.ops.common.soft import soft_or_loaded_in
-from udec_ia.ops.run.aside import speed_after
-from udec_ia.ops.run.cycle import cycle, finish
-from udec_ia.ops.run.damped import UNDAMPED, damping
-from udec_ia.ops.run.remarks import (
-    on_joints,
-    on_laws,
-    on_loads,
-    on_moduli,
-    on_resolution,
-    on_rest,
-    on_rounding,
-    on_slivers,
-    on_softness,
-)
-from udec_ia.ops.run.scaling import relaxations_due
-from udec_ia.ops.run.solution import MAX, MEAN, Solution, criterion_of
-from udec_ia.ops.run.static import STATIC, statically
-from udec_ia.ops.run.strides import given
-from udec_ia.ops.run.timestep import bound, describe, kind_of
-from udec_ia.ops.run.unrest import Unrest
-from udec_ia.ops.run.watch import SOLVE_LIMIT, Series, Watch
+from udec_ia.ops.common.number_limits import not_negative, whole
+from udec_ia.running.critical_step import bound
+from udec_ia.running.cycle import cycle, finish
+from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording, Series
+from udec_ia.running.mass_scaling import relaxations_due
+from udec_ia.running.observer import Observer
+from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solution_of
+from udec_ia.running.static_relaxation import STATIC, statically
 from udec_ia.transaction import beside, looking, once
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
-GIVEN = "given strides"  # of that which BOUNDARY moves, before the run
-STRIDES = "strides"  # what they lose of a steady way is told once, after the run
-RESOLUTION = "resolution"  # what reals of few bits lose is told once, before the run or after it
 
 Ended = Callable[[int], None]
 
@@ -106,7 +89,7 @@ class Model(Files, Blocks, Numbers, Looks):
         """CYCLE: n calculation cycles. Returns how many were completed."""
         self._ready()
         not_negative(self.array, n=whole(n=n))
-        return self._cycle(n, self._recorder.watch(self.array))
+        return self._cycle(n, self._recording())
 
     @beside
     def solve(
@@ -114,7 +97,8 @@ class Model(Files, Blocks, Numbers, Looks):
     ) -> Solution:
         """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
-        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say (ops.run.static).
+        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
+        (running.static_relaxation).
         criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
         The ratio: that force over the mean of those that are carried (drive.unbalanced); it is looked at
@@ -125,7 +109,7 @@ class Model(Files, Blocks, Numbers, Looks):
         not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
         criterion = criterion_of(criterion)
         if not static:
-            found = list(on_rest(self.array))
+            found = list(check_damping(self.array))
             self.remark(found)
             if found:  # CYCLE need not say it again
                 self._said = self._said | {UNDAMPED}
@@ -144,41 +128,24 @@ class Model(Files, Blocks, Numbers, Looks):
 
     def _to_rest(self, ratio: float, limit: int, criterion: str, ended: Ended | None = None) -> Solution:
         """Up to `limit` cycles to rest; ended: as of _cycle."""
-        unrest, mean = Unrest(self._guard.since_rest(self.array)), criterion == MEAN
-        watch = Watch(self.array, self._recorder.series, ratio, mean, unrest)
-        cycles = self._cycle(limit, watch, ended)
-        h, kinds = self.array.h, soft_or_loaded_in(self.array.h)
-        reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(ratio)))
-        largest, average = map(float, force_ratios(h, kinds))
-        worst, lively = (
-            kind_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
-        )
-        state, why = unrest.explain(self.array, reached, ratio, self._guard, self._speed_after)
-        solution = Solution(
-            reached,
-            ratio,
-            largest,
-            cycles,
-            worst,
-            float(motion_ratio(h, kinds)),
-            lively,
-            criterion,
-            average,
-            state,
-            why,
-        )
+        diagnosis = RestDiagnosis(self._monitors.friction_until_rest(self.array))
+        cycles = self._cycle(limit, self._recording(ratio, criterion == MEAN), ended, [diagnosis])
+        solution = diagnosis.complete(self.array, solution_of(self.array, ratio, criterion, cycles))
         self._recorder.solutions.append(solution)
-        if reached:
-            self._guard.rested = float(h.cd[WFRIC])
+        if solution:
+            self._monitors.rested = float(self.array.h.cd[WFRIC])
         return solution
 
-    def _speed_after(self, ib: int, n: int) -> float:
-        return inf if self.laws.given else speed_after(self.array, ib, n)  # a law may remember cycles
+    def _recording(self, ratio: float = NEVER, mean: bool = False) -> Recording:
+        return Recording(self.array, self._recorder.series, ratio, mean, self._monitors.chatter.marks)
 
-    def _cycle(self, n: int, watch: Watch | None, ended: Ended | None = None) -> int:
-        """Up to `n` cycles under the eyes of `watch`, with progress and files; returns how many it were.
+    def _cycle(
+        self, n: int, recording: Recording, ended: Ended | None = None, observers: Sequence[Observer] = ()
+    ) -> int:
+        """Up to `n` cycles, with progress and files; returns how many it were.
 
         ended: logs how many cycles are to stay when the run ends before its time; by default as a CYCLE.
+        observers: look on, besides those of the model.
         """
         self._boxes.forget()
         if self.array.h.ci[MCTOT] == 0 or relaxations_due(self.array):
@@ -186,45 +153,38 @@ class Model(Files, Blocks, Numbers, Looks):
         moved = arrange(self.array)
         if moved is not None:
             self.renumber(moved)
-        self._guard.drift.begin(self.array)
-        self._guard.since_rest(self.array)
-        watch = self.around(watch)
+        self._monitors.friction_until_rest(self.array)
         report = self.report(self.array, n)
         before = int(self.array.h.ci[MCTOT])
         try:
-            every = max(1, n // PICTURES) if self.animate else None
             done = cycle(
                 self.array,
                 n,
-                report,
-                every,
-                self._judge,
-                self.laws,
-                watch,
-                lambda: self._settle(watch),
-                self._guard,
+                recording=recording,
+                observers=(*observers, *self.observers, self._monitors),
+                laws=self.laws,
+                report=report,
+                every=max(1, n // PICTURES) if self.animate else None,
+                prepared=self._judge,
+                settled=lambda: self._settle(recording),
             )
         except BaseException:
             ended = ended or (lambda n: self.log_part(Model.cycle, (n,), {}))
             ended(int(self.array.h.ci[MCTOT]) - before)  # they stay
-            finish(self.array, watch)
+            finish(self.array, recording)
             with suppress(UdecError):  # of two errors the first one counts
-                self.keep(watch)
+                self.keep(recording)
             raise
         finally:
             report.close()
         self.undo.afresh(self)
-        self.keep(watch)
-        lost = list(self._guard.strides.told(self.array))
-        self.remark(lost, what=STRIDES)
-        if not lost:
-            self.remark(self._guard.drift.told(self.array), what=RESOLUTION)
+        self.keep(recording)
         return done
 
-    def _settle(self, watch: Watch | None) -> None:
+    def _settle(self, recording: Recording) -> None:
         """The cycles of a run until now are to stay, whatever ends it."""
         if mode.python:
-            finish(self.array, watch)
+            finish(self.array, recording)
         self.undo.settle(self)
 
     @looking
@@ -234,23 +194,15 @@ class Model(Files, Blocks, Numbers, Looks):
         Estimate and bound are those of the present state, which the cycles since then have made.
         """
         self._ready()
-        return describe(self.array, bound(self.array))
+        return describe_step(self.array, bound(self.array))
 
     def _judge(self) -> None:
-        """Judge the time-step and the materials of a CYCLE; explain the step if that is asked for."""
-        self._guard.runaway.judge(self.array, self.explain_step)
-        self._guard.strides.begin(self.array)
+        """Warn of the time-step and of suspicious input before a CYCLE; explain the step if asked to."""
+        self._monitors.energy.judge(self.array, self.explain_step)
         if self.explain_step:
-            self.inform(describe(self.array, self._guard.runaway.safe))
-            self.remark([damping(self.array.h)], self.inform)
-        self.remark(on_moduli(self.array, self.laws.block_laws))
-        self.remark(on_laws(self.array))
-        self.remark(on_joints(self.array))
-        self.remark(on_loads(self.array))
-        self.remark(list(on_rounding(self.array)) or on_slivers(self.array))
-        self.remark(on_softness(self.array))
-        self.remark(on_resolution(self.array), what=RESOLUTION)
-        self.remark(given(self.array), what=GIVEN)
+            self.inform(describe_step(self.array, self._monitors.energy.safe))
+            self.remark([describe_damping(self.array.h)], self.inform)
+        self.remark(check_input(self.array, self.laws.block_laws))
 
     @once
     def history(

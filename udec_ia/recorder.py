@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.ops.commands.history import define, named
-from udec_ia.ops.run.solution import Solution
-from udec_ia.ops.run.watch import Series, Watch
+from udec_ia.ops.commands.history_definitions import define, named
+from udec_ia.running.history_series import Recording, Series
+from udec_ia.running.solve_result import Solution
 
 if TYPE_CHECKING:
     from udec_ia.output.histories import Files
@@ -35,23 +35,19 @@ class Recorder:
         chosen = choose(array, what.group, field, address, at)
         define(array, what, [one.address for one in chosen], n)
         first = len(self.series)
-        Watch(array, self.series).look()
+        Recording(array, self.series).look()
         for series, one in zip(self.series[first:], chosen, strict=True):
             series.place = one.place
         return self.series[first:]
 
-    def watch(self, array: MainArray) -> Watch | None:
-        """What watches a CYCLE; None if nothing is recorded."""
-        return Watch(array, self.series) if self.series else None
-
-    def keep(self, watch: Watch | None, base: Path, tell: Callable[[str], None]) -> list[Path]:
+    def keep(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
         """Write what was recorded to base.csv and base.h5, and tell which groups have gone."""
-        if watch is None or not self.series:
+        if not self.series:
             return []
         from udec_ia.output.histories import Files
 
-        watch.look()
-        for one in watch.lost:
+        recording.look()
+        for one in recording.lost:
             tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
         if self._files is None or self._files.place != base.absolute():
             self.close()

@@ -19,11 +19,13 @@ from udec_ia.files import last_number
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.log import Log, Step
-from udec_ia.ops.run.solution import in_short
-from udec_ia.ops.run.watch import Series, Watch
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.recorder import Recorder
+from udec_ia.remark import Remark
+from udec_ia.running.history_series import Recording, Series
+from udec_ia.running.observer import Observer
+from udec_ia.running.solve_result import in_short
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -33,6 +35,12 @@ if TYPE_CHECKING:
 log = logging.getLogger("udec_ia")
 
 NAME = "udec"  # what names of files begin with
+GIVEN_ONCE = ("coarse-reals",)  # keys of remarks whose numbers change with every cycle
+
+
+def warn_in_log(text: str) -> None:
+    """Log a warning; the record has the key of a remark as its attribute `key`, else ""."""
+    log.warning(text, extra={"key": text.key if isinstance(text, Remark) else ""})
 
 
 class Session:
@@ -48,7 +56,7 @@ class Session:
         self.name = name
         self.progress: TextIO | None = None
         self.animate = False
-        self.tell: Callable[[str], None] = log.warning
+        self.tell: Callable[[str], None] = warn_in_log
         self.inform: Callable[[str], None] = log.info
         self.explain_step = False
         self.logs_calls = True
@@ -59,7 +67,7 @@ class Session:
         self._plots: Plots | None = None
         self._animation: Animation | None = None
         self._said: set[str] = set()  # remarks, which are not repeated
-        self.around: Callable[[Watch | None], Watch | None] = lambda watch: watch  # for a debugger
+        self.observers: Sequence[Observer] = ()  # of all runs: a debugger, a study
         self._clock, self._compiled = perf_counter(), compile_seconds()
 
     @property
@@ -113,17 +121,16 @@ class Session:
         """Tell `text`."""
         self.tell(text)  # not bound beforehand: a monitor changes it
 
-    def remark(
-        self, remarks: Iterable[str], tell: Callable[[str], None] | None = None, what: str = ""
-    ) -> None:
-        """Tell `remarks`, each once, by `tell` if it is not a warning.
+    def remark(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
+        """Give `remarks`, each once, to `tell` or with the warnings.
 
-        what: what they are about, if their numbers change with every cycle; one such is told.
+        Of those whose numbers change with every cycle one is given.
         """
-        for text in remarks:
-            if (what or text) not in self._said:
-                self._said = self._said | {what or text}
-                (tell or self.tell)(text)
+        for one in remarks:
+            mark = one.key if one.key in GIVEN_ONCE else one
+            if mark not in self._said:
+                self._said = self._said | {mark}
+                (tell or self.tell)(one)
 
     def summary_of(self, array: MainArray) -> str:
         """The line that sums up the run until now, of files that are written by now."""
@@ -167,9 +174,9 @@ class Session:
         """The last number of a picture to be left alone: of the run that this one goes on from, or 0."""
         return last_number(self.out, self.name + kind) if self.goes_on else 0
 
-    def keep(self, watch: Watch | None) -> None:
+    def keep(self, recording: Recording) -> None:
         """Write what was recorded."""
-        self.note(self._recorder.keep(watch, self.out / f"{self.name}-history", self.tell))
+        self.note(self._recorder.keep(recording, self.out / f"{self.name}-history", self.tell))
 
     def report(self, array: MainArray, n: int) -> Report:
         """What shows how far `n` cycles are, and takes pictures of them if that is asked for."""

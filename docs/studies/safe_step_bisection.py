@@ -25,11 +25,11 @@ from naive.stiffness import Scene  # noqa: E402
 
 from safe_step_picture import dots  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
+from udec_ia.advice.damping_report import damped  # noqa: E402
 from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.ops.common.lists import chain  # noqa: E402
-from udec_ia.ops.run.damped import damped  # noqa: E402
-from udec_ia.ops.run.timestep import bound, estimate  # noqa: E402
+from udec_ia.ops.common.block_ranges import chain  # noqa: E402
+from udec_ia.running.critical_step import bound, estimate  # noqa: E402
 from udec_ia.studies.verification_tools import fan  # noqa: E402
 
 CYCLES, LOOKS, GROWN, SHAKE, FINE = 800, 40, 1e6, 1e-7, 1 / 500

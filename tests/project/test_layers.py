@@ -23,7 +23,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "split",
         "drive",
     ),
-    "ops": ("common", "laws", "mesh", "commands", "run"),
+    "ops": ("common", "laws", "commands"),
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
@@ -34,7 +34,21 @@ BELOW = {  # layers that a layer imports
     "reader": {"counting", "errors", "compiling", "heap", "kernels", "layout"},
     "ops": {"counting", "errors", "compiling", "heap", "kernels", "layout", "printable", "reader", "signals"},
     "checker": {"counting", "errors", "compiling", "heap", "kernels", "layout", "reader"},
+    "running": {
+        "compiling",
+        "counting",
+        "errors",
+        "heap",
+        "kernels",
+        "layout",
+        "ops",
+        "reader",
+        "remark",
+        "signals",
+    },
+    "advice": {"counting", "errors", "heap", "kernels", "layout", "ops", "reader", "remark", "running"},
     "heap_tools": {
+        "advice",
         "checker",
         "counting",
         "errors",
@@ -44,6 +58,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "reader",
+        "running",
     },
     "restart": {
         "counting",
@@ -57,6 +72,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "version",
     },
     "output": {
@@ -72,6 +88,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "restart",
     },
     "view": {"files", "compiling", "heap", "checker", "heap_tools", "reader", "layout", "printable"},
@@ -88,6 +105,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "signals",
     },
     "studies": {
@@ -107,6 +125,7 @@ BELOW = {  # layers that a layer imports
         "ops",
         "output",
         "printable",
+        "running",
         "version",
     },
     "command_line": {
@@ -127,6 +146,7 @@ BELOW = {  # layers that a layer imports
         "view",
     },
     "methods": {
+        "advice",
         "counting",
         "deck",
         "errors",
@@ -134,6 +154,7 @@ BELOW = {  # layers that a layer imports
         "heap",
         "checker",
         "heap_tools",
+        "kernels",
         "reader",
         "keywords",
         "layout",
@@ -145,7 +166,18 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"counting", "errors", "compiling", "heap", "layout", "ops", "printable", "reader", "signals"},
+    "deck": {
+        "counting",
+        "errors",
+        "compiling",
+        "heap",
+        "kernels",
+        "layout",
+        "ops",
+        "printable",
+        "reader",
+        "signals",
+    },
 }
 
 

@@ -118,10 +118,10 @@ def test_why_there_is_no_value(quantity: str, reason: str, tmp_path: Path) -> No
 
 
 def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
-    texts = ("solve.reached", "solve.ratio", "solve.cycles")
+    texts = ("solve.reached", "solve.ratio", "solve.cycles", "solve.fallen")
     deck = FALL.replace("CYCLE 100", "SOLVE 1E-3 LIMIT 3")
-    (reached, ratio, cycles), _ = worth(tmp_path, *texts, deck=deck)
-    assert (reached, cycles) == (0, 3)
+    (reached, ratio, cycles, fallen), _ = worth(tmp_path, *texts, deck=deck)
+    assert (reached, cycles, fallen) == (0, 3, 0)
     assert ratio > 1e-3
 
 
@@ -144,7 +144,7 @@ def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
         ("x = block(1e999,0).KXD", 10, "this is too large a number"),
         ("block(0, -1e400).KXD", 9, "this is too large a number"),
         (f"last history {'9' * 5000}", 13, "this is too large a number"),
-        ("solve.done", 6, "but reached, ratio, cycles, motion"),
+        ("solve.done", 6, "but reached, ratio, cycles, motion, fallen"),
     ],
 )
 def test_what_is_refused(text: str, column: int, reason: str) -> None:

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia import Model, UdecError, signals
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import statements
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import statements
 from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
 
 SCENE = """START
@@ -59,9 +59,9 @@ def state(model: Model) -> dict[str, Any]:
         "flags": (model.started, model._touched, model._unproved, model.explain_step),
         "remarks": (
             sorted(model._said),
-            model._guard.runaway._judged,
-            model._guard.runaway._warned,
-            model._guard.runaway._account,
+            model._monitors.energy._judged,
+            model._monitors.energy._warned,
+            model._monitors.energy._account,
         ),
     }
 
@@ -244,7 +244,7 @@ class Lines:
         if typed:
             monitor.obey(statement)
         else:
-            from udec_ia.deck.parser import parse
+            from udec_ia.deck.lines_and_calls import parse
 
             call = parse(statement)
             named = dict(call.named)

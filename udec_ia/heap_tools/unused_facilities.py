@@ -1,6 +1,6 @@
 """What was asked for and has no effect in a state, and why.
 
-Some of it CYCLE remarks before it runs (ops/run/remarks.py); here is all of it that a state shows.
+Some of it CYCLE remarks before it runs (advice/input_warnings.py); here is all of it that a state shows.
 """
 
 from __future__ import annotations
@@ -9,16 +9,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from udec_ia.advice.input_warnings import check_laws, check_loads
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES
 from udec_ia.heap_tools.facility_scene import Scene
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.settings import PROPERTIES
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.lists import chain
-from udec_ia.ops.run.remarks import on_laws, on_loads
+from udec_ia.ops.commands.model_settings import PROPERTIES
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.reader.listing import Listing
 
 Found = Iterator[tuple[str, str]]
@@ -49,12 +50,13 @@ def _motion(s: Scene) -> Found:
 
 def _damping(s: Scene) -> Found:
     """Damping of what is not there."""
-    adapts = s.h.ci[g.LREST] == g.ADAPTIVE
+    mode = mode_of(s.h)
+    adapts = mode and mode.sets_alpha
     if s.h.cr[g.ALPB] and not s.count("sdef") and not adapts:
         yield "DAMPING INTERNAL", "no block is simply-deformable"
     if s.h.cr[g.BETA] and s.moves and not (s.touching.any() or s.count("zone")):
         yield "DAMPING STIFFNESS", "there is no contact and no zone"
-    if s.h.ci[g.LREST] in (g.LOCAL, g.COMBINED) and not s.h.cr[g.RESTF]:
+    if mode and mode.fraction and not adapts and not s.h.cr[g.RESTF]:
         yield "DAMPING to rest", "its fraction is 0"
 
 
@@ -70,7 +72,7 @@ def _fixed(s: Scene) -> Found:
 
 def _conditions(s: Scene) -> Found:
     """Conditions that load nothing, and functions that nothing follows."""
-    yield from (("BOUNDARY", text) for text in on_loads(s.array, s.found))
+    yield from (("BOUNDARY", text) for text in check_loads(s.array, s.found))
     empty = np.all([s.column("bound", k) == 0 for k in LOADS], axis=0) & (s.column("bound", "KUFIX") == 0)
     if many := int(empty.sum()):
         yield "BOUNDARY", f"without a load or a velocity: {counted(many, 'condition')}"
@@ -104,7 +106,7 @@ def _materials(s: Scene) -> Found:
     stiff = np.setdiff1d(np.concatenate([given[name] for name in MODULI]), soft)
     for m in np.intersect1d(stiff, used).astype(int).tolist():
         yield f"PROPERTY MATERIAL={m}", "BULK and G have no effect: no block of this material is deformable"
-    yield from (("PROPERTY", text) for text in on_laws(s.array, s.found))
+    yield from (("PROPERTY", text) for text in check_laws(s.array, s.found))
 
 
 def _pressures(s: Scene) -> Found:

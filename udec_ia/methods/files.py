@@ -7,17 +7,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Self
 
+from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.checker import check
 from udec_ia.counting import counted
-from udec_ia.deck.monitor import RESTART_FILE
+from udec_ia.deck.command_monitor import RESTART_FILE
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.methods.state import State
-from udec_ia.ops.commands.history import definitions
-from udec_ia.ops.common.memory import refit
+from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.ops.common.array_growth import refit
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.run.guard import Guard
 from udec_ia.printable import printable
 from udec_ia.session import NAME
 from udec_ia.transaction import beside
@@ -77,7 +77,7 @@ class Files(State):
             self.tell(warning)
         self._boxes.forget()
         self._touched, self._unproved = force, True
-        self._guard = Guard(self.warn)
+        self._monitors = RunMonitors(self.laws, self.warn)
         self.started = True
         ci, name = array.h.ci, array.scheme.name
         self.inform(
@@ -103,7 +103,7 @@ class Files(State):
         self.go_on(lines, series)
         self._boxes.forget()
         self._touched, self._unproved = False, True
-        self._guard = Guard(self.warn)
+        self._monitors = RunMonitors(self.laws, self.warn)
 
     @classmethod
     def restore(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import SupportsIndex, TypeVar
 
+from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.checker import check_shapes
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
@@ -14,11 +15,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.tracked_arrays import Writes, lend
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout.offsets import LREADY
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.run.guard import Guard
 from udec_ia.session import NAME, Session
 from udec_ia.transaction import Undo, beside
 
@@ -48,8 +48,8 @@ class State(Session):
         self._boxes = Boxes()
         self._touched = False  # by RSET or through `h`, since links and outlines were last proved sound
         self._unproved = False  # outlines are those of a restart file, of which the links alone are proved
-        self._guard = Guard(self.warn)
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        self._monitors = RunMonitors(self.laws, self.warn)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     @property
     def h(self) -> Memory:
@@ -67,8 +67,8 @@ class State(Session):
         """The objects that hold what is not in the main array."""
         yield from super().parts()
         yield self.laws
-        yield self._guard
-        yield self._guard.runaway
+        yield self._monitors
+        yield self._monitors.energy
 
     def whole(self, action: Callable[[], R]) -> R:
         """Have all that `action` does with this model done, or nothing of it if it raises."""
@@ -89,12 +89,12 @@ class State(Session):
     def start(self) -> None:
         """START: a cold start; whatever was there is gone."""
         self.array = MainArray(self.scheme, self.mtop)
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
         self.begin()
         self._boxes.forget()
         self._touched = self._unproved = False
-        self._guard = Guard(self.warn)
+        self._monitors = RunMonitors(self.laws, self.warn)
         self.started = True
 
     def _ready(self, sound: bool = True, shapes: bool = False) -> None:

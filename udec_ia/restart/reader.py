@@ -24,13 +24,13 @@ from udec_ia.heap_tools.table_translation import news
 from udec_ia.heap_tools.written_state import TranslationError, Words
 from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
-from udec_ia.ops.run.watch import Series
 from udec_ia.printable import printable
 from udec_ia.restart.contents import Contents, contents
 from udec_ia.restart.layout import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.recorded import are_told, recall
 from udec_ia.restart.refusal import OTHER_FILE, OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.seal import read_sealed
+from udec_ia.running.history_series import Series
 
 FORCE = "udec check FILE lists all faults; RESTART FILE FORCE reads it for inspection and repair"
 MAX_TABLE = 2**18  # bytes of another field table, which is read like a program

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from udec_ia.counting import counted
-from udec_ia.deck.variables import Values
+from udec_ia.deck.deck_variables import Values
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import HIGHEST, Extrapolation, converges, extrapolate, share

@@ -12,19 +12,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.parser import Call, parse
-from udec_ia.deck.reader import CONTINUATION, Statement, Token, obeyed, statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.command_forms import Kind, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import CONTINUATION, Statement, Token, obeyed, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import Call, command_of, parse
+from udec_ia.running.history_series import SOLVE_LIMIT
 from udec_ia.studies.settings import Fraction, Numbers, Setting
 from udec_ia.studies.study_run import RunResult
 from udec_ia.studies.survey_run import SurveyRun
 
-SHOWS = ("plot", "print", "dump", "scale", "help")  # become comments
+SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # become comments
 FILLED = "default"  # its values are in the lines
-RUNS = ("cycle", "solve")
-WRITES = ("patch", "rset", "start", "restart")  # may set the words that make a time-step
-SOLVE_LIMIT = 100_000  # of SOLVE if none is given
+RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
+WRITES = {one.name for one in COMMANDS if one.writes_words or one.begins}  # may set what makes a time-step
+ENDS = {one.name for one in COMMANDS if one.ends}
 EVERYWHERE = "-1E30 1E30 -1E30 1E30"
 OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
 
@@ -69,7 +71,7 @@ class Deck:
         variables.check(text.splitlines(), name)
         self.statements = [*variables.filled(statements(text.splitlines(), name))]
         self.commands = [_command(one) for one in self.statements]
-        ends = [k for k, command in enumerate(self.commands) if command in ("stop", "end")]
+        ends = [k for k, command in enumerate(self.commands) if command in ENDS]
         self.obeyed = ends[0] if ends else len(self.commands)  # statements before STOP
         for k in range(self.obeyed):
             if self.commands[k]:
@@ -184,7 +186,7 @@ def text_of(pieces: Iterable[Piece]) -> str:
 
 def _command(statement: Statement) -> str:
     """Name of the command of a statement, "" for comments."""
-    command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+    command = command_of(statement)
     if statement.tokens and command is None:
         parse(statement)  # raises error 2
     return command.name if command else ""

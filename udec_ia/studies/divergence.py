@@ -28,23 +28,24 @@ from udec_ia.counting import counted
 from udec_ia.debug.cycle_trace import ROOT, UNDER
 from udec_ia.debug.debugged_run import count_cycles, cycle_statement
 from udec_ia.debug.timeline import StateCopy, copy_state
-from udec_ia.deck.monitor import RESTART_FILE, Monitor
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Line, Statement, statements, tokens
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
+from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
+from udec_ia.deck.deck_variables import Values
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.compared_heap import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.memory import keep_spare
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.array_growth import keep_spare
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import prepare, raise_error
-from udec_ia.ops.run.replay import Replay
-from udec_ia.ops.run.watch import SOLVE_LIMIT, run_unwatched
 from udec_ia.reader.atlas import KINDS
+from udec_ia.running.cycle import prepare
+from udec_ia.running.cycle_errors import raise_error
+from udec_ia.running.cycle_replay import Replay
+from udec_ia.running.history_series import SOLVE_LIMIT, run_unwatched
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 STOPS = 1000  # times that a cycle may stop for memory

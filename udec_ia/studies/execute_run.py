@@ -19,10 +19,10 @@ from time import monotonic, perf_counter, thread_time
 from typing import TextIO
 
 from udec_ia.compiling.compile_time import compile_seconds
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Variables
 from udec_ia.errors import UdecError
-from udec_ia.ops.run.solution import in_short, worth_telling
+from udec_ia.running.solve_result import in_short, worth_reporting
 from udec_ia.studies.observer import ModelWithWarnings, StudyObserver
 from udec_ia.studies.quantity_syntax import read_quantities
 from udec_ia.studies.run_folder import BEGUN, incomplete, new_folder, publish
@@ -117,7 +117,7 @@ def _result(run: StudyRun, here: Path, rehearsal: bool = False) -> RunResult:
             observer.obey(out)
             solutions = model.solutions()
             status, message = observer.over or ENDED, observer.why or "; ".join(in_short(solutions))
-            at_rest = all(one.reached for one in worth_telling(solutions))
+            at_rest = all(one.reached for one in worth_reporting(solutions))
             found, remarks = observer.quantities()
         except UdecError as failure:
             print(failure, file=out)

@@ -9,19 +9,17 @@ import math
 from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import Statement
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Statement
+from udec_ia.deck.lines_and_calls import command_of
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
-from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.running.observer import Observer, between_cycles
 from udec_ia.studies.quantities import InitialState, NoValue, State
 from udec_ia.studies.quantity_syntax import read_quantities, read_rule
 from udec_ia.studies.study_run import DECK, LATE, STOPPED, StudyRun
-
-SHOWING = ("dump", "end", "help", "plot", "print", "save", "stop")  # commands that change nothing
 
 
 class Clock(Protocol):
@@ -32,28 +30,11 @@ class Clock(Protocol):
         """Seconds until now."""
 
 
-class RunObserver:
-    """Observes CYCLEs and SOLVEs, piece by piece. By itself it asks for nothing and does nothing."""
+class RunObserver(Observer):
+    """An observer of cycles that looks on between commands as well."""
 
     def command_obeyed(self, array: MainArray) -> None:
         """A command was obeyed."""
-
-    def begin(self, array: MainArray, solves: bool) -> None:
-        """One is prepared, and its first cycle follows. solves: it is a SOLVE."""
-
-    def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """Cycles of the next piece, of `n` to come."""
-        return n
-
-    def look(self, array: MainArray, cycles: int) -> None:
-        """A piece of so many cycles is over."""
-
-    def is_over(self) -> bool:
-        """True if no cycle is to follow."""
-        return False
-
-    def end(self, array: MainArray) -> None:
-        """The CYCLE or SOLVE has ended."""
 
 
 class StudyObserver(RunObserver):
@@ -79,13 +60,9 @@ class StudyObserver(RunObserver):
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.around = self._around
+        self.model.observers = (*self._others, self)
         monitor.run(text.splitlines(), name)
         monitor.stop()
-
-    def _around(self, watch: Watch | None) -> Watch:
-        """The watch of a CYCLE or SOLVE that begins, around the one that it has."""
-        return _ObservedWatch([self, *self._others], watch or Watch(self.model.array, []))
 
     @property
     def seconds(self) -> float:
@@ -139,10 +116,8 @@ class StudyObserver(RunObserver):
 
     def look(self, array: MainArray, cycles: int) -> None:
         """See RunObserver."""
-        h = array.h
         self._done += cycles
-        whole = h.ci[g.JPHASE] == g.AT_BLOCKS and h.ci[g.NERR] == 0
-        if self._rules and whole and h.ci[g.MCTOT] % self.run.every == 0:
+        if self._rules and between_cycles(array.h) and array.h.ci[g.MCTOT] % self.run.every == 0:
             self._check_rules()
 
     def is_over(self) -> bool:
@@ -200,8 +175,8 @@ class _Monitor(Monitor):
 
     def obey(self, statement: Statement) -> None:
         """As Monitor.obey, but nothing that takes long is begun when the time is up."""
-        command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
-        if statement.tokens and (command is None or command.name not in SHOWING):
+        command = command_of(statement)
+        if statement.tokens and (command is None or command.is_work):
             self.ended = self._observer.is_ended()
         if self.ended:
             return
@@ -209,43 +184,3 @@ class _Monitor(Monitor):
         self._observer.command_obeyed(self._observer.model.array)
         if self._observer.over:
             self.ended = True
-
-
-class _ObservedWatch(Watch):
-    """Runs a CYCLE or SOLVE in the pieces that its observers ask for. inner: the watch that it has."""
-
-    def __init__(self, observers: list[RunObserver], inner: Watch) -> None:
-        self.observers, self.inner = observers, inner
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
-
-    @property
-    def reached(self) -> bool:  # type: ignore[override]
-        """True when there are to be no more cycles."""
-        return self.inner.reached or any(one.is_over() for one in self.observers)
-
-    def begin(self) -> None:
-        """As Watch.begin."""
-        self.inner.begin()
-        for one in self.observers:
-            one.begin(self.inner.array, self.inner.ratio >= 0)
-
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-        """One piece of at most `n` cycles."""
-        for one in self.observers:
-            n = one.cycles_ahead(self.inner.array, n)
-        completed = self.inner.run(n, laws, marks)
-        for one in self.observers if completed else ():
-            one.look(self.inner.array, completed)
-        return completed
-
-    def look(self) -> None:
-        """As Watch.look."""
-        self.inner.look()
-
-    def hand_on(self) -> int:
-        """As Watch.hand_on, at the end."""
-        for one in self.observers:
-            one.end(self.inner.array)
-        return self.inner.hand_on()

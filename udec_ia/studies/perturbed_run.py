@@ -24,6 +24,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 from udec_ia.reader.group_tables import addresses as listed
+from udec_ia.running.observer import between_cycles
 from udec_ia.studies.observer import RunObserver
 from udec_ia.studies.study_run import StudyRun
 
@@ -87,8 +88,7 @@ class _Noise(RunObserver):
 
     def look(self, array: MainArray, cycles: int) -> None:
         """See RunObserver."""
-        h = array.h
-        if h.ci[g.NERR] == 0 and h.ci[g.JPHASE] == g.AT_BLOCKS and h.ci[g.MCTOT] % self.every == 0:
+        if between_cycles(array.h) and array.h.ci[g.MCTOT] % self.every == 0:
             self._kick(array)
 
     def _kick(self, array: MainArray) -> None:

@@ -19,14 +19,14 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.recording import measured
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.energy import balance
-from udec_ia.ops.run.solution import Solution
-from udec_ia.ops.run.watch import Series
+from udec_ia.ops.commands.energy_account import balance
 from udec_ia.reader.atlas import Atlas, Word
 from udec_ia.reader.conditions import satisfying
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.nearest_group import choose
 from udec_ia.reader.recordable_numbers import Recordable
+from udec_ia.running.history_series import Series
+from udec_ia.running.solve_result import Solution
 
 FOLLOWED = ("block", "corner", "gridpoint", "zone")
 PLACES = {"block": ("KX", "KY"), "gridpoint": ("KXG", "KYG")}  # of what has a displacement
@@ -250,7 +250,8 @@ class OfSolve(Quantity):
         """See Quantity."""
         if not state.solutions:
             raise NoValue("there was no SOLVE")
-        return float(getattr(state.solutions[-1], self.name))
+        found = getattr(state.solutions[-1], self.name)
+        return float(len(found) if self.name == "fallen" else found)
 
 
 def _groups(state: State, kind: str, where: str) -> Any:

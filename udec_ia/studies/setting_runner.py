@@ -20,7 +20,8 @@ from typing import TextIO
 
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.ops.laws.law_file import read_laws
-from udec_ia.studies.deck_rewriting import SOLVE_LIMIT, Deck, at_own_line, own_lines, text_of
+from udec_ia.running.history_series import SOLVE_LIMIT
+from udec_ia.studies.deck_rewriting import Deck, at_own_line, own_lines, text_of
 from udec_ia.studies.settings import (
     Fraction,
     Numbers,

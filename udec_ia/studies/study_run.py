@@ -18,9 +18,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from udec_ia.deck.parser import Call, parse
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import Call, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.printable import MESSAGE, printable
@@ -97,7 +97,7 @@ class StudyRun:
             for statement in Variables(self.values).filled(statements(self.deck.splitlines(), self.file)):
                 if statement.tokens:
                     call = parse(statement)
-                    if call.command.name in ("stop", "end"):
+                    if call.command.ends:
                         return
                     if call.command.name in commands:
                         yield call

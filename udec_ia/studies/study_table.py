@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.deck.variables import Values
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.files import check_name, put_in_place
 from udec_ia.output.draw import INK, drawable

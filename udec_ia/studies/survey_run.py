@@ -16,8 +16,8 @@ from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.timestep import bound, estimate
+from udec_ia.running.critical_step import bound, estimate
+from udec_ia.running.stiffness_bound import damped_step
 from udec_ia.studies.execute_run import CpuTime
 from udec_ia.studies.observer import RunObserver
 from udec_ia.studies.study_run import StudyRun
@@ -94,7 +94,7 @@ class _Recorder(RunObserver):
         h = array.h
         if self._bounds is None:
             wanted = self.asked_for.bounds
-            self._bounds = (estimate(array).step, damped(h, bound(array).step)) if wanted else (0.0, 0.0)
+            self._bounds = (estimate(array).step, damped_step(h, bound(array).step)) if wanted else (0.0, 0.0)
         one = Segment(
             int(h.ci[g.NCYC]),
             solves,

@@ -24,8 +24,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
 from udec_ia.counting import counted
-from udec_ia.deck.monitor import names_a_file
-from udec_ia.deck.variables import NAME, Value, Variables, spelt
+from udec_ia.deck.command_monitor import names_a_file
+from udec_ia.deck.deck_variables import NAME, Value, Variables, spelt
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.printable import MESSAGE, printable

@@ -23,7 +23,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from udec_ia.counting import counted
-from udec_ia.deck.advice import at
+from udec_ia.deck.deck_statements import at
 from udec_ia.errors import UdecError
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.studies.execute_run import execute, record_death, rehearse

@@ -1,0 +1,47 @@
+"""SOLVE ... STATIC: what leads to rest in few cycles, for one run; then all is as it was.
+
+ADAPTIVE damping is near critical for whatever still moves, without a frequency to be guessed; scaled masses
+let all of the model answer within the same number of cycles; and the step is the greatest that is safe, but
+for what contacts that are yet to be made need. There is no other damping. What a model passes through on the
+way is not what it would pass through: friction and plastic strain may remember it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.damping_modes import BY_CODE
+from udec_ia.kernels.drive.peaks import halt_all
+from udec_ia.kernels.links.relaxations import lose_relaxations
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.model_settings import set_damping_mode, set_fraction
+
+DAMPED = 0.8  # of critical
+SHARE = 0.9  # of the safe time-step
+STATIC = (
+    f"STATIC: ADAPTIVE damping {DAMPED:g}, {SHARE:g} of the safe time-step with scaled masses, "
+    "for this SOLVE alone"
+)
+INTEGERS = (g.LREST, g.LSAFE, g.LSCALE)
+REALS = (g.RESTF, g.ALPHA, g.ALPB, g.BETA, g.FRAC)
+
+
+@contextmanager
+def statically(array: MainArray) -> Iterator[None]:
+    """A run to rest of `array`. Error 26 while an account of the energy is kept."""
+    ci, cr = array.h.ci, array.h.cr
+    kept = [int(ci[k]) for k in INTEGERS], [cr[k] for k in REALS], float(array.h.cd[g.EMOVES])
+    set_fraction(array, SHARE, scaled=True)
+    set_damping_mode(array, BY_CODE[g.ADAPTIVE], DAMPED)
+    cr[g.BETA] = 0
+    ci[g.LREADY] = 0
+    try:
+        yield
+    finally:
+        h = array.h
+        halt_all(h)  # how fast scaled masses were says nothing of true ones
+        lose_relaxations(h)
+        h.ci[list(INTEGERS)], h.cr[list(REALS)], h.cd[g.EMOVES] = kept
+        h.ci[g.LREADY] = 0
