@@ -174,7 +174,7 @@ class _Monitor(Monitor):
 
     def place(self, command: str, name: str | None) -> Path | None:
         """As Monitor.place; a restart file that is not there is looked for in the other folders."""
-        if command == "restart" and not (self.model.out / (name or RESTART_FILE)).exists():
+        if command == "restart" and not (self.model.session.out / (name or RESTART_FILE)).exists():
             for folder in self._beside:
                 if (folder / (name or RESTART_FILE)).exists():
                     return folder / (name or RESTART_FILE)
@@ -365,7 +365,7 @@ def _on(runs: Pair, start: States, cycles: int) -> States:
     arrays = [_ready(copy) for copy in start]
     for run, array in zip(runs, arrays, strict=True):
         with suppress(UdecError):  # which the run has ended with
-            Replay(array, run.model.laws).step(cycles)
+            Replay(array, run.model.session.laws).step(cycles)
     return copy_state(arrays[0]), copy_state(arrays[1])
 
 
@@ -379,7 +379,9 @@ def _ready(copy: StateCopy) -> MainArray:
 
 def _first_pass(runs: Pair, start: States, compared: StateComparison) -> tuple[str, Difference | None]:
     """The first pass of the next cycle after which the runs differ, and by what; "" if it is none alone."""
-    passes = [_PassStates(_ready(copy), run.model.laws) for copy, run in zip(start, runs, strict=True)]
+    passes = [
+        _PassStates(_ready(copy), run.model.session.laws) for copy, run in zip(start, runs, strict=True)
+    ]
     for (name, a), (other, b) in zip(passes[0].after, passes[1].after, strict=False):
         off = compared.difference(a.array(), b.array())
         if off is not None:

@@ -60,7 +60,7 @@ class StudyObserver(RunObserver):
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.observers = (*self._others, self)
+        self.model.session.observers = (*self._others, self)
         monitor.run(text.splitlines(), name)
         monitor.stop()
 

@@ -69,7 +69,7 @@ class SurveyRun(StudyRun):
 
     def observers(self, model: Any) -> list[RunObserver]:
         """See StudyRun."""
-        return [_Recorder(self, model.out)]
+        return [_Recorder(self, model.session.out)]
 
 
 class _Recorder(RunObserver):
