@@ -18,7 +18,7 @@ from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.counting import counted
 from udec_ia.heap.untrusted_lists import ill_linked
-from udec_ia.kernels.audit.faces import cycles, passages, pieces
+from udec_ia.kernels.audit.domain_faces import cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.kernel_rows import told

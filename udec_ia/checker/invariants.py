@@ -38,7 +38,7 @@ from udec_ia.checker.pointer_targets import check_pointers
 from udec_ia.checker.real_numbers import check_numbers
 from udec_ia.checker.recorded_histories import check_histories
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.block_outlines import Outlines
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import KIND_CODE
 

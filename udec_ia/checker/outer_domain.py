@@ -20,7 +20,7 @@ from udec_ia.checker.contact_map import SIDES
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
 from udec_ia.heap.untrusted_lists import place_items
-from udec_ia.kernels.audit.faces import areas
+from udec_ia.kernels.audit.domain_faces import areas
 from udec_ia.layout import offsets as g
 
 AREAS, PLACE_ITEMS = InterpretWhenSmall(areas, 9e5), InterpretWhenSmall(place_items, 1e6)  # items

@@ -11,7 +11,7 @@ from typing import Any
 from udec_ia.command_line import (
     change_commands,
     check_command,
-    debug,
+    debug_command,
     diff_command,
     diverge_command,
     info_command,
@@ -26,7 +26,7 @@ READ_ONLY = (check_command, look_commands, diff_command, change_commands)  # com
 PARTS = (
     info_command,
     *READ_ONLY,
-    debug,
+    debug_command,
     diverge_command,
     sweep_command,
     trade_command,

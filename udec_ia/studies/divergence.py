@@ -36,7 +36,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.compared_heap import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
-from udec_ia.kernels.drive.unbalanced import at_rest
+from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.deformable_scene import soft

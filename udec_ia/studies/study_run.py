@@ -18,6 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from udec_ia.deck import deck_statements
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import Call, parse
@@ -145,7 +146,7 @@ class RunResult:
 
 def read_deck(path: Path) -> str:
     """The text of the deck in a file. ValueError if it is none, OSError."""
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    text = deck_statements.read_deck(path)
     check_deck_text(text, printable(str(path), MESSAGE))
     return text
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.stiffness_bound import damped_step
