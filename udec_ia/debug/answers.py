@@ -15,7 +15,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, Atlas
 from udec_ia.reader.group_names import called
-from udec_ia.reader.places import Place, named
+from udec_ia.reader.places import Place, number_of
 
 MANY = 12  # origins of a value that are told
 RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
@@ -140,7 +140,7 @@ def _origins(h: Memory, trace: Trace, number: int, place: Place) -> Iterator[str
     own: list[str] = []
     others: list[str] = []
     for one in trace.origins(number):
-        source = named(atlas, one.part, one.at)
+        source = number_of(atlas, one.part, one.at)
         if one.part == "ia" or source.name == place.name:
             continue
         unit = f" {source.unit}" if source.unit else ""

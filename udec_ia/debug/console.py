@@ -25,7 +25,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 from udec_ia.printable import folded
 from udec_ia.reader.atlas import TABLE
-from udec_ia.reader.places import place
+from udec_ia.reader.places import address_of, find_number
 from udec_ia.signals import dealt_with, hold, passing
 
 INSIDE = ("pass", "group", "write")
@@ -206,7 +206,9 @@ class Console(Looks):
     def do_reverse_continue(self, text: str) -> None:
         """reverse-continue [NAME]: back to the last break or watch, or to the last change of a word."""
         debugger = self.debugger
-        probes: list[Probe] = [Changed(place(debugger.atlas, text))] if text else [*debugger.probes.values()]
+        probes: list[Probe] = [*debugger.probes.values()]
+        if text:
+            probes = [Changed(find_number(debugger.atlas, text))]
         told = debugger.back_to(probes)
         self.say(told or (f"{text} has not changed before" if text else "no break or watch was hit before"))
         self._here()
@@ -277,7 +279,7 @@ class Console(Looks):
         words = text.removesuffix("if changed").replace(" if ", " ").split()
         if len(words) not in (1, 3) or (len(words) == 3 and words[1] not in COMPARED):
             raise ValueError("give a word, or a comparison: watch block@88.KXD, or watch block@88.KXD > 0.1")
-        word = place(self.debugger.atlas, words[0])
+        word = find_number(self.debugger.atlas, words[0])
         self._add(Changed(word, words[1], float(words[2])) if words[1:] else Changed(word))
 
     def do_delete(self, text: str) -> None:
@@ -318,7 +320,7 @@ class Console(Looks):
     def do_print(self, text: str) -> None:
         """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), FRAC, 412."""
         for name in text.split():
-            word = place(self.debugger.atlas, name)
+            word = find_number(self.debugger.atlas, name)
             self.say(f"{word.name} = {shown(word.value(self.debugger.array.h))} {word.unit}".rstrip())
 
     def do_wrote(self, text: str) -> None:
@@ -330,13 +332,13 @@ class Console(Looks):
         self._of_the_past(answers.why, text)
 
     def do_born(self, text: str) -> None:
-        """born ADDRESS: how the group there came to be, and what stood there before."""
-        self.tell(
-            answers.born(self.debugger.timeline, self.debugger.event, _count(text.partition("@")[2] or text))
-        )
+        """born PLACE: how the group at block@88 or 412 came to be, and what stood there before."""
+        address = address_of(self.debugger.atlas, text)
+        self.tell(answers.born(self.debugger.timeline, self.debugger.event, address))
 
     def _of_the_past(self, answer: Any, text: str) -> None:
-        word, timeline, event = place(self.debugger.atlas, text), self.debugger.timeline, self.debugger.event
+        word = find_number(self.debugger.atlas, text)
+        timeline, event = self.debugger.timeline, self.debugger.event
         trace = self.debugger.trace
         here = [] if trace is None else [*answers.wrote_within(timeline, event, trace, word)]
         self.tell(iter(here) if here else answer(timeline, event, word))

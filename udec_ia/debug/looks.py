@@ -9,7 +9,7 @@ from typing import Any
 from udec_ia.checker import check
 from udec_ia.debug.session import Debugger
 from udec_ia.heap_tools.all_pointers import who
-from udec_ia.heap_tools.heap_dump import ALONE, common, dump, limits
+from udec_ia.heap_tools.heap_dump import ALONE, common, dump
 from udec_ia.heap_tools.heap_map import heap_map
 from udec_ia.heap_tools.heap_search import find
 from udec_ia.heap_tools.list_printout import walk
@@ -20,20 +20,23 @@ from udec_ia.reader.listing import Listing
 
 
 class Looks(cmd.Cmd):
-    """They print what `udec what`, `udec who` ... print of a file."""
+    """They print what `udec what`, `udec who` ... print of a file.
+
+    A PLACE is 412, block@88 or block@88.KXD.
+    """
 
     debugger: Debugger
 
     def do_what(self, text: str) -> None:
-        """what ADDRESS: what a word is, and its group."""
+        """what PLACE: what a word is, and its group."""
         self._look(what, text)
 
     def do_who(self, text: str) -> None:
-        """who ADDRESS: all words that point there."""
+        """who PLACE: all words that point there."""
         self._look(who, text)
 
     def do_walk(self, text: str) -> None:
-        """walk LIST [ADDRESS]: along a list."""
+        """walk LIST [PLACE]: along a list."""
         self._look(walk, text)
 
     def do_find(self, text: str) -> None:
@@ -41,9 +44,9 @@ class Looks(cmd.Cmd):
         self.stdout.write(find(self.debugger.atlas, text).as_text())
 
     def do_dump(self, text: str) -> None:
-        """dump [ADDRESS[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
+        """dump [PLACE[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
         atlas = self.debugger.atlas
-        found = common(atlas) if text == ALONE else dump(atlas, *(limits(text) if text else ()))
+        found = common(atlas) if text == ALONE else dump(atlas, text or None)
         self.stdout.writelines(f"{line.text}\n" for line in found.lines())
 
     def do_map(self, _: str) -> None:
@@ -51,7 +54,7 @@ class Looks(cmd.Cmd):
         self._look(heap_map, "")
 
     def do_graph(self, text: str) -> None:
-        """graph ADDRESS [DEPTH]: the pointers around a group."""
+        """graph PLACE [DEPTH]: the pointers around a group."""
         self._look(graph, text)
 
     def do_junk(self, _: str) -> None:

@@ -14,6 +14,7 @@ from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.group_names import called, names
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 
 class Pointers(NamedTuple):
@@ -60,9 +61,12 @@ def pointer_rows(atlas: Atlas, found: Iterable[Pointers], limit: int | None = No
     return rows
 
 
-def who(atlas: Atlas, address: int) -> Listing:
-    """All words that point to the group at, or around, `address`, by field. IndexError outside IA()."""
-    span = atlas.span(address)
+def who(atlas: Atlas, place: int | str) -> Listing:
+    """All words that point to the group at, or around, a place, by field.
+
+    place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place.
+    """
+    span = atlas.span(address_of(atlas, place))
     rows = pointer_rows(atlas, pointing(atlas, span.first))
     said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
     return Listing([said], ("address", "group", "field"), rows)

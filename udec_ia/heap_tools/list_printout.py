@@ -13,6 +13,7 @@ from udec_ia.reader.atlas import TABLE, Atlas, Word
 from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.list_walks import Unsound, boundary, groups, loop
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 LINKS = {  # fields that lead along a list, with the kind of group that has them
     field.name: group.name
@@ -25,19 +26,23 @@ AROUND = ("block", "domain")  # groups with a list around them
 
 
 def walk(
-    atlas: Atlas, along: str, start: int | None = None, field: str | None = None, limit: int | None = None
+    atlas: Atlas,
+    along: str,
+    start: int | str | None = None,
+    field: str | None = None,
+    limit: int | None = None,
 ) -> Listing:
     """A list, group by group, until it ends, comes round or leads astray.
 
-    along: the kind of the groups of a main list; or "block" or "domain" with the address of one, for the list
-    around it; or the name of a field that links groups, with the address at which to begin. field: what to
+    along: the kind of the groups of a main list; or "block" or "domain" with the place of one, for the list
+    around it; or the name of a field that links groups, with the place at which to begin. field: what to
     show of each group that has it, such as KXD or KZG(2). limit: groups to show. ValueError for what is no
     list, no field or no limit.
     """
     if limit is not None and limit < 1:
         raise ValueError(f"limit {limit}: give the number of groups to show, 1 or more")
     shown = _having(atlas, field) if field else {}
-    way, addresses = _way(atlas, along, start)
+    way, addresses = _way(atlas, along, None if start is None else address_of(atlas, start))
     found, broken = list[int](), ""
     try:
         for iad in addresses:

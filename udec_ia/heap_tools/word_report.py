@@ -7,10 +7,15 @@ from udec_ia.reader.field_rows import COLUMNS, meaning, span_rows
 from udec_ia.reader.group_names import called
 from udec_ia.reader.group_place import places
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 
-def what(atlas: Atlas, address: int) -> Listing:
-    """What the word at `address` is, and the whole group that it is part of. IndexError outside IA()."""
+def what(atlas: Atlas, place: int | str) -> Listing:
+    """What the word at a place is, and the whole group that it is part of.
+
+    place: an address, or text such as block@88.KXD. IndexError outside IA(), ValueError for no such place.
+    """
+    address = address_of(atlas, place)
     span, word = atlas.word_at(address)
     size, place = span.last - span.first + 1, address - span.first + 1
     said = [f"{address} is word {place} of {size} of {called(atlas, span)}"]
