@@ -19,7 +19,7 @@ from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas
-from udec_ia.reader.places import place
+from udec_ia.reader.places import find_number
 
 KEPT_CYCLES = 460
 
@@ -84,7 +84,7 @@ def test_the_last_change_of_any_word(both: Any) -> None:
         atlas = Atlas(timeline.at(event).h)
         kind = str(rng.choice([kind for kind in KINDS if len(atlas.groups[kind])]))
         field = TABLE.group(kind).fields[int(rng.integers(len(TABLE.group(kind).fields)))]
-        word = place(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
+        word = find_number(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
         values = [word.value(h) for h in arrays[: event + 1]]
         changes = [k for k in range(1, event + 1) if values[k] != values[k - 1]]
         assert last_hit(timeline, event, Changed(word))[0] == max(changes, default=0), word

@@ -54,7 +54,7 @@ def test_one_grammar(text: str, name: tuple[str, int, str, int | None]) -> None:
     "text",
     [
         *("", "@", "block@", "@88", "block@88.", "block.KXD", "412.KXD", "block@88.KXD.KYD", "block@-1"),
-        *("block@88.KZG(a)", "block 88", "1" * 40, "block@88.KZG(1", "\x1b[31m", "block@1e3", "FRAC = 1"),
+        *("block@88.KZG(a)", "block 88", "1" * 41, "block@88.KZG(1", "\x1b[31m", "block@1e3", "FRAC = 1"),
     ],
 )
 def test_what_is_no_place(text: str) -> None:

@@ -19,7 +19,7 @@ from udec_ia.layout.table import Field
 from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word
 from udec_ia.reader.group_names import called
 
-GROUP = re.compile(r"(?:([A-Za-z]+)@)?(\d{1,18})")
+GROUP = re.compile(r"(?:([A-Za-z]+)@)?(\d{1,40})")
 FIELD = re.compile(r"([A-Za-z]\w*)(?:\((\d{1,9})\))?")
 STRETCH = re.compile(r"([^-/]+)(?:-([^-/]+)|/(\d{1,18}))?")
 FORMS = "give block@88.KXD, zone@9.KZG(2), block@88, FRAC, AMU(1) or an address"
