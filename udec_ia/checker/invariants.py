@@ -9,7 +9,7 @@
     5. blocks - contacts + domains = 2; the counts of the common block and of zones are true, and tolerances
        are those of the rounding length
     6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
-    7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
+    7. reals are finite, areas positive, overlaps within DTOL2; masses and contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
 
@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.checker.block_members import check_members, check_zone_areas
+from udec_ia.checker.block_members import check_members, check_point_masses, check_zone_areas
 from udec_ia.checker.block_outlines import check_outlines, outlines
 from udec_ia.checker.boundary_conditions import check_bounds, check_times
 from udec_ia.checker.checked_state import State, Violation
@@ -88,6 +88,7 @@ def _check_shapes(state: State) -> Outlines | None:
     """Numbers and outlines; the outlines, or None if there are none."""
     check_numbers(state)
     check_zone_areas(state)
+    check_point_masses(state)
     check_times(state)
     shapes = outlines(state)
     if shapes is not None:
