@@ -89,10 +89,10 @@ def test_grid_points(array: MainArray, value: int) -> None:
 
 
 def test_points_of_edges(array: MainArray) -> None:
+    """A corner that has become flat has no rounding either, so the code may be 0 on a straight edge."""
     rows = _table(array, "gridpoint")
     assert {0, 1} == set(rows["KGEDGE"].tolist())
     refused(array, "gridpoint", "KGEDGE", 1, np.flatnonzero(rows["KGEDGE"] == 0))
-    refused(array, "gridpoint", "KGEDGE", 0, np.flatnonzero(rows["KGEDGE"] == 1))
 
 
 @pytest.mark.parametrize("field", ["KBM", "KBI"])

@@ -8,7 +8,7 @@ from udec_ia.checker.checked_state import State
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import TABLE, allowed, in_words
 
-COMMON = [
+COMMON_INTEGERS = [
     (field, getattr(g, field.name))
     for field in TABLE.common
     if not field.real and field.target is None and field.allowed
@@ -27,6 +27,6 @@ def check_codes(state: State) -> None:
                     2, f"{field.name} of {kind}@{addresses[row]} is {values[row]}, not {in_words(field)}"
                 )
     values = state.h.ci.tolist()
-    for field, place in COMMON:
+    for field, place in COMMON_INTEGERS:
         if not allowed(field, values[place]):
             state.report(2, f"{field.name} is {values[place]}, not {in_words(field)}")

@@ -10,7 +10,7 @@ from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.reals import all_finite
 from udec_ia.reader.field_reading import TABLE, allowed, in_words
 
-COMMON = [field for field in TABLE.common if field.type != "int"]
+COMMON_REALS = [field for field in TABLE.common if field.type != "int"]
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
 ALL_FINITE = Sparing(all_finite, 4e5, LOOKS)  # groups
 
@@ -29,7 +29,7 @@ def check_numbers(state: State) -> None:
             for row in np.flatnonzero(bad):
                 number = 9 if field.name in FORCE_SUMS else 7
                 state.report(number, f"{field.name} of {kind}@{addresses[row]} is {values[row]}")
-    for field in COMMON:
+    for field in COMMON_REALS:
         values = variable(state.h, field)
         finite = np.isfinite(values)
         for i in np.flatnonzero(~(finite & allowed(field, values))):

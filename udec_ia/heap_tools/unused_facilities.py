@@ -68,7 +68,7 @@ def _fixed(s: Scene) -> Found:
         yield "FIX", f"calculated between fixed blocks, where nothing moves: {counted(between, 'contact')}"
 
 
-def _conditions(s: Scene) -> Found:
+def _idle_conditions(s: Scene) -> Found:
     """Conditions that load nothing, and functions that nothing follows."""
     yield from (("BOUNDARY", text) for text in on_loads(s.array, s.found))
     empty = np.all([s.column("bound", k) == 0 for k in LOADS], axis=0) & (s.column("bound", "KUFIX") == 0)
@@ -113,4 +113,4 @@ def _pressures(s: Scene) -> Found:
         yield "pore pressure", f"set in {counted(many, 'domain')}, and no routine looks at it"
 
 
-RULES = (_motion, _damping, _fixed, _conditions, _histories, _materials, _pressures)
+RULES = (_motion, _damping, _fixed, _idle_conditions, _histories, _materials, _pressures)
