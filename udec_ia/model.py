@@ -25,7 +25,7 @@ from udec_ia.deck.reference import explain, summary
 from udec_ia.deck.variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.interpreting import mode
-from udec_ia.heap_tools.memory_order import arrange
+from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
 from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.layout.offsets import MCTOT, WFRIC

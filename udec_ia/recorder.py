@@ -29,7 +29,7 @@ class Recorder:
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
     ) -> list[Series]:
         """New histories of `field`, every `n` cycles, of the groups that an address or points mean."""
-        from udec_ia.reader.nearest_group import choose
+        from udec_ia.reader.group_positions import choose
 
         what = named(field)
         chosen = choose(array, what.group, field, address, at)

@@ -16,8 +16,7 @@ from functools import cache
 
 import numpy as np
 
-from udec_ia.checker.checked_state import State
-from udec_ia.checker.ring_arrays import corner_before
+from udec_ia.checker.checked_state import State, corner_before
 from udec_ia.reader.field_reading import TABLE, Numbers, names
 
 OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block

@@ -18,8 +18,7 @@ from udec_ia.kernels.audit.outlines import (
     short_edges,
     wrong_circles,
 )
-from udec_ia.reader.field_reading import INDEX, Numbers
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import INDEX, Numbers, told
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (

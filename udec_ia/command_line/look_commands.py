@@ -153,16 +153,16 @@ def _named(args: argparse.Namespace, *names: str) -> dict[str, Any]:
 def _what(args: argparse.Namespace) -> Call:
     if args.out is not None:
         return Call("output.place_picture", "draw", (args.place, args.out))
-    return Call("heap_tools.word_report", "what", (args.place,))
+    return Call("heap_tools.heap_lookup", "what", (args.place,))
 
 
 def _who(args: argparse.Namespace) -> Call:
-    return Call("heap_tools.all_pointers", "who", (args.place,))
+    return Call("heap_tools.heap_lookup", "who", (args.place,))
 
 
 def _walk(args: argparse.Namespace) -> Call:
     start = () if args.start is None else (args.start,)
-    return Call("heap_tools.list_printout", "walk", (args.along, *start), _named(args, "field", "limit"))
+    return Call("heap_tools.heap_lookup", "walk", (args.along, *start), _named(args, "field", "limit"))
 
 
 def _junk(_: argparse.Namespace) -> Call:
@@ -194,7 +194,7 @@ def _find(args: argparse.Namespace) -> Call:
 
 def _map(args: argparse.Namespace) -> Call:
     if args.out is None:
-        return Call("heap_tools.heap_map", "heap_map")
+        return Call("heap_tools.memory_use", "heap_map")
     return Call("output.heap_picture", "draw", (args.out, args.file.name), subject="array")
 
 

@@ -13,8 +13,7 @@ from udec_ia.debug.timeline import Timeline
 from udec_ia.debug.tracing import Access, Trace
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, Atlas
-from udec_ia.reader.group_names import called
+from udec_ia.reader.atlas import KINDS, Atlas, called
 from udec_ia.reader.places import Place, number_of
 
 MANY = 12  # origins of a value that are told

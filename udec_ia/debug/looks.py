@@ -8,14 +8,11 @@ from typing import Any
 
 from udec_ia.checker import check
 from udec_ia.debug.session import Debugger
-from udec_ia.heap_tools.all_pointers import who
 from udec_ia.heap_tools.heap_dump import ALONE, common, dump
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find
-from udec_ia.heap_tools.list_printout import walk
-from udec_ia.heap_tools.memory_use import junk
+from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
-from udec_ia.heap_tools.word_report import what
 from udec_ia.reader.listing import Listing
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.heap.array import variable
 from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span
+from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span, leads_to, names
 from udec_ia.reader.field_rows import (
     COLUMNS,
     COMMON,
@@ -28,7 +28,6 @@ from udec_ia.reader.field_rows import (
     span_rows,
     word_width,
 )
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.listing import Listing, Stream
 from udec_ia.reader.places import stretch
 

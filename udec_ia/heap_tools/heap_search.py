@@ -10,11 +10,10 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.array import variable
-from udec_ia.heap_tools.all_pointers import pointer_rows, pointing
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas
+from udec_ia.heap_tools.heap_lookup import pointer_rows, pointing
+from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas, leads_to, names
 from udec_ia.reader.conditions import ADDRESS, satisfying
 from udec_ia.reader.field_rows import COMMON
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.listing import Listing
 from udec_ia.reader.places import address_of
 

@@ -17,11 +17,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.checker import Violation, check
+from udec_ia.checker import Violation, check, in_short
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.array import MainArray
-from udec_ia.heap_tools.fault_summary import in_short
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.places import Place, PlaceError, find_number

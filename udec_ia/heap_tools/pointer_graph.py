@@ -13,10 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap_tools.all_pointers import Pointers, pointers
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas
+from udec_ia.heap_tools.heap_lookup import Pointers, pointers
+from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas, leads_to, names
 from udec_ia.reader.field_rows import COMMON
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing
 from udec_ia.reader.places import address_of

@@ -11,16 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.heap_tools.all_pointers import pointers
-from udec_ia.heap_tools.word_report import what
+from udec_ia.heap_tools.heap_lookup import pointers, what
 from udec_ia.layout import offsets as g
 from udec_ia.output.draw import INK, draw_addresses, draw_outlines, paper, scale_for, title
 from udec_ia.output.outline import Outlines
 from udec_ia.output.picture import picture_path, write_as
 from udec_ia.output.remains import is_near, outlines_left, part, points
-from udec_ia.reader.atlas import KINDS, Atlas, Span
-from udec_ia.reader.group_names import called
-from udec_ia.reader.group_place import homes
+from udec_ia.reader.atlas import KINDS, Atlas, Span, called
+from udec_ia.reader.group_positions import homes
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing
 from udec_ia.reader.places import address_of

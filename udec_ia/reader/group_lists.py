@@ -22,8 +22,7 @@ from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.interpreting import LOOKS, Sparing
 from udec_ia.heap.walks import astray, chains
 from udec_ia.reader.block_rings import Boundaries, boundaries
-from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names, told
 from udec_ia.reader.list_walks import HEADS
 
 CHAINS = Sparing(chains, 2e7, LOOKS)  # places where a group could begin

@@ -16,8 +16,7 @@ from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
-from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word
-from udec_ia.reader.group_names import called
+from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word, called
 
 GROUP = re.compile(r"(?:([A-Za-z]+)@)?(\d{1,40})")
 FIELD = re.compile(r"([A-Za-z]\w*)(?:\((\d{1,9})\))?")

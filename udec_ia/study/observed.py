@@ -18,8 +18,8 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.run.solution import Solution
 from udec_ia.ops.run.watch import Series
 from udec_ia.reader.atlas import Atlas, Word
+from udec_ia.reader.group_positions import choose
 from udec_ia.reader.group_tables import addresses
-from udec_ia.reader.nearest_group import choose
 
 FOLLOWED = ("block", "corner", "gridpoint", "zone")
 PLACES = {"block": ("KX", "KY"), "gridpoint": ("KXG", "KYG")}  # of what has a displacement
