@@ -29,7 +29,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 def pytest_configure(config: pytest.Config) -> None:
     """Warnings that Python attributes to a module of the checkout, by name or path, are errors."""
     loose = {path.stem for folder in ("tests", "tools") for path in (ROOT / folder).rglob("*.py")}
-    ours = "|".join(sorted({"udec_ia", "offsets", "naive", "support"} | loose))
+    ours = "|".join(sorted({"udec_ia", "offsets", "naive", "support", "speed", "trials", "damage"} | loose))
     config.addinivalue_line("filterwarnings", rf"error:::(.*[/\\])?({ours})([./\\]|$)")
 
 

@@ -119,7 +119,7 @@ def test(python: Path, options: list[str], typed: bool) -> int:
     typed: mypy too. The stubs of the oldest NumPy and matplotlib say less than those of today.
     """
     if not options:  # all tests: what they need is compiled once, and not by each of the workers
-        step(python, "tools/ahead.py", str(WORKERS + 1))  # five tasks, of which none is to be left alone
+        step(python, "tools/compile_for_tests.py", str(WORKERS + 1))  # five tasks in two turns
     statuses = [
         step(python, "-m", "pytest", "-n", str(WORKERS), *options),
         step(python, "-m", "ruff", "check", "."),

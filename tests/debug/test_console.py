@@ -75,9 +75,9 @@ def test_a_condition_is_stopped_at(tmp_path: Path) -> None:
     said = talk(tmp_path, "goto 61", f"break {wanted}", "c", f"find {wanted}")
     found = re.search(r"break block .*(block@\d+)\nafter cycle (\d+)", said)
     assert found
-    shown = f"  {found[1]} "
-    assert shown in said
-    assert shown not in talk(tmp_path, f"goto {int(found[2]) - 1}", f"find {wanted}")
+    format_number = f"  {found[1]} "
+    assert format_number in said
+    assert format_number not in talk(tmp_path, f"goto {int(found[2]) - 1}", f"find {wanted}")
     assert "did you mean" in talk(tmp_path, "goto 3", "break block where KYDD < 1")
 
 
@@ -86,6 +86,54 @@ def test_within_a_cycle(tmp_path: Path) -> None:
     assert said.count("within the next cycle") >= 4
     assert "ford of contact@" in said
     assert "after cycle 50 of line 12" in said.splitlines()[-1]
+
+
+@pytest.mark.parametrize("by", ["pass", "group", "write"])
+@pytest.mark.parametrize(
+    ("lines", "kind"),
+    [
+        (["goto 50", "patch FRAC = 0.05", "rs 2"], "CYCLE"),  # a cycle precedes the PATCH
+        (["goto 50", "patch FRAC = 0.05", "rs"], "PATCH"),
+        (["goto line 9", "step 9", "goto line 9"], "CHANGE"),
+        (["goto 5", "goto line 12", "rs"], "HISTORY"),
+    ],
+)
+def test_a_step_inside_what_is_no_cycle_is_refused(
+    tmp_path: Path, by: str, lines: list[str], kind: str
+) -> None:
+    """The event that comes next is named: it never does nothing without a word."""
+    said = "".join(talk(tmp_path, *lines, f"step {by}").splitlines()[-3:])
+    assert ("within the next cycle" in said) == (kind == "CYCLE")
+    assert ("not a cycle" in said) == (kind != "CYCLE")
+    assert kind in said
+
+
+@pytest.mark.parametrize("by", ["pass", "group", "write"])
+def test_a_step_back_inside_what_is_no_cycle_is_refused(tmp_path: Path, by: str) -> None:
+    assert "not a cycle" in talk(tmp_path, "goto 50", "patch FRAC = 0.05", f"reverse-step {by}")
+    assert "not a cycle" in talk(tmp_path, f"reverse-step {by}")
+
+
+ESCAPE = "\x1b[2J"
+
+
+def test_escape_sequences_do_not_reach_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the file of commands, of its name, and of the deck and its name."""
+    monkeypatch.chdir(tmp_path)
+    deck, script = Path(f"pile{ESCAPE}.dat"), Path(f"commands{ESCAPE}.txt")
+    deck.write_text(PILE.replace("GRAVITY", f"*{ESCAPE}\nGRAVITY"))
+    commands = ["", "print", "find block where", "find", "watch", "break", "born", "help", "what", "dump"]
+    commands += ["goto", "step", "patch", "delete", "walk", "graph", "reverse-continue", "wrote"]
+    lines = ["goto 3", "goto line 4", "list", *(f"{command} {ESCAPE}\x07" for command in commands)]
+    script.write_text("\n".join([*lines, f"find block where {ESCAPE} > 1", ""]))
+    assert main(["debug", str(deck), "--commands", str(script)]) == 0
+    assert main(["debug", str(deck), "--commands", f"none{ESCAPE}"]) == 1
+    assert main(["debug", f"none{ESCAPE}"]) == 1
+    printed = "".join(capsys.readouterr())
+    assert len(printed.splitlines()) > len(lines)
+    assert all(line.isprintable() for line in printed.splitlines())
 
 
 def test_an_error_is_stopped_at(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,10 @@ import pytest
 from support.debugger_decks import PILE
 
 from udec_ia import Model
-from udec_ia.debug.answers import last_hit
-from udec_ia.debug.probes import Changed, Contacts
-from udec_ia.debug.session import Debugger, Resume
-from udec_ia.debug.timeline import Gone
+from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
+from udec_ia.debug.stop_conditions import ContactChange, WordChange
+from udec_ia.debug.timeline import UnreachableEvent
+from udec_ia.debug.word_history import find_last_hit
 from udec_ia.deck.reader import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
@@ -56,10 +57,10 @@ def test_every_event_can_be_gone_back_to(both: Any) -> None:
     timeline = debugger.timeline
     known = iter(states)
     for event in range(1, timeline.now):
-        stretch, cycle = timeline.place(event)
+        span, cycle = timeline.place(event)
         array = timeline.at(event)
         assert array.h.ci[g.MCTOT] == cycle
-        if stretch.runs and event == stretch.first + 1:
+        if span.runs and event == span.first + 1:
             continue
         cycles, words, time = next(known)
         assert (cycles, time) == (cycle, float(array.h.cd[g.TIME]))
@@ -69,7 +70,7 @@ def test_every_event_can_be_gone_back_to(both: Any) -> None:
 
 def test_few_copies_do(both: Any) -> None:
     timeline = both[1].timeline
-    commands = len(timeline.stretches)
+    commands = len(timeline.spans)
     assert len(timeline.copies) < commands + 20
     assert timeline.now == commands + 3 + KEPT_CYCLES - 3
 
@@ -87,8 +88,8 @@ def test_the_last_change_of_any_word(both: Any) -> None:
         word = find_number(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
         values = [word.value(h) for h in arrays[: event + 1]]
         changes = [k for k in range(1, event + 1) if values[k] != values[k - 1]]
-        assert last_hit(timeline, event, Changed(word))[0] == max(changes, default=0), word
-        assert last_hit(timeline, event, Changed(word), before=True)[0] == max(
+        assert find_last_hit(timeline, event, WordChange(word))[0] == max(changes, default=0), word
+        assert find_last_hit(timeline, event, WordChange(word), before=True)[0] == max(
             (k for k in changes if k < event), default=0
         )
 
@@ -110,7 +111,7 @@ def test_contacts_made_and_broken(both: Any) -> None:
     real = [real_contacts(timeline.at(event)) for event in range(timeline.now + 1)]
     broken = [k for k in range(1, timeline.now + 1) if real[k - 1] - real[k]]
     event, found = timeline.now, []
-    while told := (hit := last_hit(timeline, event, Contacts("broken"), before=True))[1]:
+    while told := (hit := find_last_hit(timeline, event, ContactChange("broken"), before=True))[1]:
         assert told.startswith("broken: contact@")
         event = hit[0]
         found.append(event)
@@ -129,7 +130,7 @@ def test_a_contact_that_takes_over_an_address_is_another_one(tmp_path: Path) -> 
     counts = [timeline.at(event).h.ci[[g.NMADE, g.NBROKE]] for event in (before, after)]
     assert (counts[1] - counts[0]).tolist() == [1, 1]
     for what, told in (("made", "made: contact@"), ("broken", "broken: contact@"), ("recoded", "")):
-        probe = Contacts(what)
+        probe = ContactChange(what)
         probe.begin(timeline.at(before))
         said = probe.hit(timeline.at(after))
         assert said.startswith(told)
@@ -146,7 +147,7 @@ def test_copies_keep_to_the_budget(tmp_path: Path) -> None:
     for event in range(poor.now + 1):
         try:
             h = poor.at(event).h
-        except Gone as error:
+        except UnreachableEvent as error:
             gone.add(str(error)[-13:-3])
             continue
         reached += 1
@@ -165,7 +166,7 @@ def test_a_run_goes_on_from_the_past(at: int, begun: int, whole: int, tmp_path: 
     def stopped(reasons: list[str]) -> None:
         told.append(debugger.timeline.now)
         if debugger.ended and len(told) == 1:
-            raise Resume(debugger.timeline.event_of(at))
+            raise ResumeRun(debugger.timeline.event_of(at))
 
     debugger = Debugger(Model("i32r64", out=tmp_path), io.StringIO(), stopped)
     debugger.run(list(statements(PILE.splitlines(), "pile")))
@@ -183,3 +184,70 @@ def test_the_narrowest_words_and_the_widest(tmp_path: Path) -> None:
         timeline = debugged(build, tmp_path).timeline
         middle = timeline.event_of(77)
         assert timeline.at(middle).h.ci[g.MCTOT] == 77
+
+
+def test_only_the_present_timeline_counts_after_resume(tmp_path: Path) -> None:
+    """Probes, and what the words are, are those of the state that the run goes on from."""
+    hits: list[Any] = []
+    lists: list[Any] = []
+
+    def stopped(reasons: list[str]) -> None:
+        timeline = debugger.timeline
+        step = len(hits)
+        hits.append([reason for reason in reasons if ": " in reason])
+        if step == 0:  # before the first command
+            debugger.goal_cycle = 50
+        elif step == 1:
+            word = find_number(debugger.atlas, "block@721.KYD")
+            debugger.add(WordChange(word, "<", float(word.value(debugger.array.h) or 0) + 0.1))
+            debugger.add(ContactChange("recoded"))
+            debugger.add(ContactChange("made"))
+            raise ResumeRun(timeline.event_of(5))
+        elif step == 2:
+            raise ResumeRun(timeline.now, "PATCH AMU(1) = 0.3")
+        elif step == 3:
+            lists.append(debugger.atlas.h)
+            raise LeaveDebugger
+
+    debugger = Debugger(Model(out=tmp_path), io.StringIO(), stopped)
+    debugger.goal = 0
+    with suppress(LeaveDebugger):
+        debugger.run(list(statements(PILE.splitlines(), "pile")))
+    assert hits[2:] == [[], []]
+    assert lists[0] is debugger.model.array.h
+
+
+def test_the_words_shown_are_those_of_the_present_timeline(tmp_path: Path) -> None:
+    """The same event of two timelines, where one looks at lists in both."""
+    seen: list[Any] = []
+
+    def stopped(reasons: list[str]) -> None:
+        timeline, step = debugger.timeline, len(seen)
+        seen.append((timeline.now, debugger.atlas.h is debugger.array.h))
+        if step == 0:
+            debugger.goal_cycle = 50
+        elif step == 1:
+            raise ResumeRun(timeline.event_of(50))
+
+    debugger = Debugger(Model(out=tmp_path), io.StringIO(), stopped)
+    debugger.goal = 0
+    debugger.run(list(statements(PILE.splitlines(), "pile")))
+    assert seen[1][0] == seen[2][0]
+    assert all(own for _, own in seen)
+
+
+def test_probes_are_at_the_present_after_a_search_that_fails(tmp_path: Path) -> None:
+    """Going back to what can no longer be reached leaves them as they were."""
+    whole = debugged("i32r64", tmp_path)
+    size = max(copy.size for copy in whole.timeline.copies.values())
+    poor = debugged("i32r64", tmp_path, budget=4 * size)
+    word = find_number(poor.atlas, "TIME")
+    probe = WordChange(word)
+    poor.add(probe)
+    begun: list[float] = []
+    begin = probe.begin
+    probe.begin = lambda array: (begun.append(float(array.h.cd[g.TIME])), begin(array))[1]  # type: ignore[method-assign]
+    poor.timeline.at = lambda event: (_ for _ in ()).throw(UnreachableEvent("gone"))  # type: ignore[method-assign]
+    with pytest.raises(UnreachableEvent):
+        poor.back_to([probe])
+    assert begun[-1:] == [float(poor.model.array.h.cd[g.TIME])]

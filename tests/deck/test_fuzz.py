@@ -1,4 +1,4 @@
-"""Some cases of the fuzzer (tools/fuzz.py), in processes of their own, and what it has found."""
+"""Some cases of the fuzzer (tools/robustness.py fuzz), in processes of their own, and what it has found."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from udec_ia.layout import offsets
 from udec_ia.layout.table import Field, read_table
 from udec_ia.restart import save
 
-FUZZ = Path(__file__).parents[2] / "tools" / "fuzz.py"
+TOOL = Path(__file__).parents[2] / "tools" / "robustness.py"
 
 
 @pytest.mark.parametrize(("decks", "files"), [(8, 0), (0, 20)])
@@ -25,13 +25,17 @@ def test_fuzz(decks: int, files: int) -> None:
     """Every case ends in a result or in a numbered error."""
     arguments = ["--decks", str(decks), "--files", str(files), "--seed", "1"]
     done = subprocess.run(
-        [sys.executable, str(FUZZ), *arguments], capture_output=True, text=True, timeout=900, check=False
+        [sys.executable, str(TOOL), "fuzz", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=900,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_a_case_is_always_the_same() -> None:
-    show = [sys.executable, str(FUZZ), "--show", "decks", "7"]
+    show = [sys.executable, str(TOOL), "fuzz", "--show", "decks", "7"]
     one, two = (
         subprocess.run(show, capture_output=True, text=True, timeout=300, check=True) for _ in range(2)
     )

@@ -13,8 +13,8 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from interrupted.scene import SCENE, state
 from support.mechanics_scenes import side_by_side
+from trials.interrupted_commands import SCENE, state
 
 from udec_ia import Model, UdecError
 from udec_ia.deck.monitor import run_deck

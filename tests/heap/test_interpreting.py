@@ -19,7 +19,7 @@ from udec_ia.heap.jit import kernel
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import prepare
 from udec_ia.ops.run.watch import run_unwatched
 

@@ -31,7 +31,7 @@ from udec_ia.reader.listing import Listing
 from udec_ia.restart import look_into, save
 
 HEADS = [getattr(g, field.name) for field in read_table().common if field.target] + [g.JUNK]
-WRECKS = Path(__file__).parents[2] / "tools" / "wrecks.py"
+TOOL = Path(__file__).parents[2] / "tools" / "damaged_files.py"
 TRIALS = 30  # in each word scheme
 LOOKS = 6  # at each of them, chosen at random
 SECONDS = 3.0  # of processor time, for these
@@ -154,7 +154,7 @@ def test_a_look_changes_nothing(tmp_path: Path) -> None:
 def test_commands_given_damaged_files() -> None:
     """A part of the tool's: each command ends with a result or a message, the file stays as it is."""
     some = ["info", "check", "dump", "walk", "find", "diff", "convert", "renumber", "patch"]
-    arguments = [sys.executable, str(WRECKS), "--files", "2", "--seed", "3", "--only", *some]
+    arguments = [sys.executable, str(TOOL), "commands", "--files", "2", "--seed", "3", "--only", *some]
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "18 commands, 0 failures" in done.stdout

@@ -1,4 +1,4 @@
-"""What a contact touches as its force is calculated: itself, and what its blocks feel."""
+"""What a contact reads and writes as its force is calculated: itself, the sums of its blocks, and totals."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from udec_ia.heap.accessors import int64, size_of
 from udec_ia.heap.interpreting import interpreted, observe
 from udec_ia.heap.words import ALL_SCHEMES
 from udec_ia.kernels.contact.ford import ford
+from udec_ia.kernels.energy.contacts import note_contact
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
+from udec_ia.ops.laws.law_book import LawBook
 
 pytestmark = both_ways
 
@@ -27,6 +29,9 @@ SUMS = {  # what blocks feel
 }
 NEVER_READ = {"contact", "domain"}  # but for the contact's own words
 SEEDS = range(4)
+EVERYWHERE = (-1e9, 1e9, -1e9, 1e9)
+TOTALS = {("ci", g.NERR), ("ci", g.IERAD), ("cd", g.WFRIC)}
+ACCOUNT = {("cd", g.WSHAPE), ("cd", g.WSTIF)}
 
 
 class Touched:
@@ -67,21 +72,33 @@ class Touched:
 
 @pytest.mark.parametrize("module", [scenes, soft_scenes], ids=["rigid", "soft"])
 @pytest.mark.parametrize("build", ALL_SCHEMES)
-def test_a_force_needs_no_other_contact(build: str, module: Any) -> None:
-    """Nor a domain; one that has to wait leaves no more than where it is."""
-    found = []
+@pytest.mark.parametrize("kept", [False, True], ids=["", "account"])
+@pytest.mark.parametrize("own", [False, True], ids=["springs", "law"])
+def test_a_force_needs_no_other_contact(own: bool, kept: bool, build: str, module: Any) -> None:
+    """Nor a domain; one that has to wait leaves no more than where it is.
+
+    own: with a law of the user's. kept: with an account of the energy.
+    """
+    found, written = [], set()
     for seed in SEEDS:
         model = module.play(seed, Model(build), cycles=(2, 8)).model
-        touched = Touched(model)
+        model.array.h.cr[g.BETA] = 1e-3
+        touched, laws = Touched(model), None
+        if own:
+            model.change(*EVERYWHERE, constitutive=2)
+            with interpreted():
+                laws = LawBook("joint-dilation").pack(model.array)
         contacts = model.table("contact")
         for ic in contacts["address"][contacts["KCCOD"] != g.VIRTUAL].tolist():
             touched.begin()
             with interpreted():
-                waits = ford(observe(model.h, touched.tell), int64(ic), True, None, 0, False)
-            assert waits in (0, ic)
+                account = note_contact if kept else 0
+                waits = ford(observe(model.h, touched.tell), int64(ic), True, laws, account, False)
+            assert waits in (0, -ic if own else ic)
             found.append(waits != 0)
             assert touched.written <= {("contact", ic)}
             assert {one for one in touched.read if one[0] in NEVER_READ} <= {("contact", ic)}
-            allowed = {("ci", g.NERR), ("ci", g.IERAD), ("cd", g.WFRIC)}
-            assert touched.common <= (set() if waits else allowed)
+            assert touched.common <= (set() if waits else TOTALS | (ACCOUNT if kept else set()))
+            written |= touched.common
     assert not all(found)
+    assert bool(written & ACCOUNT) == kept

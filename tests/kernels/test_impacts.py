@@ -1,7 +1,7 @@
 """No two bodies overlap by more than the limit without a contact or error 15, whatever drives them.
 
 Decks in which blocks went through others or stopped at nothing, and some impacts of the search
-(tools/impacts.py).
+(tools/robustness.py impacts).
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-import impacts
 import numpy as np
 import pytest
 from support.random_impacts import SHAPES
 from support.watched_model import Over, Stage
+from trials import impact_search
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
@@ -229,15 +229,15 @@ def test_what_the_search_has_found(deck: str) -> None:
     ],
 )
 def test_scenes_that_the_search_has_found(kind: str, seed: int, number: int) -> None:
-    found = impacts.play(kind, seed, number, "i32r64")
-    assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"
+    found = impact_search.play(kind, seed, number, "i32r64")
+    assert not found.failure, f"{impact_search.describe(found, seed)}\n{found.snippet}"
 
 
 def test_an_edge_finds_a_blunt_arc_where_it_would_keep_it() -> None:
     """Where the end of a blunt arc stands between an edge and its rounded end, in short reals."""
     kind, seed, number = "extreme", 41, 590
-    found = impacts.play(kind, seed, number, "i16r32")
-    assert not found.failure, f"{impacts.describe(found, seed)}\n{found.snippet}"
+    found = impact_search.play(kind, seed, number, "i16r32")
+    assert not found.failure, f"{impact_search.describe(found, seed)}\n{found.snippet}"
 
 
 def test_an_update_after_a_long_step_comes_to_an_end(tmp_path: Path) -> None:
@@ -316,10 +316,10 @@ def test_a_way_that_cannot_be_followed_is_no_way_round() -> None:
     assert time.process_time() - start < 20 + compile_seconds()
 
 
-@pytest.mark.parametrize("kind", [*SHAPES, *impacts.FACES])
+@pytest.mark.parametrize("kind", [*SHAPES, *impact_search.FACES])
 def test_random_impacts(kind: str) -> None:
     """Nothing is missed, and no error 15 comes without an overlap."""
-    found = [impacts.play(kind, SEED, number, "i32r64") for number in range(BATCH)]
+    found = [impact_search.play(kind, SEED, number, "i32r64") for number in range(BATCH)]
     assert sum(one.error == 15 for one in found) >= BATCH // 8  # they do strike
-    failures = [f"{impacts.describe(one, SEED)}\n{one.snippet}" for one in found if one.failure]
+    failures = [f"{impact_search.describe(one, SEED)}\n{one.snippet}" for one in found if one.failure]
     assert not failures, "\n\n".join(failures)

@@ -16,12 +16,12 @@ from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.kernels.body.laws import stress_increment
+from udec_ia.kernels.constitutive.block_laws import stress_increment
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.commands import settings
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import _compiled, read_laws
-from udec_ia.ops.laws.laws import LawBook
 from udec_ia.restart import info
 
 ROOT = Path(__file__).parents[2]
@@ -93,9 +93,9 @@ import sys
 import numpy as np
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.words import scheme
-from udec_ia.kernels.body import laws as kernels
+from udec_ia.kernels.constitutive import block_laws as kernels
 from udec_ia.ops.commands import settings
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 
 states = np.random.default_rng(1).normal(size=(20, 6)) * [1e6, 1e6, 1e6, 1e-3, 1e-3, 1e-3]
 for build in ("i32r64", "i32r32"):

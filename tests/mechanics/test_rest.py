@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from naive.stiffness import Scene
-from safe_steps.scenes import draw
 from support.every_group_kind import every_kind
 from support.mechanics_scenes import G, block, box, model, on_base
+from support.safe_step_scenes import draw
 
 from udec_ia import Model, UdecError
 from udec_ia.kernels.energy.stored import kinetic

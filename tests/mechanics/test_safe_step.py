@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from naive.stiffness import Scene
-from safe_steps.scenes import draw
-from safe_steps.search import LIMITS, ROUNDING, look
 from support.mechanics_scenes import block, box, model, push, sound, step
+from support.safe_step_scenes import draw
+from support.safe_step_search import LIMITS, ROUNDING, look
 
 from udec_ia import Model
 from udec_ia.ops.run.timestep import bound

@@ -22,7 +22,7 @@ from udec_ia.ops.mesh.triangles import Mesh, mesh
 EPS = float(np.finfo(float).eps)
 SQUARE = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]
 ELL = [(0.0, 0.0), (0.0, 2.0), (1.0, 2.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0)]
-TOOL = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "studies" / "meshes.py"))
+TOOL = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "studies" / "mesh_quality.py"))
 SMALLEST_ANGLE = {False: 20.0, True: 15.0}  # degrees: what docs/meshes.md promises, and with MIXED
 SHARP = 0.75  # of the sharpest corner, as docs/meshes.md promises
 

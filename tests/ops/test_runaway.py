@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from extremes.bricks import slope
+from support.brick_slope import slope
 from support.every_group_kind import every_kind
 from support.mechanics_scenes import block, on_base, push
 

@@ -13,9 +13,8 @@ from types import FrameType
 from typing import Any
 
 import pytest
-from interrupted.commands import interrupt_lines
-from interrupted.scene import state
 from support.mechanics_scenes import side_by_side
+from trials.interrupted_commands import interrupt_lines, state
 
 from udec_ia import Model, UdecError
 from udec_ia.transaction import Undo
@@ -98,7 +97,7 @@ def test_a_command_within_a_command_is_taken_back_with_it() -> None:
 def test_a_run_ends_between_two_cycles_with_an_interpreted_law(tmp_path: Path) -> None:
     """An interrupt comes in the midst of a cycle, which is taken back."""
     code = (
-        "from interrupted.scene import state\n"
+        "from trials.interrupted_commands import state\n"
         "from udec_ia import Model\n"
         "class Law:\n"
         "    calls = 0\n"

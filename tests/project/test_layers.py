@@ -10,7 +10,19 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "udec_ia"
 FOLDERS = {  # of a layer, each of which imports from those before it and from files beside them only
-    "kernels": ("links", "geometry", "audit", "map", "body", "detect", "energy", "contact", "split", "drive"),
+    "kernels": (
+        "links",
+        "geometry",
+        "audit",
+        "constitutive",
+        "map",
+        "body",
+        "detect",
+        "energy",
+        "contact",
+        "split",
+        "drive",
+    ),
     "ops": ("common", "laws", "mesh", "commands", "run"),
 }
 BELOW = {  # layers that a layer imports

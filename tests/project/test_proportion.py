@@ -1,7 +1,7 @@
 """Every command takes time in proportion to what it touches: four times as much, about four times the time.
 
-Where it was once the square, sixteen times. Times are processor times, the best of three; tools/commands.py
-measures all commands at greater sizes.
+Where it was once the square, sixteen times. Times are processor times, the best of three;
+`tools/bench.py commands` measures all commands at greater sizes.
 """
 
 from __future__ import annotations

@@ -21,13 +21,13 @@ from udec_ia.layout.table import read_table
 from udec_ia.reader.group_tables import table
 from udec_ia.restart import load, save
 
-DAMAGE = Path(__file__).parents[2] / "tools" / "damage.py"
+TOOL = Path(__file__).parents[2] / "tools" / "damaged_files.py"
 
 
 def test_single_words_changed() -> None:
     """A few hundred changes by the tool; it fails for each that should have been refused."""
     done = subprocess.run(
-        [sys.executable, str(DAMAGE), "--changes", "150", "--seed", "7"],
+        [sys.executable, str(TOOL), "words", "--changes", "150", "--seed", "7"],
         capture_output=True,
         text=True,
         timeout=900,

@@ -1,4 +1,4 @@
-"""Restart files that are made to deceive: what is in them is judged before it is read (tools/hostile.py)."""
+"""Hostile restart files: what is in them is judged before it is read (tools/damaged_files.py hostile)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from hostile import base
-from hostile_files.contents import new_table
-from hostile_files.storage import packed_names
+from damage.content_edits import new_table
+from damage.hostile_files import base
+from damage.storage_edits import packed_names
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
@@ -24,7 +24,7 @@ from udec_ia.restart import info
 from udec_ia.restart.layout import text
 from udec_ia.restart.seal import SIZE, seal
 
-TOOL = Path(__file__).parents[2] / "tools" / "hostile.py"
+TOOL = Path(__file__).parents[2] / "tools" / "damaged_files.py"
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +162,7 @@ def test_printable(given: str, shown: str) -> None:
 
 def test_hostile_files() -> None:
     """A part of the tool's, each read with little memory and time by a process of its own."""
-    arguments = [sys.executable, str(TOOL), "--files", "25", "--seed", "2"]
+    arguments = [sys.executable, str(TOOL), "hostile", "--files", "25", "--seed", "2"]
     root = str(TOOL.parent.parent)
     done = subprocess.run(
         arguments, env={**os.environ, "PYTHONPATH": root}, capture_output=True, text=True, timeout=600

@@ -1,4 +1,4 @@
-"""Files that were written long ago are read: those in kept/ stay as they are (tools/kept.py has made them).
+"""Files that were written long ago are read: those in kept/ stay as they are (make_kept_files.py made them).
 
 What is in them stands here in numbers, so that no change of the reader can pass for another state.
 """

@@ -13,9 +13,9 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from interrupted.saves import kill_saves
 from support.handmade_map import two_blocks
 from support.mechanics_scenes import box, model, on_base
+from trials.interrupted_processes import kill_saves
 
 from udec_ia import Model
 from udec_ia.checker import check_links
@@ -194,7 +194,7 @@ def test_a_kill_while_saving_leaves_the_old_file(tmp_path: Path) -> None:
 
 
 def test_kills_at_any_moment_of_a_save_leave_the_old_file_or_the_new_one() -> None:
-    """A part of what tools/interrupts.py tries."""
+    """A part of what tools/robustness.py interrupts tries."""
     assert kill_saves(15, seed=3, seconds=60) == []
 
 

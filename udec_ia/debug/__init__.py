@@ -1,12 +1,12 @@
-"""The debugger: a run that can be stopped, looked at, and gone back in.
+"""The debugger: stops a run, shows its state, and goes back in it.
 
-What has happened is a row of events: a command is one, and each cycle of a run is one. Copies of the array
-are kept at some of them; the others are reached from there by going through the cycles once more, which gives
-the same words bit for bit. A cycle in question is gone through as Python, on a memory that tells of every
-word that is read or written: so each value has a writer, and a reason.
+A run is a sequence of events: each command is one, and each cycle is one. Copies of the array are kept at
+some events. The others are reached by repeating the cycles after a copy, which gives the same words bit for
+bit. A cycle is examined by repeating it as Python on a memory that reports every access: so each value has a
+writer and an origin.
 """
 
-from udec_ia.debug.console import Console, debug
-from udec_ia.debug.session import Debugger
+from udec_ia.debug.debugged_run import Debugger
+from udec_ia.debug.debugger_prompt import Console, debug
 
 __all__ = ["Console", "Debugger", "debug"]

@@ -1,10 +1,10 @@
-"""What has happened: a row of events, with copies of the array at some of them.
+"""Timeline of a debugged run: its events, and copies of the array at some of them.
 
-    stretch   what one command did: one event, or for CYCLE and SOLVE one to prepare and one a cycle
     event     0 is the beginning; the state at an event is that after it
-    copy      the words in use and the common block; of a run as many as pay, of other commands all
+    span      the events of one command: one, or for CYCLE and SOLVE one to prepare and one for each cycle
+    copy      the words in use and the common block: after every command, and at some cycles of a run
 
-Between two copies of a run there are so few cycles that going through them takes no longer than GAP. Copies
+Between two copies of a run there are so few cycles that repeating them takes no longer than GAP. Copies
 cost no more than a SHARE of the time of the run. When all of them exceed the budget, those of runs go first
 that leave the smallest gaps, and then the oldest: what was before can no longer be reached.
 """
@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.replay import Replay
 
 BUDGET = 200 * 2**20  # bytes of all copies
@@ -29,7 +29,7 @@ GAP = 0.1  # seconds of a run from one copy to the next
 SHARE = 0.05  # of the time of a run that copying may take
 
 
-class Copy(NamedTuple):
+class StateCopy(NamedTuple):
     """One state. words: IA() below MFREE; common: integers, reals and doubles."""
 
     scheme: Any
@@ -52,15 +52,15 @@ class Copy(NamedTuple):
         return array
 
 
-def copied(array: MainArray) -> Copy:
+def copy_state(array: MainArray) -> StateCopy:
     """The state that `array` is in."""
     h = array.h
     words = h.ia[: int(h.ci[g.MFREE]) - 1].copy()
-    return Copy(array.scheme, array.fixed, words, (h.ci.copy(), h.cr.copy(), h.cd.copy()))
+    return StateCopy(array.scheme, array.fixed, words, (h.ci.copy(), h.cr.copy(), h.cd.copy()))
 
 
 @dataclass
-class Stretch:
+class CommandSpan:
     """What one command did. first: the event before it; last: its own last one, so far. line: of the deck.
 
     cycle: MCTOT before. runs: it is CYCLE or SOLVE, and has been prepared. ended: it is over. number: of the
@@ -82,21 +82,21 @@ class Stretch:
         return self.last - self.first - 1 if self.runs else 0
 
 
-class Gone(LookupError):
+class UnreachableEvent(LookupError):
     """An event that can no longer be reached; the message says which can."""
 
 
 class Timeline:
     """All events up to now, of a model whose laws are `laws`.
 
-    stretches: what has happened, in order. copies: by event.
+    spans: what has happened, in order. copies: by event.
     """
 
     def __init__(self, array: MainArray, laws: LawBook, budget: int = BUDGET) -> None:
         self.laws = laws
         self.budget = budget
-        self.stretches: list[Stretch] = []
-        self.copies: dict[int, Copy] = {0: copied(array)}
+        self.spans: list[CommandSpan] = []
+        self.copies: dict[int, StateCopy] = {0: copy_state(array)}
         self.now = 0
         self._size = self.copies[0].size
         self._last_copy = perf_counter()
@@ -106,35 +106,35 @@ class Timeline:
 
     def begin(self, text: str, line: int, cycle: int, number: int = 0) -> None:
         """A command begins."""
-        self.stretches.append(Stretch(text, line, self.now, self.now, cycle, number))
+        self.spans.append(CommandSpan(text, line, self.now, self.now, cycle, number))
 
     def prepared(self, array: MainArray) -> None:
         """The run that has begun is prepared: its cycles follow."""
-        stretch = self.stretches[-1]
-        stretch.runs = True
+        span = self.spans[-1]
+        span.runs = True
         self._next(array, 1)
-        stretch.cycle = int(array.h.ci[g.MCTOT])
+        span.cycle = int(array.h.ci[g.MCTOT])
 
     def ran(self, array: MainArray, cycles: int) -> None:
         """So many cycles more; a copy if it is time for one."""
         self.now += cycles
-        self.stretches[-1].last = self.now
+        self.spans[-1].last = self.now
         if perf_counter() - self._last_copy > max(GAP, self._cost / SHARE):
             self._keep(array)
 
     def end(self, array: MainArray) -> None:
         """The command has ended."""
-        self.stretches[-1].ended = True
-        if self.stretches[-1].runs:
+        self.spans[-1].ended = True
+        if self.spans[-1].runs:
             self._keep(array)
         else:
             self._next(array, 1)
 
     def forget(self, event: int) -> None:
         """What came after `event` has not happened."""
-        self.stretches = [one for one in self.stretches if one.first < event]
-        if self.stretches:
-            last = self.stretches[-1]
+        self.spans = [one for one in self.spans if one.first < event]
+        if self.spans:
+            last = self.spans[-1]
             last.last, last.ended = event, last.ended and last.last == event
         self.copies = {one: copy for one, copy in self.copies.items() if one <= event}
         self._size = sum(copy.size for copy in self.copies.values())
@@ -142,7 +142,7 @@ class Timeline:
 
     def _next(self, array: MainArray, events: int) -> None:
         self.now += events
-        self.stretches[-1].last = self.now
+        self.spans[-1].last = self.now
         self._keep(array)
 
     def _keep(self, array: MainArray) -> None:
@@ -150,7 +150,7 @@ class Timeline:
         start = perf_counter()
         if self.now in self.copies:
             self._size -= self.copies[self.now].size
-        self.copies[self.now] = copied(array)
+        self.copies[self.now] = copy_state(array)
         self._size += self.copies[self.now].size
         while self._size > self.budget and len(self.copies) > 2:
             self._drop()
@@ -170,14 +170,14 @@ class Timeline:
 
     def _within_run(self, before: int, after: int) -> bool:
         """True if `after` can be reached from `before`."""
-        stretch = self.stretch(after)
-        return stretch.runs and stretch.first < before
+        span = self.span(after)
+        return span.runs and span.first < before
 
     # ---- going back
 
-    def stretch(self, event: int) -> Stretch:
+    def span(self, event: int) -> CommandSpan:
         """The command that `event`, which is not 0, is a part of."""
-        return self.stretches[bisect_right([one.first for one in self.stretches], event - 1) - 1]
+        return self.spans[bisect_right([one.first for one in self.spans], event - 1) - 1]
 
     @property
     def earliest(self) -> int:
@@ -191,7 +191,7 @@ class Timeline:
             return self.copies[event].array()
         if base < 0 or not self._within_run(base, event):
             after = min(one for one in self.copies if one > event)
-            raise Gone(
+            raise UnreachableEvent(
                 f"event {event} cannot be reached: its copy was given up to save memory; "
                 f"the next one that can be is {after}"
             )
@@ -218,18 +218,18 @@ class Timeline:
         events = sorted({one for one in self.copies if one < event} | {event})
         yield from zip(events[-2::-1], events[::-1], strict=False)
 
-    def place(self, event: int) -> tuple[Stretch | None, int]:
+    def place(self, event: int) -> tuple[CommandSpan | None, int]:
         """The command that an event belongs to, None for the beginning, and the number of cycles then."""
-        if event == 0 or not self.stretches:
-            return None, self.stretches[0].cycle if self.stretches else 0
-        stretch = self.stretch(event)
-        return stretch, stretch.cycle + (max(event - stretch.first - 1, 0) if stretch.runs else 0)
+        if event == 0 or not self.spans:
+            return None, self.spans[0].cycle if self.spans else 0
+        span = self.span(event)
+        return span, span.cycle + (max(event - span.first - 1, 0) if span.runs else 0)
 
     def event_of(self, cycle: int) -> int:
         """The first event at which so many cycles were completed. Raises Gone."""
-        for stretch in self.stretches:
-            if stretch.runs and stretch.cycle <= cycle <= stretch.cycle + stretch.done:
-                return stretch.first + 1 + cycle - stretch.cycle
-        first = min((stretch.cycle for stretch in self.stretches if stretch.runs), default=cycle)
+        for span in self.spans:
+            if span.runs and span.cycle <= cycle <= span.cycle + span.done:
+                return span.first + 1 + cycle - span.cycle
+        first = min((span.cycle for span in self.spans if span.runs), default=cycle)
         before = f"is before what was recorded, which begins with cycle {first}"
-        raise Gone(f"cycle {cycle} {before if cycle < first else 'has not been run yet'}")
+        raise UnreachableEvent(f"cycle {cycle} {before if cycle < first else 'has not been run yet'}")

@@ -7,14 +7,14 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
-from udec_ia.debug.timeline import Copy, copied
-from udec_ia.debug.tracing import ROOT, UNDER
+from udec_ia.debug.cycle_trace import ROOT, UNDER
+from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.errors import UdecError
 from udec_ia.heap.array import MainArray
 from udec_ia.heap.interpreting import interpreted, observe
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.soft import soft
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.watch import run_unwatched
 
@@ -25,7 +25,7 @@ class Passes:
     """The cycle that follows the state in `array`, which is changed. after: name of each pass, and a copy."""
 
     def __init__(self, array: MainArray, laws: LawBook) -> None:
-        self.after: list[tuple[str, Copy]] = []
+        self.after: list[tuple[str, StateCopy]] = []
         self._array, self._name = array, ROOT
         with interpreted(), suppress(UdecError):
             bound = laws.bind(array)
@@ -47,7 +47,7 @@ class Passes:
     def _end(self) -> None:
         """The pass is over. What the loop of the passes itself counts is no pass."""
         if self._name != ROOT:
-            self.after.append((self._name, copied(self._array)))
+            self.after.append((self._name, copy_state(self._array)))
 
 
 def _pass_of(frame: FrameType | None) -> str:

@@ -11,8 +11,8 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from udec_ia.debug.session import cycle_statement, cycles_of
-from udec_ia.debug.timeline import Copy, copied
+from udec_ia.debug.debugged_run import count_cycles, cycle_statement
+from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.deck.monitor import RESTART_FILE, Monitor
 from udec_ia.deck.parser import parse
 from udec_ia.deck.reader import Line, Statement, statements, tokens
@@ -27,7 +27,7 @@ EVERY = 60  # cycles between two comparisons; a multiple of those after which SO
 class Step(NamedTuple):
     """The state that a run has come to. line: the line of the deck that is next, or was last, "" for none."""
 
-    copy: Copy
+    copy: StateCopy
     cycle: int
     line: str
 
@@ -108,7 +108,7 @@ def _rest_of(statement: Statement) -> tuple[float | None, int]:
     """
     call = parse(statement)
     if call.command.name != "solve":
-        return None, cycles_of(statement)
+        return None, count_cycles(statement)
     if call.named.get("static") or call.named.get("criterion") == "mean":
         return None, 0
     return float(call.positional[0]), int(call.named.get("limit", SOLVE_LIMIT))
@@ -129,4 +129,4 @@ def _to_next(model: Any) -> int:
 
 
 def _step(model: Any, line: str = "") -> Step:
-    return Step(copied(model.array), int(model.array.h.ci[g.MCTOT]), line)
+    return Step(copy_state(model.array), int(model.array.h.ci[g.MCTOT]), line)

@@ -11,7 +11,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from udec_ia.counting import counted
-from udec_ia.debug.timeline import Copy, copied
+from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.diverge.judge import Judge, Off
 from udec_ia.diverge.passes import Passes
 from udec_ia.diverge.runs import Run, Step
@@ -21,7 +21,7 @@ from udec_ia.ops.common.memory import keep_spare
 from udec_ia.ops.run.cycle import prepare
 from udec_ia.ops.run.replay import Replay
 
-States = tuple[Copy, Copy]
+States = tuple[StateCopy, StateCopy]
 
 
 class Divergence(NamedTuple):
@@ -96,10 +96,10 @@ def _on(runs: tuple[Run, Run], start: States, cycles: int) -> States:
     for run, array in zip(runs, arrays, strict=True):
         with suppress(UdecError):  # which the run has ended with
             Replay(array, run.model.laws).step(cycles)
-    return copied(arrays[0]), copied(arrays[1])
+    return copy_state(arrays[0]), copy_state(arrays[1])
 
 
-def _ready(copy: Copy) -> MainArray:
+def _ready(copy: StateCopy) -> MainArray:
     """The state, prepared to be cycled as CYCLE does."""
     array = copy.array()
     prepare(array)

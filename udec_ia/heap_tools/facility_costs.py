@@ -28,7 +28,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary import forget_blocks
 from udec_ia.ops.commands.change import change_types
 from udec_ia.ops.common.lists import chain
-from udec_ia.ops.laws.laws import LawBook
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import cycle, prepare
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.runaway import Runaway

@@ -16,8 +16,8 @@ from udec_ia.heap.words import DEFAULT_SCHEME, scheme
 from udec_ia.layout.offsets import LREADY
 from udec_ia.ops.commands import settings
 from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.ops.laws.laws import LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.session import NAME, Session
 from udec_ia.transaction import Undo, beside

@@ -1,4 +1,4 @@
-"""What each word of IA() is: part of a group, of a junk group, of nothing, or unused; and the names of groups.
+"""What each word of IA() is: part of a group, of a junk group, of nothing, or unused; and names of groups.
 
 The census (heap/census.py) finds the groups that the lists reach; the junk list has what was given back.
 Between them there may be words that nothing leads to, in a damaged heap, and groups may lie in each other: a

@@ -19,14 +19,15 @@ import numpy as np
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.heap.jit import apart, inlined, kernel
-from udec_ia.kernels.contact.joint_law import is_open
+from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
+from udec_ia.kernels.constitutive.joint_laws import is_idle, no_force
+from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.contact.notch import has_no_place, leave_notch
-from udec_ia.kernels.contact.springs import lose_shear
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import gap_taken
 from udec_ia.kernels.geometry.contact_geometry import faces
 from udec_ia.kernels.links.lists import is_contact
-from udec_ia.kernels.map.bridge import delc, no_force, to_virtual
+from udec_ia.kernels.map.bridge import delc, to_virtual
 from udec_ia.kernels.map.reclass import settle
 from udec_ia.kernels.map.segments import ahead_by, same_segment
 from udec_ia.layout import offsets as g
@@ -159,11 +160,11 @@ def loses(h: Memory, ic: int, overlap: float) -> float:
 
     That is what its springs hold, and what its normal force has done in half of this step.
     """
-    fn, fs, m = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), iget(h, ic, g.KCM) - 1
+    fn = getr(h, ic, g.KCFN)
     if fn == 0:
         return real(h, 0.0)
-    twice = fn * fn / h.cr[g.AKN + m] + fs * fs / h.cr[g.AKS + m] + fn * (overlap - getr(h, ic, g.KCN))
-    return twice * real(h, 0.5)
+    normal, shear = twice_stored(h, ic, fn, getr(h, ic, g.KCFS))
+    return (normal + shear + fn * (overlap - getr(h, ic, g.KCN))) * real(h, 0.5)
 
 
 @inlined
@@ -178,11 +179,7 @@ def change(h: Memory, ic: int, own: bool) -> bool:
     nx, ny, overlap = settle(h, ic)
     if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
         nx, ny, overlap = settle(h, ic)
-    if own:
-        idle = is_open(h, ic, overlap)
-    else:
-        idle = overlap <= 0 or getr(h, ic, g.KCFN) == 0
-    if idle and (not is_still(h, overlap) or has_no_place(h, ic)):
+    if is_idle(h, ic, own, overlap) and (not is_still(h, overlap) or has_no_place(h, ic)):
         if overlap <= 0 and not own:
             opens(h, ic)
         lost = loses(h, ic, overlap)

@@ -1,12 +1,11 @@
 """The contact pass: forces from relative displacements (FORD, CVEL, PUTFCE); report 2.6.
 
-Each contact in its turn: where it is; the relative velocity of its two blocks; its law, number 1 (springs.py)
-or one of the user's (joint_law.py); and what the blocks feel. That reads the map and writes to the contact
-alone, but for the forces that the blocks feel. Contacts that have to look at their neighbours, or to change
-the map, wait until all others have had their turn (changes.py).
+Each contact in its turn: where it is; the relative velocity of its two blocks; its law (constitutive); and
+the forces on its blocks. That reads the map and writes to the contact alone, but for the forces on the
+blocks. Contacts that have to look at their neighbours, or to change the map, wait until all others have had
+their turn (changes.py).
 
-An account of the energy is told what a contact feels while it still holds what it felt before
-(energy/contacts.py).
+The energy account is given the new forces while the contact still holds the old ones (energy/contacts.py).
 """
 
 from __future__ import annotations
@@ -19,9 +18,8 @@ from udec_ia.heap.ahead import LEAD, fetch
 from udec_ia.heap.apart import call_entry
 from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
+from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
 from udec_ia.kernels.contact.changes import is_still, opens
-from udec_ia.kernels.contact.joint_law import by_law, has_law, is_open
-from udec_ia.kernels.contact.springs import by_springs
 from udec_ia.kernels.geometry.contact_geometry import coord
 from udec_ia.layout import offsets as g
 
@@ -61,17 +59,16 @@ def has_to_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) ->
     """True if contact `ic` may have to change the map, or to look at its neighbours. margin: see coord."""
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
         return True
-    idle = is_open(h, ic, overlap) if own else overlap <= 0 or getr(h, ic, g.KCFN) == 0
-    return idle and not is_still(h, overlap)
+    return is_idle(h, ic, own, overlap) and not is_still(h, overlap)
 
 
 @inlined
 def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: bool) -> int:
     """Force and displacement calculation for contact `ic` (FORD); 0, or how it has to wait for changes.
 
-    That is nothing but its own address, negative if it follows a law of the user's. Others: as in ford_all.
+    That is its own address, negative if it follows a law of its own (joint_laws.py). Others: as in ford_all.
     """
-    own = joints is not None and has_law(h, joints, ic)
+    own = joints is not None and has_own_law(h, joints, ic)
     nx, ny, overlap, margin = coord(h, ic)
     if not has_waited and has_to_wait(h, ic, own, overlap, margin):
         return -int64(ic) if own else int64(ic)
@@ -83,10 +80,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         put_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    if own:
-        fn, fs, us, dn, ds = by_law(h, joints, ic, before, sliding)
-    else:
-        fn, fs, us, dn, ds = by_springs(h, ic, before, closing, sliding)
+    fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
         call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
     put_velocity(h, ic, xd, yd)

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.jit import inlined, kernel
+from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.geometry.contact_geometry import ce, has_no_arc, meet, past
 from udec_ia.kernels.links.lists import corner_of, is_contact, nextcp, other, prevcp
-from udec_ia.kernels.map.bridge import no_force
 from udec_ia.kernels.map.reclass import mvbak, mvfor
 from udec_ia.layout import offsets as g
 
@@ -75,8 +76,8 @@ def heir(h: Memory, ic: int) -> int:
 @inlined
 def held(h: Memory, ic: int) -> float:
     """Energy in the springs of contact `ic`."""
-    fn, fs, m = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), iget(h, ic, g.KCM) - 1
-    return (fn * fn / h.cr[g.AKN + m] + fs * fs / h.cr[g.AKS + m]) * real(h, 0.5)
+    normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
+    return (normal + shear) * real(h, 0.5)
 
 
 @kernel

@@ -6,8 +6,8 @@ point, q_j the degrees of freedom of both sides and s_j how far a unit of each m
     K_ij = KN (s_i n)(s_j n) + KS (s_i t)(s_j t)
 
 What couples degrees of freedom of the same body is added up with its sign over all contacts, and much of it
-cancels; what couples two bodies counts with its size. A contact of a law of the user's may be as stiff as the
-greater of KN and KS in every direction.
+cancels; what couples two bodies counts with its size. KN and KS are those of the joint's law
+(constitutive.joint_laws.bounding_stiffness).
 
 What moves with one side: a body that is not meshed with all its degrees of freedom, or the two grid-points at
 the ends of the edge, or the one at the corner, of a fully-deformable block.
@@ -23,6 +23,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.jit import kernel
+from udec_ia.kernels.constitutive.joint_laws import bounding_stiffness
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 
@@ -119,9 +120,7 @@ def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: 
             for side in range(2):
                 first = 2 * side
                 _enter_side(h, ic, side, row, frame, way, at[first : first + 2], moves[first : first + 2])
-            m = iget(h, ic, g.KCM) - 1
-            kn, ks = np.float64(h.cr[g.AKN + m]), np.float64(h.cr[g.AKS + m])
-            if iget(h, ic, g.KCC) > 1:
-                kn = ks = max(kn, ks)
+            kn, ks = bounding_stiffness(h, ic)
+            kn, ks = np.float64(kn), np.float64(ks)
             _add(kn, ks, at, moves, weight, own, total)
         ic = iget(h, ic, g.KC)

@@ -51,8 +51,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if
-    `soft` is. joints: None if no contact follows a law of the user's, else these (body.law_call). passes: see
-    drive.passes. Stops early, too, when a safe time-step has to be judged.
+    `soft` is. joints: None if no contact follows a law of the user's, else these (constitutive.law_call).
+    passes: see drive.passes. Stops early, too, when a safe time-step has to be judged.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0

@@ -6,6 +6,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
+from udec_ia.kernels.constitutive.joint_properties import joint_of, stiffest
 from udec_ia.layout import offsets as g
 
 
@@ -36,10 +37,9 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
     undefined = int64(0)
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        m = iget(h, ic, g.KCM) - 1
-        kn, ks = h.cr[g.AKN + m], h.cr[g.AKS + m]
-        if not min(kn, ks) > 0:
+        joint = joint_of(h, ic)
+        if not min(joint.kn, joint.ks) > 0:
             undefined = ic
-        largest = max(largest, max(kn, ks))
+        largest = max(largest, stiffest(joint))
         ic = iget(h, ic, g.KC)
     return largest, undefined

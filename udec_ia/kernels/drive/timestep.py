@@ -15,6 +15,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.fdef import gradient
+from udec_ia.kernels.constitutive.joint_properties import joint_of, stiffest
 from udec_ia.kernels.links.lists import corner_of
 from udec_ia.layout import offsets as g
 
@@ -63,8 +64,7 @@ def zone_stiffness(h: Memory, ib: int, stiffness: Any) -> None:
 @kernel
 def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
     """Add the stiffness of contact `ic` at the grid-points on both its sides."""
-    m = iget(h, ic, g.KCM) - 1
-    stiffer = max(h.cr[g.AKN + m], h.cr[g.AKS + m])
+    stiffer = stiffest(joint_of(h, ic))
     for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
         if iget(h, ib, HEAD) == g.MFDEF:
             ip = corner_of(h, ib, ic)

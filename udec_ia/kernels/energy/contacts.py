@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
 from udec_ia.heap.jit import apart, inlined
+from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_of
 from udec_ia.layout import offsets as g
 
 Pair = tuple[float, float]
@@ -33,12 +34,9 @@ def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
     was: closing and sliding velocity that they answered to half a step ago. now: closing and sliding
     velocity now. slips: whether the dashpot along the contact answers to nothing now.
     """
-    (closing, sliding), m = now, iget(h, ic, g.KCM) - 1
-    held = getr(h, ic, g.KCFN)
-    stuck = abs(getr(h, ic, g.KCFS)) < h.cr[g.COH + m] + h.cr[g.AMU + m] * held or held == 0
-    zero = real(h, 0.0)
-    across = (was[1] if stuck else zero) + (zero if slips else sliding)
-    done = h.cr[g.AKN + m] * closing * (was[0] + closing) + h.cr[g.AKS + m] * sliding * across
+    (closing, sliding), joint, zero = now, joint_of(h, ic), real(h, 0.0)
+    across = (was[1] if is_stuck(h, ic) else zero) + (zero if slips else sliding)
+    done = joint.kn * closing * (was[0] + closing) + joint.ks * sliding * across
     h.cd[g.WSTIF] += h.cr[g.BETA] * h.cr[g.TDEL] * real(h, 0.5) * done
 
 

@@ -23,6 +23,7 @@ from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
+from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.layout import offsets as g
 
 
@@ -160,11 +161,9 @@ def strain_of_contacts(h: Memory) -> float:
     while ic != 0:
         fn, fs = np.float64(getr(h, ic, g.KCFN)), np.float64(getr(h, ic, g.KCFS))
         if fn != 0:
-            m = iget(h, ic, g.KCM) - 1
-            if h.cr[g.AKN + m] > 0:
-                twice += fn * fn / h.cr[g.AKN + m]
-            if h.cr[g.AKS + m] > 0:
-                twice += fs * fs / h.cr[g.AKS + m]
+            normal, shear = twice_stored(h, ic, fn, fs)
+            twice += normal
+            twice += shear
         ic = iget(h, ic, g.KC)
     return twice / 2
 

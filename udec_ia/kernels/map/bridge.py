@@ -8,9 +8,11 @@ or broken on a large domain costs as much as its small side.
 
 from __future__ import annotations
 
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
-from udec_ia.heap.jit import inlined, kernel
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
+from udec_ia.heap.jit import kernel
 from udec_ia.heap.memory import find, lose
+from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.contact_geometry import begin
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.flag import flag
@@ -51,19 +53,14 @@ def maked(h: Memory) -> int:
 
 @kernel
 def makec(h: Memory, ib: int, jb: int, icod: int, idleft: int, idright: int) -> int:
-    """A new contact of blocks `ib` and `jb` at the head of the contact list (MAKEC).
-
-    Its material and constitutive numbers are those of block `ib` (report 4.3); it stands in no block's
-    list yet.
-    """
+    """A new contact of blocks `ib` and `jb` at the head of the contact list (MAKEC), in no block list yet."""
     ic = find(h, g.NVCN)
     puti(h, ic, HEAD, g.MCON)
     puti(h, ic, g.KB1, ib)
     puti(h, ic, g.KB2, jb)
     puti(h, ic, g.KD1, idleft)
     puti(h, ic, g.KD2, idright)
-    puti(h, ic, g.KCM, iget(h, ib, g.KMAT))
-    puti(h, ic, g.KCC, iget(h, ib, g.KCONS))
+    assign_material(h, ic)
     puti(h, ic, g.KCCOD, icod)
     to_front(h, g.ICPNT, g.KC, g.KCB, ic)
     h.ci[g.NCON] += 1
@@ -80,15 +77,6 @@ def losec(h: Memory, ic: int) -> None:
     puti(h, ic, HEAD, 0)
     lose(h, ic, g.NVCN)
     h.ci[g.NCON] -= 1
-
-
-@inlined
-def no_force(h: Memory, ic: int) -> None:
-    """Contact `ic` carries no force and remembers no sliding."""
-    zero = real(h, 0.0)
-    putr(h, ic, g.KCFN, zero)
-    putr(h, ic, g.KCFS, zero)
-    putr(h, ic, g.KCS, zero)
 
 
 @kernel

@@ -20,6 +20,8 @@ from typing import Any
 
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.jit import kernel
+from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.contact_geometry import begin
 from udec_ia.kernels.links.lists import insert_after, is_corner, prevcp, take_out
 from udec_ia.kernels.map.bridge import (
@@ -28,7 +30,6 @@ from udec_ia.kernels.map.bridge import (
     left_is_shorter,
     makec,
     nextd,
-    no_force,
     relabel,
 )
 from udec_ia.kernels.map.segments import not_virtual
@@ -65,8 +66,7 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
         jad = prevcp(h, jb, iv)
     take_contact_out(h, iv)
     put_contact(h, iv, ib, iad, jb, jad)
-    puti(h, iv, g.KCM, iget(h, ib, g.KMAT))
-    puti(h, iv, g.KCC, iget(h, ib, g.KCONS))
+    assign_material(h, iv)
     puti(h, iv, g.KCCOD, icod)
     no_force(h, iv)
     begin(h, iv)

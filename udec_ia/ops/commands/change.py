@@ -18,6 +18,7 @@ from udec_ia.kernels.body.bounds import push_loads
 from udec_ia.kernels.body.masses import share_mass, zone_means
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_stress
+from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.layout import offsets as g
@@ -54,12 +55,12 @@ def change(
         change_types(array, blocks, TYPES[kind])
     h = array.h
     for ib in blocks if material is not None or constitutive is not None else ():
-        contacts = [ic for ic in items(h, ib) if not is_corner(h, ic) and iget(h, ic, g.KB1) == ib]
-        for number, of_block, of_contact in ((material, g.KMAT, g.KCM), (constitutive, g.KCONS, g.KCC)):
+        for number, of_block in ((material, g.KMAT), (constitutive, g.KCONS)):
             if number is not None:
                 puti(h, ib, of_block, number)
-                for ic in contacts:
-                    puti(h, ic, of_contact, number)
+        for ic in items(h, ib):
+            if not is_corner(h, ic):
+                assign_material(h, ic)
     return len(blocks)
 
 

@@ -19,7 +19,9 @@ from udec_ia.heap.array import MainArray
 from udec_ia.layout.table import read_table
 
 NMAT = next(field.count for field in read_table().common if field.name == "AKN")
-NCONS = 5
+NCONS = next(
+    field.allowed[0][1] or 0 for field in read_table().group("block").fields if field.name == "KCONS"
+)
 LARGEST = 2**63 - 1  # integer of the common block
 
 # How many last digits of a coordinate long an edge must be, and a rounding length, which without ROUND is

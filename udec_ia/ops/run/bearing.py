@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.kernels.constitutive.joint_properties import joints_of, strengths
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.chatter import place_of
@@ -14,8 +15,8 @@ from udec_ia.ops.run.chatter import place_of
 ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
 
 
-def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
-    """Contacts that bear a force: addresses, normal and shear forces, places of their materials.
+def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any]:
+    """Contacts that bear a force: addresses, normal and shear forces.
 
     springs: only those of constitutive number 1, whose strength is known: a law of the user's has its own.
     """
@@ -24,7 +25,7 @@ def closed(h: Memory, springs: bool = False) -> tuple[Any, Any, Any, Any]:
     if springs:
         contacts = contacts[integers(h, contacts, g.KCC) == 1]
     fn, fs = (np.asarray(getr(h, contacts, k), np.float64) for k in (g.KCFN, g.KCFS))
-    return contacts, fn, fs, integers(h, contacts, g.KCM) - 1
+    return contacts, fn, fs
 
 
 def borne(h: Memory) -> Any:
@@ -40,14 +41,14 @@ def own_laws(h: Memory) -> bool:
 
 def overlap(h: Memory) -> float:
     """Mean overlap of the contacts that bear a force; 0 if none does."""
-    _, fn, _, m = closed(h)
-    return float(np.mean(fn / h.cr[g.AKN + m])) if len(fn) else 0.0
+    contacts, fn, _ = closed(h)
+    return float(np.mean(fn / joints_of(h, contacts).kn)) if len(fn) else 0.0
 
 
 def at_strength(h: Memory) -> Any:
     """Contacts of springs and friction whose shear force is their strength, the most loaded one first."""
-    contacts, fn, fs, m = closed(h, springs=True)
-    slipping = np.abs(fs) >= 0.999 * (h.cr[g.COH + m] + h.cr[g.AMU + m] * fn)
+    contacts, fn, fs = closed(h, springs=True)
+    slipping = np.abs(fs) >= 0.999 * strengths(h, contacts)
     order = np.argsort(-fn[slipping], kind="stable")
     return contacts[slipping][order]
 
@@ -57,10 +58,11 @@ def slipped_farthest(h: Memory) -> str:
 
     Nothing if none has slipped by more than what its spring has rounded.
     """
-    contacts, _, fs, m = closed(h, springs=True)
+    contacts, _, fs = closed(h, springs=True)
     if not len(contacts):
         return ""
-    held = np.divide(fs, h.cr[g.AKS + m], out=np.zeros_like(fs), where=h.cr[g.AKS + m] > 0)
+    ks = joints_of(h, contacts).ks
+    held = np.divide(fs, ks, out=np.zeros_like(fs), where=ks > 0)
     slip = np.abs(np.asarray(getr(h, contacts, g.KCS), np.float64) - held)
     k = int(slip.argmax())
     if slip[k] < ROUNDED * np.abs(held).max():

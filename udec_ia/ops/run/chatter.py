@@ -19,6 +19,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.openings import LOOK, STRIDE
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
@@ -115,6 +116,5 @@ def own_frequency(h: Memory, ic: int) -> float:
     """Frequency (Hz) of the lighter block of contact `ic` on two springs like it."""
     blocks = [iget(h, ic, k) for k in (g.KB1, g.KB2)]
     masses = [float(getr(h, ib, g.KBM)) for ib in blocks if iget(h, ib, g.KBFIX) != g.FIXED]
-    return math.sqrt(2 * float(h.cr[g.AKN + iget(h, ic, g.KCM) - 1]) / min(masses, default=math.inf)) / (
-        2 * math.pi
-    )
+    kn = float(joints_of(h, np.array([ic])).kn[0])
+    return math.sqrt(2 * kn / min(masses, default=math.inf)) / (2 * math.pi)

@@ -25,6 +25,7 @@ from udec_ia.heap.array import MainArray
 from udec_ia.heap.compiling import working_time
 from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.body.masses import make_masses
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
@@ -34,7 +35,7 @@ from udec_ia.ops.common.limits import last_digit
 from udec_ia.ops.common.lists import chain
 from udec_ia.ops.common.memory import find_room, keep_spare
 from udec_ia.ops.common.soft import soft
-from udec_ia.ops.laws.laws import Bound, LawBook
+from udec_ia.ops.laws.law_book import Bound, LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.remarks import sinks_too_far
 from udec_ia.ops.run.renewal import ahead, put_step
@@ -249,7 +250,7 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         return _without_contact(array, group)
     if iget(h, group, HEAD) != g.MCON:  # it vanished in a later pass of the same cycle
         return UdecError(OVERLAP_TOO_GREAT, f"in cycle {cycle}", "take a smaller FRACTION or a greater ROUND")
-    m, overlap = iget(h, group, g.KCM), getr(h, group, g.KCN)
+    m, overlap = material_of(h, group), getr(h, group, g.KCN)
     limit = f"{h.cr[g.DTOL2]:g}" if overlap > h.cr[g.DTOL2] else "the tip there is thick"
     detail = (
         f"contact@{group} of block@{iget(h, group, g.KB1)} and block@{iget(h, group, g.KB2)} at "
@@ -257,8 +258,8 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
         f"{limit}, in cycle {cycle}"
     )
     advice = (
-        f"KN of material {m} is {h.cr[g.AKN + m - 1]:g}, the time-step {h.cr[g.TDEL]:g} is {share_of(h)}: "
-        "a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
+        f"KN of material {m} is {joints_of_materials(h, m).kn:g}, the time-step {h.cr[g.TDEL]:g} is "
+        f"{share_of(h)}: a greater KN, a smaller FRACTION, less stiffness damping or a greater ROUND"
     )
     return UdecError(OVERLAP_TOO_GREAT, detail, _what_to_do(h, advice), group=group)
 

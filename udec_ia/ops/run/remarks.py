@@ -15,6 +15,7 @@ import numpy as np
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
@@ -27,9 +28,7 @@ OF_LAWS = {  # properties that constitutive number 1 does not look at, by their 
     one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in OURS
 }
 OF_JOINTS = {  # properties of joints, by their places in the common block
-    one.keyword.upper(): getattr(g, one.array)
-    for one in read_table().properties
-    if one.array in ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")
+    one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in JOINT_ARRAYS
 }
 SLIVER = 40  # the mean edge over the shortest, from which on it is said
 SLENDER = 100  # length over mean width of a block, from which on it is a sliver
@@ -205,8 +204,8 @@ def digit_force(array: MainArray) -> tuple[float, float]:
     h = array.h
     blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
     x, y, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO))
-    materials = np.unique(integers(h, blocks, g.KMAT)) - 1
-    stiffness = float(max(h.cr[g.AKN + materials].max(), h.cr[g.AKS + materials].max()))
+    joints = joints_of_materials(h, np.unique(integers(h, blocks, g.KMAT)))
+    stiffness = float(max(joints.kn.max(), joints.ks.max()))
     digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
     return stiffness * digit, digit
 
@@ -224,8 +223,8 @@ def usual_force(h: Memory) -> float:
 
 def sinks_too_far(h: Memory) -> str:
     """What is said if blocks overlap by more than is allowed before their contacts bear them; "" if not."""
-    materials = np.unique(integers(h, addresses(h, int(h.ci[g.IBPNT]), g.KB), g.KMAT)) - 1
-    stiffest, usual = float(h.cr[g.AKN + materials].max()), usual_force(h)
+    materials = np.unique(integers(h, addresses(h, int(h.ci[g.IBPNT]), g.KB), g.KMAT))
+    stiffest, usual = float(joints_of_materials(h, materials).kn.max()), usual_force(h)
     if not usual > stiffest * float(h.cr[g.DTOL2]) > 0:
         return ""
     return (

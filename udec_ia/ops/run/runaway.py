@@ -17,8 +17,8 @@ may be more, by errors of the formulation (docs/energy.md) and as velocities are
 vibration with w dt below 1.8, 0.9 of the critical step, has up to ten times the energy that a small step
 would give it. If there is more, no load has made it. The work of friction counts, so that a stack that
 rattles is found as well as one that is thrown off; a joint law of the user's that gives energy reduces it by
-as much (contact.joint_law). Of a block law of the user's nothing is known: blocks that follow one may swell
-by themselves, and are not suspected.
+as much (constitutive.joint_laws). Of a block law of the user's nothing is known: blocks that follow one may
+swell by themselves, and are not suspected.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.peaks import halt_block
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
@@ -93,7 +94,8 @@ def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
     at = rows.row(np.where(points > 0, points, blocks))
     reach = np.where(points > 0, 0.0, np.asarray(getr(h, blocks, g.KBRO), float)) / rows.frame[at, 0]
     outside = (points == 0) | (integers(h, np.where(points > 0, points, 1), g.KCOR) > 0)
-    contact = SHARE * float(max(h.cr[k : k + NMAT].max() for k in (g.AKN, g.AKS))) * outside
+    joints = joints_of_materials(h, np.arange(NMAT) + 1)
+    contact = SHARE * float(max(joints.kn.max(), joints.ks.max())) * outside
     more = np.stack([contact, contact, contact * reach**2, *[contact * reach**2] * 3], axis=1)
     held = (rows.sum[at] > 0) | (rows.drag[at] > 0)
     needed = (np.where(held, rows.sum[at] + more, 0.0) * step / 2 + rows.drag[at]) * step / 2

@@ -16,6 +16,7 @@ import numpy as np
 from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers
 from udec_ia.heap.array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
@@ -75,13 +76,14 @@ def _stiffness(h: Memory) -> float:
     """Greatest joint stiffness of any contact; of a lone block the one that its contacts would have."""
     if h.ci[g.NCON] == 0:
         m = iget(h, int(h.ci[g.IBPNT]), g.KMAT)
-        stiffness = float(max(h.cr[g.AKN + m - 1], h.cr[g.AKS + m - 1]))
+        joint = joints_of_materials(h, m)
+        stiffness = float(max(joint.kn, joint.ks))
         if not stiffness > 0 and not h.ci[g.NSOFT]:
             raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
         return max(stiffness, 1e-300)
     stiffness, undefined = greatest_stiffness(h)
     if undefined:
-        m = iget(h, undefined, g.KCM)
+        m = material_of(h, undefined)
         detail = f"contact@{undefined} has material {m}"
         raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
     return float(stiffness)

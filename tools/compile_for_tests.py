@@ -1,0 +1,70 @@
+"""Compile what the tests need, in all word schemes, before they begin: each routine once, some at a time.
+
+    python tools/compile_for_tests.py 2
+
+Two processes of the tests would both compile whatever they come to. Here a process takes a scheme and plays a
+few of the random scenes of the tests; what it has compiled is kept where the tests look for it.
+"""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+from time import monotonic
+
+ROOT = Path(__file__).parent.parent
+RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of random_scenes and random_deformable_scenes of tests/support
+OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and keep accounts of the energy
+OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
+
+
+def compile_for(build: str) -> str:
+    """Play the scenes with the words of `build`; returns it."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    logging.disable(logging.CRITICAL)
+    from support import random_deformable_scenes as soft_scenes
+    from support import random_scenes as scenes
+    from support.mechanics_scenes import on_base
+
+    from udec_ia import Model, UdecError
+    from udec_ia.checker import check_links
+    from udec_ia.heap.interpreting import Sparing
+
+    Sparing.at_once = True
+    rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]
+    soft = [soft_scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in SOFT]
+    for model in rigid[-1], soft[-1]:
+        if build == OUTLINES_IN:
+            model.check()
+        elif build in OF_A_WIDTH:
+            check_links(model.array)
+    if build in OFTEN_USED:
+        model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)
+        model.cycle(1)
+        model.property(1, bulk=1e9, g=1e9)
+        model.change(-99, 99, -99, 99, type="sdef")
+        model.cycle(1)
+        for model in rigid[-1], soft[-1]:
+            model.energy("on")
+            with suppress(UdecError):  # a scene may have ended in one
+                model.cycle(1)
+    return build
+
+
+def main() -> None:
+    """Compile for all schemes in as many processes as the first argument says."""
+    os.environ.setdefault("UDEC_CACHE", str(ROOT / ".udec_cache"))  # where tests/conftest.py has it
+    from udec_ia.heap.words import ALL_SCHEMES
+
+    start = monotonic()
+    with multiprocessing.get_context("spawn").Pool(int(sys.argv[1]), maxtasksperchild=1) as pool:
+        for build in pool.imap_unordered(compile_for, ALL_SCHEMES):
+            print(f"{build} is ready after {monotonic() - start:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()

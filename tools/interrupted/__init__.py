@@ -1,1 +1,0 @@
-"""Interrupts inside commands, of processes and of SAVE, for tools/interrupts.py."""

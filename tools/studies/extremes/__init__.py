@@ -1,1 +1,0 @@
-"""Scenes at the extremes, one study a file: docs/stability.md."""

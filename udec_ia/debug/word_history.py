@@ -1,0 +1,178 @@
+"""History of a word: who wrote it, from what its value was computed, and how its group was created.
+
+The last event at which something changed is searched backwards, from copy to copy (timeline.py). If it is a
+cycle, it is repeated and observed (cycle_trace.py). The answer names the routine and the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from udec_ia.debug.cycle_trace import Access, CycleTrace
+from udec_ia.debug.stop_conditions import GroupBirth, StopCondition, WordChange, format_number
+from udec_ia.debug.timeline import Timeline
+from udec_ia.heap.accessors import Memory
+from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas, called
+from udec_ia.reader.places import Place, number_of
+
+MANY = 12  # origins of a value that are shown
+RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
+
+
+def find_last_hit(
+    timeline: Timeline, event: int, condition: StopCondition, before: bool = False
+) -> tuple[int, str]:
+    """The last event at which `condition` reports something, and what; 0 and "" if there is none.
+
+    Up to `event`, or only before it. Where all groups got other addresses, the search ends.
+    """
+    found = 0, ""
+    for a, b in timeline.backwards(event):
+        first = timeline.at(a)
+        head = int(first.h.ci[g.IBPNT])
+        condition.begin(first)
+        for now, array in timeline.through(a, b):
+            what = condition.hit(array)
+            if head != (head := int(array.h.ci[g.IBPNT])) and _prepares(timeline, now):
+                what = RENUMBERED
+            if what and not (before and now >= event):
+                found = now, what
+        if found[0]:
+            return found
+    return found
+
+
+def describe_event(timeline: Timeline, event: int) -> str:
+    """The command and the cycle of an event, as text."""
+    span, cycle = timeline.place(event)
+    if span is None:
+        return "at the beginning"
+    place = f"line {span.line}: {span.text}"
+    if not span.runs:
+        return f"after {place}"
+    if event == span.first + 1:
+        return f"prepared, before cycle {cycle + 1} of {place}"
+    return f"after cycle {cycle} of {place}"
+
+
+def _prepares(timeline: Timeline, event: int) -> bool:
+    """True if the event prepares a run. In a large model this moves groups to their final addresses."""
+    span, _ = timeline.place(event)
+    return span is not None and span.runs and event == span.first + 1
+
+
+def is_cycle(timeline: Timeline, event: int) -> bool:
+    """True if the event is a cycle, and not a command or what prepares a run."""
+    span, _ = timeline.place(event)
+    return span is not None and span.runs and event > span.first + 1
+
+
+def explain_write(timeline: Timeline, event: int, place: Place) -> Iterator[str]:
+    """Lines on the cycle, pass, routine and line that gave a number its present value."""
+    now, what = find_last_hit(timeline, event, WordChange(place))
+    if not what:
+        value = format_number(place.value(timeline.at(event).h))
+        yield f"{place.name} has been {value} since the {_first(timeline)}"
+        return
+    yield what
+    yield describe_event(timeline, now)
+    if is_cycle(timeline, now):
+        trace = CycleTrace(timeline.at(now - 1), timeline.laws)
+        for k in trace.writes_to(trace.state.h, place.part, place.at):
+            one = trace.accesses[k]
+            yield f"  {_written(one)} in {one.place}, {describe_call(timeline, now, one)}"
+
+
+def explain_write_within(timeline: Timeline, event: int, trace: CycleTrace, place: Place) -> Iterator[str]:
+    """Lines on the writes of a number in the cycle after `event`, up to the present write of `trace`."""
+    done = trace.writes[: trace.done]
+    last = done[-1] if done else -1
+    for k in trace.writes_to(trace.state.h, place.part, place.at):
+        if k <= last:
+            one = trace.accesses[k]
+            work = describe_call(timeline, event + 1, one)
+            yield f"{place.name}: {_written(one)} in {one.place}, {work}, within this cycle"
+
+
+def explain_birth(timeline: Timeline, event: int, address: int) -> Iterator[str]:
+    """Lines on how the group at an address was created, and what was there before."""
+    atlas = Atlas(timeline.at(event).h)
+    span = atlas.span(address)
+    if span.kind not in KINDS:
+        raise ValueError(f"{address} is in no group, but in {called(atlas, span)}")
+    now, what = find_last_hit(timeline, event, GroupBirth(span.kind, span.first))
+    if not what:
+        yield f"{span.name} has been there since the {_first(timeline)}"
+        return
+    if what == RENUMBERED:
+        yield from (what, describe_event(timeline, now))
+        return
+    yield f"{what} {describe_event(timeline, now)}"
+    before = Atlas(timeline.at(now - 1).h)
+    if span.first < before.free:
+        yield f"before that, word {span.first} was in {called(before, before.span(span.first))}"
+    else:
+        yield f"before that, word {span.first} had not been used"
+    if is_cycle(timeline, now):
+        trace = CycleTrace(timeline.at(now - 1), timeline.laws)
+        for k in trace.writes_to(trace.state.h, "ia", span.first - 1)[-1:]:
+            one = trace.accesses[k]
+            yield f"  by {one.place}, {describe_call(timeline, now, one)}"
+
+
+def explain_value(timeline: Timeline, event: int, place: Place) -> Iterator[str]:
+    """Lines on the writes that gave a value, each with the numbers that it was computed from."""
+    now, what = find_last_hit(timeline, event, WordChange(place))
+    if not what or not is_cycle(timeline, now):
+        yield from explain_write(timeline, event, place)
+        return
+    before = timeline.at(now - 1)
+    h, trace = before.copy().h, CycleTrace(before, timeline.laws)
+    yield f"{what}, {describe_event(timeline, now)}"
+    for k in trace.writes_to(h, place.part, place.at):
+        one = trace.accesses[k]
+        yield f"{_written(one)} by {describe_call(timeline, now, one)} in {one.place}, from"
+        yield from _origins(h, trace, k, place)
+
+
+def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterator[str]:
+    """The reals that a write was computed from, those of the group at work first."""
+    atlas = Atlas(h)
+    own: list[str] = []
+    others: list[str] = []
+    for one in trace.origins(number):
+        source = number_of(atlas, one.part, one.at)
+        if one.part == "ia" or source.name == place.name:
+            continue
+        unit = f" {source.unit}" if source.unit else ""
+        mine = source.name.partition(".")[0].endswith(f"@{one.work.group}")
+        (own if mine else others).append(f"    {source.name} = {format_number(one.after.item())}{unit}")
+    origins = own + others
+    yield from origins[:MANY]
+    if len(origins) > MANY:
+        yield f"    and {len(origins) - MANY} more"
+
+
+def _written(one: Access) -> str:
+    before, after = one.before.item(), one.after.item()
+    if before == after:
+        return f"{format_number(after)} again"
+    if isinstance(after, float):
+        return f"{format_number(before)} -> {format_number(after)} ({after - before:+.6g})"
+    return f"{format_number(before)} -> {format_number(after)}"
+
+
+def describe_call(timeline: Timeline, event: int, one: Access) -> str:
+    """The pass and the group at work, as text."""
+    work = one.work
+    if work.group == 0:
+        return work.of
+    atlas = Atlas(timeline.at(event - 1).h)
+    known = 1 <= work.group < atlas.free and atlas.span(work.group).first == work.group
+    name = called(atlas, atlas.span(work.group)) if known else str(work.group)
+    return f"{work.of}, {work.routine} of {name}"
+
+
+def _first(timeline: Timeline) -> str:
+    return "beginning" if timeline.earliest == 0 else f"event {timeline.earliest}, the first that is known"

@@ -1,0 +1,56 @@
+"""Constitutive number 1: a spring normal to the contact, one along it, and Coulomb friction; report 2.6.
+
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0, and what the shear spring stored is lost
+    dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
+
+The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
+apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
+Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
+stored forces; it vanishes along a contact that slips and in an open one.
+
+When the law is called, the contact holds its new overlap, and still the forces and the shear displacement
+before the step. The law returns those after it and the forces of the dashpots.
+"""
+
+from __future__ import annotations
+
+from udec_ia.heap.accessors import Memory, getr, real
+from udec_ia.heap.jit import inlined
+from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, strength
+from udec_ia.layout import offsets as g
+
+
+@inlined
+def lose_shear(h: Memory, ic: int, fs: float) -> None:
+    """Contact `ic` opens: friction takes what its shear spring held, on the way to the shear force `fs`."""
+    held = getr(h, ic, g.KCFS)
+    if held != 0:
+        ks = joint_of(h, ic).ks
+        h.cd[g.WFRIC] += held * fs / (ks + ks)
+
+
+@inlined
+def coulomb_forces(
+    h: Memory, ic: int, joint: Joint, before: float, closing: float, sliding: float
+) -> tuple[float, float, float, float, float]:
+    """Forces of contact `ic`, which overlaps, after one step, its shear displacement, and of its dashpots.
+
+    Normal and shear force; displacement; normal and shear force. joint: of the contact. before: the overlap
+    before the step; that after it is in the contact. closing, sliding: relative velocities along the normal
+    and across.
+    """
+    zero, kn, ks = real(h, 0.0), joint.kn, joint.ks
+    held, dus = getr(h, ic, g.KCFS), sliding * h.cr[g.TDEL]
+    fn = getr(h, ic, g.KCFN) + kn * (getr(h, ic, g.KCN) - max(before, zero))
+    fs = held + ks * dus
+    if fn <= zero:
+        lose_shear(h, ic, fs)
+        fn, fs = zero, zero
+    limit = strength(joint, fn)
+    dashpot = h.cr[g.BETA] * ks * sliding
+    if abs(fs) > limit:
+        slip = (abs(fs) - limit) / ks
+        h.cd[g.WFRIC] += slip * (limit + (held if fs > zero else -held)) * real(h, 0.5)
+        fs = limit if fs > zero else -limit
+        dashpot = zero
+    return fn, fs, getr(h, ic, g.KCS) + dus, h.cr[g.BETA] * kn * closing, dashpot

@@ -1,0 +1,112 @@
+"""Joint properties of a contact: its material, stiffness, strength and stored energy, and whether it slips.
+
+A contact belongs to a joint, and takes the properties of that from its material. Which material that is
+follows from one rule, in `assign_material`, whenever a contact is created, hooked to other blocks, or one of
+its blocks changes. Whoever needs the properties asks `joint_of` for them: the laws, the energy account, the
+time-step, the diagnoses. So a rule by which two materials make a joint, or a stiffness per length, has one
+place to go to.
+
+Residual strength and dilation are of no concern to number 1 (coulomb_joint.py). The user's laws find them
+with all other properties in the Material that they are called with, which is that of `material_of`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
+from udec_ia.heap.jit import inlined, kernel
+from udec_ia.layout import offsets as g
+
+JOINT_ARRAYS = ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")  # properties of joints
+
+
+class Joint(NamedTuple):
+    """Properties of one joint: stiffnesses (N/m2), cohesion (N/m) and friction (a tangent)."""
+
+    kn: Any
+    ks: Any
+    cohesion: Any
+    friction: Any
+
+
+@kernel
+def assign_material(h: Memory, ic: int) -> None:
+    """Material and constitutive number of contact `ic`: those of its first block, KB1 (report 4.3)."""
+    ib = iget(h, ic, g.KB1)
+    puti(h, ic, g.KCM, iget(h, ib, g.KMAT))
+    puti(h, ic, g.KCC, iget(h, ib, g.KCONS))
+
+
+@inlined
+def material_of(h: Memory, ic: int) -> int:
+    """Material number of contact `ic`."""
+    return iget(h, ic, g.KCM)
+
+
+@inlined
+def joint_of_material(h: Memory, mat: int) -> Joint:
+    """Properties of a joint of material `mat`."""
+    m = mat - 1
+    return Joint(h.cr[g.AKN + m], h.cr[g.AKS + m], h.cr[g.COH + m], h.cr[g.AMU + m])
+
+
+@inlined
+def joint_of(h: Memory, ic: int) -> Joint:
+    """Properties of the joint of contact `ic`."""
+    return joint_of_material(h, material_of(h, ic))
+
+
+@inlined
+def stiffest(joint: Joint) -> Any:
+    """The greater one of the stiffnesses of a joint, N/m2."""
+    return max(joint.kn, joint.ks)
+
+
+@inlined
+def strength(joint: Joint, fn: float) -> Any:
+    """Shear strength (N/m) of a joint under the normal force `fn`: c + f Fn (Coulomb)."""
+    return joint.cohesion + joint.friction * fn
+
+
+@inlined
+def is_stuck(h: Memory, ic: int) -> bool:
+    """True if contact `ic` does not slip: it bears no force, or a shear force below its strength."""
+    fn = getr(h, ic, g.KCFN)
+    return abs(getr(h, ic, g.KCFS)) < strength(joint_of(h, ic), fn) or fn == 0
+
+
+@inlined
+def twice_stored(h: Memory, ic: int, fn: float, fs: float) -> tuple[Any, Any]:
+    """Twice the elastic energy (J/m) of a normal and of a shear force in the joint of contact `ic`.
+
+    A stiffness of 0 stores nothing.
+    """
+    joint, normal, shear = joint_of(h, ic), real(h, 0.0), real(h, 0.0)
+    if joint.kn > 0:
+        normal = fn * fn / joint.kn
+    if joint.ks > 0:
+        shear = fs * fs / joint.ks
+    return normal, shear
+
+
+@kernel
+def strengths(h: Memory, contacts: Any) -> Any:
+    """Shear strengths (N/m, 64-bit reals) of the contacts at the addresses `contacts`, under their forces."""
+    found = np.empty(len(contacts), np.float64)
+    for k in range(len(contacts)):
+        found[k] = strength(joint_of(h, contacts[k]), np.float64(getr(h, contacts[k], g.KCFN)))
+    return found
+
+
+def joints_of_materials(h: Memory, materials: Any) -> Joint:
+    """Properties of the joints of material numbers, as arrays of 64-bit reals; not for kernels."""
+    m = np.asarray(materials) - 1
+    return Joint(*(np.asarray(h.cr[k + m], np.float64) for k in (g.AKN, g.AKS, g.COH, g.AMU)))
+
+
+def joints_of(h: Memory, contacts: Any) -> Joint:
+    """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels."""
+    return joints_of_materials(h, integers(h, contacts, g.KCM))

@@ -1,0 +1,137 @@
+"""The laws of a model: those that its user has given, and those that a restart file says it was made with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
+from udec_ia.heap.array import MainArray
+from udec_ia.heap.interpreting import mode
+from udec_ia.kernels.constitutive.block_laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
+from udec_ia.kernels.constitutive.joint_properties import material_of
+from udec_ia.kernels.constitutive.law_call import FIRST, LAST, Laws
+from udec_ia.layout import offsets as g
+from udec_ia.layout.material import ARRAYS, Material
+from udec_ia.ops.common.limits import NCONS, NMAT
+from udec_ia.ops.common.soft import soft
+from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
+from udec_ia.printable import printable
+
+Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 of the text of the file
+
+
+class Bound(NamedTuple):
+    """The laws as kernels take them.
+
+    blocks: None if all blocks are rigid, as in `soft`, so that they need no machine code of their own.
+    joints: None if no contact follows a law of its own (kernels.constitutive.joint_laws). book: where they
+    come from. own_blocks: True if a deformable block follows one.
+    """
+
+    blocks: Laws | None
+    joints: Laws | None
+    book: LawBook
+    own_blocks: bool
+
+
+class LawBook:
+    """The laws of one model, by name.
+
+    recorded: those that the model was calculated with before it was saved.
+    """
+
+    def __init__(self, given: Given | Iterable[Given] | None = None) -> None:
+        self.given = read_laws(given)
+        self.recorded: Record = {}
+        self._calls = np.zeros(len(RESULTS), np.int64)
+        self._materials = np.zeros((NMAT, len(ARRAYS)))
+
+    @property
+    def block_laws(self) -> list[int]:
+        """Constitutive numbers for which a block law is given."""
+        return [n for n in NUMBERS if f"cl{n}" in self.given]
+
+    def record(self) -> Record:
+        """What a restart file says of the laws."""
+        return self.recorded | {name: (law.origin, law.digest) for name, law in self.given.items()}
+
+    def note(self, recorded: Mapping[str, tuple[str, str]]) -> list[str]:
+        """Take note of the laws that a state was made with. Returns a warning for each that has changed."""
+        self.recorded = dict(recorded)
+        return [
+            f"{name} of {self.given[name].origin} differs from {name} of {printable(origin)}, "
+            "which the restart file was made with"
+            for name, (origin, digest) in recorded.items()
+            if name in self.given and self.given[name].digest != digest
+        ]
+
+    def bind(self, array: MainArray) -> Bound:
+        """The laws and materials for a CYCLE of the model in `array`; see `pack`.
+
+        Error 9 if a constitutive number is in use for which there is no law, or not the one it was used with.
+        A law that a restart file names is asked for first: it is known what is to be given.
+        """
+        user = np.zeros((2, NCONS + 1), np.int64)
+        numbers_in_use(array.h, user)
+        wanted = [
+            (f"{law}{n}", n, int(user[where, n]))
+            for where, law in ((AT_JOINTS, "clj"), (IN_BLOCKS, "cl"))
+            for n in NUMBERS
+            if user[where, n]
+        ]
+        for law, n, group in sorted(wanted, key=lambda one: one[0] not in self.recorded):
+            self._demand(array, n, law, group)
+        laws = self.pack(array)
+        own = [n for n in range(FIRST, NCONS + 1) if n > LAST or f"clj{n}" in self.given]
+        followed = user[AT_JOINTS, own].any()
+        for one in self.given.values():
+            one.noted[:] = np.nan
+        own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
+        return Bound(laws if soft(array) else None, laws if followed else None, self, own_blocks)
+
+    def pack(self, array: MainArray) -> Laws:
+        """The laws as kernels take them, with the materials of `array` as they are now.
+
+        They are valid as long as this object lives, and until the next call.
+        """
+        rows = _materials(array)
+        given = [self.given.get(name) for name in RESULTS]
+        if mode.python:
+            return Laws(tuple(law.python if law else 0 for law in given), [Material(*row) for row in rows])
+        self._calls[:], self._materials[:] = [law.address if law else 0 for law in given], rows
+        return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
+
+    def _demand(self, array: MainArray, n: int, law: str, group: int) -> None:
+        """Error 9 if block or contact `group`, of number `n`, should follow `law` and cannot."""
+        if law in self.given:
+            return
+        who = f"{'contact' if iget(array.h, group, HEAD) == g.MCON else 'block'}@{group}"
+        if law in self.recorded:
+            origin = self.recorded[law][0]
+            detail = f"{who} follows {law} of {origin}, which is not given"
+            raise UdecError(9, detail, f"give it again: --constitutive {origin}", group=group)
+        if not {f"cl{n}", f"clj{n}"} & self.given.keys():
+            detail = f"{who} has number {n}, for which there is no law"
+            advice = f"use number 1, or give a file with a function {law}: --constitutive law.py"
+            raise UdecError(9, detail, advice, group=group)
+
+    def failure(self, array: MainArray, group: int) -> UdecError:
+        """Error 35 for the law of block or contact `group`."""
+        h = array.h
+        if iget(h, group, HEAD) == g.MCON:
+            who, law, material = f"contact@{group}", f"clj{iget(h, group, g.KCC)}", material_of(h, group)
+        else:
+            who, law, material = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
+        detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[g.MCTOT])}"
+        raised, advice = self.given[law].raised(Material(*_materials(array)[material - 1]))
+        return UdecError(35, detail + raised, advice, group=group)
+
+
+def _materials(array: MainArray) -> NDArray[np.float64]:
+    """One row a material: what its Material holds."""
+    return np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)
