@@ -129,6 +129,8 @@ def _check_inertia(state: State, o: Outlines, rows: Numbers, area: Numbers, far:
     last = here[o.before]
     cross = here[:, 0] * last[:, 1] - here[:, 1] * last[:, 0]  # clockwise: positive
     second = np.add.reduceat(cross * (here**2 + here * last + last**2).sum(axis=1), o.first) / 12
+    off = np.add.reduceat(cross[:, None] * (here + last), o.first) / (6 * area[:, None])
+    second -= area * (off**2).sum(axis=1)
     mass, inertia = (state.column("block", name)[rows] for name in ("KBM", "KBI"))
     due = mass * second / area
     share = 1e-3 + 20 * o.slack * far / area

@@ -115,7 +115,7 @@ def stretch(atlas: Atlas, text: str) -> tuple[int, int]:
 def _words(atlas: Atlas, name: PlaceName) -> tuple[int, int]:
     """First and last address of a place in IA()."""
     if not name.address and name.field:
-        raise PlaceError(f"{name.field} is in the common block", "give an address, or a group as in block@88")
+        raise PlaceError(f"{name.field} names no words of IA()", "give 412, block@88 or block@88.KXD")
     if not name.kind:
         return name.address, name.address
     span = _span(atlas, name)
