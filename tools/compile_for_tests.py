@@ -32,9 +32,9 @@ def compile_for(build: str) -> str:
 
     from udec_ia import Model, UdecError
     from udec_ia.checker import check_links
-    from udec_ia.heap.interpreting import Sparing
+    from udec_ia.compiling.interpreting import InterpretWhenSmall
 
-    Sparing.at_once = True
+    InterpretWhenSmall.always_compiled = True
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]
     soft = [soft_scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in SOFT]
     for model in rigid[-1], soft[-1]:
@@ -58,7 +58,7 @@ def compile_for(build: str) -> str:
 def main() -> None:
     """Compile for all schemes in as many processes as the first argument says."""
     os.environ.setdefault("UDEC_CACHE", str(ROOT / ".udec_cache"))  # where tests/conftest.py has it
-    from udec_ia.heap.words import ALL_SCHEMES
+    from udec_ia.heap.word_scheme import ALL_SCHEMES
 
     start = monotonic()
     with multiprocessing.get_context("spawn").Pool(int(sys.argv[1]), maxtasksperchild=1) as pool:

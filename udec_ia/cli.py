@@ -69,8 +69,8 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
         print(f"udec: --out {printable(str(args.out))}: files cannot be written there", file=sys.stderr)
         return MISUSE
-    from udec_ia.deck.interactive import converse, history, history_file
-    from udec_ia.deck.monitor import run_deck
+    from udec_ia.deck.command_monitor import run_deck
+    from udec_ia.deck.interactive_session import converse, history, history_file
     from udec_ia.model import Model
 
     out = args.out or Path()
@@ -152,7 +152,7 @@ def _last_of_output() -> None:
 
 def _checked() -> bool:
     """Choose the checked build; False if it is too late for that."""
-    loaded = sys.modules.get("udec_ia.heap.checked")
+    loaded = sys.modules.get("udec_ia.compiling.build_choice")
     if loaded is None:
         os.environ["UDEC_CHECKED"] = "1"
     return loaded is None or bool(loaded.CHECKED)

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
+from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.files import last_number
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import compile_seconds
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.log import Log, Step
 from udec_ia.ops.run.solution import in_short

@@ -27,15 +27,13 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
+from udec_ia.compiling.build_choice import CHECKED, forget_kinds
+from udec_ia.compiling.interpreting import mode
 from udec_ia.counting import counted
-from udec_ia.errors import UdecError
+from udec_ia.errors import UdecError, WrongAddress
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.checked import CHECKED
-from udec_ia.heap.guarding import Astray
-from udec_ia.heap.interpreting import mode
-from udec_ia.heap.kinds import forget
-from udec_ia.heap.lent import Writes
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.tracked_arrays import Writes
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.log import Step
@@ -302,7 +300,7 @@ class Undo:
         before = self.before
         if before is None:
             return
-        refused = isinstance(error, UdecError) and not isinstance(error, Astray)
+        refused = isinstance(error, UdecError) and not isinstance(error, WrongAddress)
         if refused and self.settled and not mode.python:  # compiled passes have stopped where they may
             return
         changed = self.covered and not (
@@ -333,6 +331,6 @@ class Undo:
         """Put the copy back, into an array that may have grown since."""
         size, used = int(h.ci[g.MTOP]), int(self.numbers[0][g.MFREE]) - 1
         h.ia[:used] = self.words[:used]
-        forget(h.ia)
+        forget_kinds(h.ia)
         put_common(h, self.numbers)
         h.ci[g.MTOP] = size

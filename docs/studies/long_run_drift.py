@@ -23,7 +23,7 @@ sys.path[:0] = [str(ROOT)]
 
 from udec_ia import Model  # noqa: E402
 from udec_ia.heap.accessors import getr, putr  # noqa: E402
-from udec_ia.heap.words import ALL_SCHEMES  # noqa: E402
+from udec_ia.heap.word_scheme import ALL_SCHEMES  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 
 LOOKS, EVERY = 100, 100  # looks at the energy, and cycles between two of them

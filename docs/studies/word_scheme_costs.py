@@ -20,7 +20,7 @@ from curve_picture import Curves, draw
 from word_scheme_scenes import SCENES, Run, losses, parting, rest, run, times, way
 
 from udec_ia import Model
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE, NBLK
 
 DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"

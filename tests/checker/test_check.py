@@ -15,9 +15,9 @@ from support.handmade_map import ROUNDING, SIDE, two_blocks
 from udec_ia.checker import Violation, check
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.memory import find, lose
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, read_table
@@ -353,8 +353,8 @@ def test_contacts_out_of_order_are_named() -> None:
         putr(h, corner, g.KXP, x)
         putr(h, corner, g.KXCP, x + inward)
     putr(h, upper, g.KBRO, float(np.hypot(0.2, 0.5)))
-    putr(h, upper, g.KBM, 0.4 * DENSITY)
-    putr(h, upper, g.KBI, 0.4 * DENSITY * (0.4**2 + 1.0) / 12)
+    putr(h, upper, g.KBM, 800.0)
+    putr(h, upper, g.KBI, 800.0 * (0.4**2 + 1.0) / 12)
     relink(h, lower, [low[0], low[1], left, right, low[2], low[3]])
     for contact, x in ((left, 0.3 + ROUNDING), (right, 0.7 - ROUNDING)):
         puti(h, contact, g.KCCOD, 3)

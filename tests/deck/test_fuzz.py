@@ -12,7 +12,7 @@ from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray, variable
+from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field, read_table
 from udec_ia.restart import save

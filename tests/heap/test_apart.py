@@ -9,21 +9,21 @@ import numpy as np
 import pytest
 from support.checked_build_marks import without_groups
 
-from udec_ia.heap import plain
+from udec_ia.compiling import build_choice
+from udec_ia.compiling.build_choice import DISABLED
+from udec_ia.compiling.kernel_decorators import kernel, outlined
+from udec_ia.compiling.outlined_calls import call_entry, entry, entry_if
 from udec_ia.heap.accessors import Memory, iget, int64, puti
-from udec_ia.heap.apart import call_entry, entry, entry_if
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.jit import apart, kernel
-from udec_ia.heap.loading import DISABLED
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME, Scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME, Scheme
 from udec_ia.layout import offsets as g
 
 with_our_linking = pytest.mark.skipif(
-    DISABLED or plain.wanted(), reason="nothing is compiled, or without our linking"
+    DISABLED or build_choice.plain_wanted(), reason="nothing is compiled, or without our linking"
 )
 
 
-@apart
+@outlined
 def count_down(h: Memory, iad: int) -> bool:
     """Take 1 from the word at `iad`; True as long as something is left."""
     puti(h, iad, g.KB, iget(h, iad, g.KB) - 1)
@@ -68,8 +68,8 @@ def test_there_is_one_for_each_word_scheme() -> None:
 def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("udec_ia.heap.kernel.cache_folder", lambda: tmp_path)
-    seldom = apart(count_down.whole.py_func)
+    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    seldom = outlined(count_down.whole.py_func)
     one, other = (MainArray(ALL_SCHEMES[build]).h for build in ("i32r64", "i32r32"))
     assert entry_if(False, seldom, one, 0) == 0
     where = entry_if(True, seldom, one, 0)
@@ -81,7 +81,7 @@ def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
 @without_groups
 def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The machine code of the caller has no copy of it. Of what it finds on disk numba shows nothing."""
-    monkeypatch.setattr("udec_ia.heap.kernel.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
     taking, calling = (kernel(one.whole.py_func) for one in (takes_it_in, calls))
     h = MainArray(ALL_SCHEMES[DEFAULT_SCHEME]).h
     puti(h, 10, g.KB, 1)

@@ -24,7 +24,7 @@ THERE = {"a block": "a block", "junk": "a group that was given back", "in a bloc
 CHOSEN = """
 import udec_ia.cli
 udec_ia.cli.main(["--checked", "a.dat"])
-from udec_ia.heap.checked import CHECKED
+from udec_ia.compiling.build_choice import CHECKED
 print(CHECKED)
 """
 

@@ -12,8 +12,8 @@ import pytest
 from numba.core import config
 from support.handmade_map import two_blocks
 
-from udec_ia.heap import compiling
-from udec_ia.heap.jit import kernel
+from udec_ia.compiling import compile_time
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.model import Model
 from udec_ia.output.report import Report
 
@@ -28,10 +28,10 @@ def thrice(x: Any) -> Any:
 def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
     """The account, as if nothing had ever been compiled."""
 
-    class Account(compiling._Account):
+    class Account(compile_time._Account):
         seconds = 0.0
 
-    monkeypatch.setattr(compiling, "_Account", Account)
+    monkeypatch.setattr(compile_time, "_Account", Account)
     Account.ended = float("-inf")
     return Account
 
@@ -40,7 +40,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
 def clock(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
     """A clock that goes when it is told to."""
     now = [100.0]
-    monkeypatch.setattr(compiling, "monotonic", lambda: now[0])
+    monkeypatch.setattr(compile_time, "monotonic", lambda: now[0])
     return now
 
 
@@ -49,39 +49,39 @@ def test_what_is_compiled_is_told_and_what_is_found_on_disk_is_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, quiet: type
 ) -> None:
     """Once for all that is compiled one after the other, and again after a while without."""
-    monkeypatch.setattr("udec_ia.heap.kernel.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
     first: Any = kernel(thrice)
     assert [first(x) for x in (np.int32(2), np.float64(2), np.int32(3))] == [6, 6, 9]
     assert caplog.messages == [SAYS]
-    spent = compiling.compile_seconds()
+    spent = compile_time.compile_seconds()
     assert spent > 0
-    quiet.ended -= 2 * compiling.STRETCH  # type: ignore[attr-defined]
+    quiet.ended -= 2 * compile_time.STRETCH  # type: ignore[attr-defined]
     again: Any = kernel(thrice)
     assert [again(x) for x in (np.int32(2), np.float64(2))] == [6, 6]
-    assert (caplog.messages, compiling.compile_seconds()) == ([SAYS], spent)
+    assert (caplog.messages, compile_time.compile_seconds()) == ([SAYS], spent)
     assert again(np.float32(2)) == 6
     assert caplog.messages == [SAYS, SAYS]
-    assert compiling.compile_seconds() > spent
+    assert compile_time.compile_seconds() > spent
 
 
 def test_the_clock_of_a_run_stands_still_meanwhile(clock: list[float]) -> None:
-    start = compiling.working_time()
+    start = compile_time.working_time()
     clock[0] += 1
-    with compiling.compiling():
+    with compile_time.compiling():
         clock[0] += 30
-        assert compiling.working_time() - start == 1
-    with suppress(KeyboardInterrupt), compiling.compiling():
+        assert compile_time.working_time() - start == 1
+    with suppress(KeyboardInterrupt), compile_time.compiling():
         clock[0] += 5
         raise KeyboardInterrupt
     clock[0] += 2
-    assert compiling.working_time() - start == 3
-    assert compiling.compile_seconds() == 35
+    assert compile_time.working_time() - start == 3
+    assert compile_time.compile_seconds() == 35
 
 
 def test_the_rate_is_that_of_the_cycles(clock: list[float]) -> None:
     h, out = two_blocks().h, io.StringIO()
     report = Report(lambda: h, 4000, out, None)
-    with compiling.compiling():
+    with compile_time.compiling():
         clock[0] += 60
     clock[0] += 4
     report(4000)
@@ -90,10 +90,10 @@ def test_the_rate_is_that_of_the_cycles(clock: list[float]) -> None:
 
 
 def test_the_summary_says_what_went_into_compiling(clock: list[float]) -> None:
-    with compiling.compiling():
+    with compile_time.compiling():
         clock[0] += 7
     model = Model()
     assert "compiling" not in model.summary()
-    with compiling.compiling():
+    with compile_time.compiling():
         clock[0] += 12.34
     assert model.summary().endswith(" s, 12.3 s of it compiling")

@@ -12,12 +12,12 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from naive.memory import Memory as NaiveMemory
 from support.checked_build_marks import with_any_offset, without_groups
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, size_of
-from udec_ia.heap.array import LINE, MainArray
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find, lose, room
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.find_lose import find, lose, room
+from udec_ia.heap.main_array import LINE, MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 

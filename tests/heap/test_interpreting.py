@@ -12,11 +12,11 @@ from support.checked_build_marks import without_groups
 from support.interpreted_kernels import both_ways
 
 from udec_ia import Model
+from udec_ia.compiling.interpreting import interpreted, mode, observe
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import interpreted, mode, observe
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook

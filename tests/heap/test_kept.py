@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from numba.core import config
 
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.kept import KeptCode
+from udec_ia.compiling.code_cache import CodeFile
+from udec_ia.compiling.kernel_decorators import kernel
 
 ROOT = Path(__file__).parents[2]
 SIGNATURES = [("int32", "float64"), ("int64", "float64")]
 
 
-def kept(folder: Path) -> KeptCode:
-    return KeptCode(str(folder), "twice-1.py311", None)
+def kept(folder: Path) -> CodeFile:
+    return CodeFile(str(folder), "twice-1.py311", None)
 
 
 def test_what_is_kept_is_found_by_its_types(tmp_path: Path) -> None:
@@ -55,8 +55,8 @@ def thrice(x: Any) -> Any:
 COPY = """
 import sys
 sys.path.insert(0, sys.argv[1])
-from udec_ia.heap.words import scheme
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.tolerances import tolset
 tolset(MainArray(scheme("i32r64")).h, 0.1)
 assert tolset.__wrapped__.__code__.co_filename.startswith(sys.argv[1])
@@ -81,7 +81,7 @@ def test_a_copy_of_the_program_in_another_folder_does_not_compile_again(tmp_path
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_a_second_process_does_not_compile_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A kernel that was compiled before is read from its file, one for each type."""
-    monkeypatch.setattr("udec_ia.heap.kernel.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
     for hits in (0, 1):
         compiled: Any = kernel(thrice)
         for number in (np.int32(2), np.float64(2)):
@@ -92,7 +92,7 @@ def test_a_second_process_does_not_compile_again(tmp_path: Path, monkeypatch: py
 
 TWICE = """
 import sys
-from udec_ia.heap.jit import kernel
+from udec_ia.compiling.kernel_decorators import kernel
 @kernel
 def twice(x: float) -> float:
     return x + x

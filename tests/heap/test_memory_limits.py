@@ -14,7 +14,7 @@ import pytest
 from support.mechanics_scenes import colliding
 
 from udec_ia import Model, UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import AT_BLOCKS, JPHASE, MCTOT, MFREE, MTOP, NSPARE
 
 CYCLES = 2000

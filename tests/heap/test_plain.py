@@ -11,7 +11,7 @@ import numba
 import pytest
 from numba.core import config
 
-from udec_ia.heap import plain
+from udec_ia.compiling import build_choice
 
 ROOT = Path(__file__).parents[2]
 ALONE = ROOT / "tests" / "support" / "lone_block_script.py"
@@ -47,6 +47,6 @@ def test_a_release_that_was_not_tried_is_not_built_upon(
 ) -> None:
     monkeypatch.delenv("UDEC_LINK", raising=False)
     monkeypatch.setattr(numba, "__version__", release)
-    assert plain.wanted() == is_wanted
+    assert build_choice.plain_wanted() == is_wanted
     monkeypatch.setenv("UDEC_LINK", "plain")
-    assert plain.wanted()
+    assert build_choice.plain_wanted()

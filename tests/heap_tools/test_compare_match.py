@@ -14,8 +14,8 @@ from support.replayable_steps import blocks
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.heap_tools.group_matching import Matching
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.heap_tools.rewrite_heap import rewrite

@@ -16,8 +16,8 @@ from test_look_damage import spoiled
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.comparison_report import diff, raw
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.heap_tools.state_comparison import compare, reals_apart, tolerance

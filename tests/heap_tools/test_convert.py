@@ -23,8 +23,8 @@ from udec_ia import Model
 from udec_ia.checker import check
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.words import ALL_SCHEMES, Scheme, scheme
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme, scheme
 from udec_ia.heap_tools.convert_word_scheme import convert, settle
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.heap_tools.rewrite_heap import rewrite

@@ -11,8 +11,8 @@ from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget, puti
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g

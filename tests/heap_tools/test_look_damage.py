@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from support.every_group_kind import every_kind
 
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_dump import common, dump
 from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value

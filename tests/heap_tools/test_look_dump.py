@@ -12,8 +12,8 @@ from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_dump import common, dump
 from udec_ia.heap_tools.heap_lookup import what
 from udec_ia.layout import offsets as g

@@ -15,8 +15,8 @@ from support.every_group_kind import GROUPS, every_kind
 from udec_ia import Model
 from udec_ia.checker import check
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.layout import offsets as g

@@ -17,8 +17,8 @@ from udec_ia import Model
 from udec_ia.checker import check
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
-from udec_ia.heap import walks
-from udec_ia.heap.interpreting import Sparing, interpreted
+from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
+from udec_ia.heap import untrusted_lists
 from udec_ia.kernels.audit import faces
 from udec_ia.kernels.audit.outlines import in_polygon, in_rounded
 from udec_ia.layout import offsets as g
@@ -58,7 +58,7 @@ def test_lists_are_followed_as_far_as_they_can_be(links: list[int], firsts: list
             iad = links[iad + STEP] if there else 0
         lengths.append(len(expected) - before)
     n, after = both(
-        walks.chains,
+        untrusted_lists.chains,
         words,
         np.array(firsts, np.int64),
         STEP,
@@ -114,7 +114,7 @@ def test_gaps_between_groups(laid: list[tuple[int, int]], rest: int) -> None:
         if iad != end:
             expected.append([before, end, iad])
         before, end = iad, iad + size
-    n, after = both(walks.gaps, words, kind_at, sizes, 1, RATIO, free, np.zeros((20, 3), np.int64))
+    n, after = both(untrusted_lists.gaps, words, kind_at, sizes, 1, RATIO, free, np.zeros((20, 3), np.int64))
     assert after[-1][:n].tolist() == expected
 
 
@@ -164,7 +164,7 @@ def test_lists_around_blocks_close_or_are_left(along: tuple[int, ...], closes: b
         words[iad - 1], words[iad + STEP] = g.MCOR, to
     limits, steps = (36, 36, RATIO), (STEP, STEP, 2, 3, 2, 3)
     room = np.zeros(18, np.int32), np.zeros(18, np.int64), np.zeros(1, bool)
-    n, after = both(walks.closed_lists, words, np.array([1]), limits, steps, *room)
+    n, after = both(untrusted_lists.closed_lists, words, np.array([1]), limits, steps, *room)
     assert after[-1].tolist() == [closes]
     assert after[-2][:n].tolist() == (list(along[:-1]) if closes else [])
 
@@ -175,7 +175,7 @@ def test_the_checker_says_the_same_in_both_forms(
     build: str, module: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of states in which a few words or reals are wrong, whatever these are."""
-    monkeypatch.setattr(Sparing, "at_once", True)
+    monkeypatch.setattr(InterpretWhenSmall, "always_compiled", True)
     array = module.play(3, Model(build), cycles=(2, 8)).model.array
     random, h, kept = np.random.default_rng(2), array.h, array.h.ia.copy()
     top, told = int(h.ci[g.MFREE]) - 1, 0

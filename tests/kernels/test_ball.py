@@ -18,7 +18,7 @@ import pytest
 from support.mechanics_scenes import sound
 
 from udec_ia import Model
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout.table import read_table
 
 DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"

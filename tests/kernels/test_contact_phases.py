@@ -11,9 +11,9 @@ from support import random_scenes as scenes
 from support.interpreted_kernels import both_ways
 
 from udec_ia import Model
+from udec_ia.compiling.interpreting import interpreted, observe
 from udec_ia.heap.accessors import int64, size_of
-from udec_ia.heap.interpreting import interpreted, observe
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.contact.ford import ford
 from udec_ia.kernels.energy.contacts import note_contact
 from udec_ia.layout import offsets as g

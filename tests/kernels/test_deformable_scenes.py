@@ -16,7 +16,7 @@ from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
 
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout.offsets import JUNK, MRIG, NSOFT
 from udec_ia.model import Model
 

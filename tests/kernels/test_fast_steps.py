@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from udec_ia import Model, UdecError
+from udec_ia.compiling.outlined_calls import entry
 from udec_ia.heap.accessors import putr
-from udec_ia.heap.apart import entry
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.drive import passes
 from udec_ia.layout import offsets as g

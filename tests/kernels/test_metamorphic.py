@@ -19,7 +19,7 @@ from naive.relocate import differences, essence, relocate
 from support.every_group_kind import every_kind
 
 from udec_ia import Model
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.heap_tools.convert_word_scheme import convert
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.layout import offsets as g

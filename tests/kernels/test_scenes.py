@@ -17,7 +17,7 @@ from support.random_scenes import play
 from support.replayable_steps import Scene, Step, blocks, outline, replay
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout.offsets import ALPHA, DTOL, GRAVX, GRAVY, JUNK, MCTOT, NCON, NVIRT, TDEL
 from udec_ia.model import Model
 
@@ -304,7 +304,7 @@ def test_twenty_cycles_are_seven_and_thirteen(seed: int) -> None:
 def test_growing_word_by_word_does_not_change_a_bit(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The array starts with room for next to nothing."""
     scene = play(seed, cycles=(5, 20))
-    monkeypatch.setattr("udec_ia.heap.array.FIRST_SIZE", 64)
+    monkeypatch.setattr("udec_ia.heap.main_array.FIRST_SIZE", 64)
     assert again(scene, Model()) == []
 
 

@@ -13,9 +13,9 @@ from naive.layout import ONE_INTEGER_TO_A_REAL, TWO_INTEGERS_TO_A_REAL, count_wo
 
 from offsets.generate import DRAFT, LAYOUTS, NAMES, files, layouts_text, names_text, stale
 from offsets.generate import TABLE as SOURCE
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets
 from udec_ia.layout.codes import spelled
 from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, Table, TableError, lay_out, parse, read_table
@@ -265,7 +265,7 @@ def test_a_field_before_the_first_group_is_refused() -> None:
 PROBE = """
 from udec_ia.layout.offsets import KX
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.jit import kernel
+from udec_ia.compiling.kernel_decorators import kernel
 
 @kernel
 def probe(h, iad):
@@ -275,11 +275,11 @@ def probe(h, iad):
 SCRIPT = """
 from udec_ia.layout import offsets as g
 from udec_ia.heap.accessors import putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.kernel import cache_folder
-from udec_ia.heap.memory import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.compiling.code_cache import cache_folder
+from udec_ia.heap.find_lose import find
 from udec_ia.heap.probe import probe
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 
 kept = any(cache_folder().rglob("*.nbc"))
 h = MainArray(scheme("i32r64")).h

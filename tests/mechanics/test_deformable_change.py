@@ -22,7 +22,7 @@ from support.mechanics_scenes import at, block, box, model, push, sound
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.verify.grids import fan
 

@@ -14,8 +14,8 @@ from support.mechanics_scenes import G, at, block, no_damping, on_base, push, so
 from test_mechanics_energy import cycle_and_energy
 
 from udec_ia import Model
+from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import UdecError
-from udec_ia.heap.interpreting import interpreted
 from udec_ia.layout.offsets import NERR, WFRIC
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets
 from udec_ia.layout.table import lay_out, read_table
 

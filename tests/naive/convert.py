@@ -11,7 +11,7 @@ from typing import Any
 
 from naive.census import census
 from naive.layout import count_words
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets
 from udec_ia.layout.table import SCHEMES, read_table
 

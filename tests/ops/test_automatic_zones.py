@@ -11,7 +11,7 @@ from support.mechanics_scenes import block, model, sound
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 
 K, G, D = 2e8, 1e8, 0.05

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.language import COMMANDS
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.errors import MESSAGES
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 
 ROOT = Path(__file__).parents[2]
 SQUARE = (0, 0, 0, 1, 1, 1, 1, 0)

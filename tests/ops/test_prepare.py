@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout.offsets import LREADY, MFREE, NCYC, TDEL
 from udec_ia.model import Model
 

@@ -7,8 +7,8 @@ from support.handmade_map import two_blocks
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, puti, putr
-from udec_ia.heap.memory import find, lose
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.output.dump import dump

@@ -21,7 +21,7 @@ from support.handmade_map import ROUNDING, two_blocks
 from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.output.animate import MAX_STATES, Animation
 from udec_ia.output.draw import LARGEST, limits, moved_blocks, scale_for, to_draw

@@ -8,7 +8,7 @@ from support.mechanics_scenes import box, model
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output.printout import LINE, printout

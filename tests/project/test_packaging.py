@@ -155,9 +155,10 @@ def test_the_problems_come_with_the_wheel(installed: Path, tmp_path: Path) -> No
 def test_compiled_kernels_are_kept_outside_the_package(installed: Path, tmp_path: Path) -> None:
     before = files(installed)
     find = (
-        "from udec_ia.heap import accessors, array, memory, words\n"
+        "from udec_ia.heap import accessors, find_lose, main_array, word_scheme\n"
         "from udec_ia.layout.offsets import NVCR\n"
-        "print(accessors.__file__, memory.find(array.MainArray(words.scheme('i32r64')).h, NVCR))"
+        "h = main_array.MainArray(word_scheme.scheme('i32r64')).h\n"
+        "print(accessors.__file__, find_lose.find(h, NVCR))"
     )
     cache = tmp_path / "cache"
     output = run("-c", find, cwd=tmp_path, UDEC_CACHE=str(cache), **away(installed)).split()

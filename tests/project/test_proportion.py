@@ -16,7 +16,7 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.memory_use import heap_map
 from udec_ia.layout import offsets as g

@@ -14,10 +14,10 @@ from support import random_deformable_scenes as soft_scenes
 from support import random_scenes as scenes
 
 from udec_ia import Model
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import puti
 from udec_ia.heap.census import census
-from udec_ia.heap.interpreting import Sparing
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import Unsound
 
@@ -94,7 +94,7 @@ def test_groups_that_a_list_has_lost_are_told(build: str, skipped: int, said: st
 @pytest.mark.parametrize("build", ["i16r32", "i32r64", "i64r64"])
 def test_compiled_code_keeps_to_its_arrays(build: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the words are: it would end the process if it did not. A table is refused or whole."""
-    monkeypatch.setattr(Sparing, "at_once", True)
+    monkeypatch.setattr(InterpretWhenSmall, "always_compiled", True)
     sound = [played(build, module, seed) for seed in (0, 3) for module in (scenes, soft_scenes)]
     random = np.random.default_rng(11)
     for trial in range(400):

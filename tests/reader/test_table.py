@@ -8,9 +8,9 @@ from support.every_group_kind import every_kind
 from support.handmade_map import two_blocks
 
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.reader.group_tables import table

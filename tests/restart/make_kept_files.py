@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 from udec_ia import Model
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.restart import save
 from udec_ia.restart.seal import VERSION
 

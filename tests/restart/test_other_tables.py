@@ -18,8 +18,8 @@ from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import variable
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.written_state import TranslationError, words_of
 from udec_ia.layout import offsets as g

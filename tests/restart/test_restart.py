@@ -20,9 +20,9 @@ from trials.interrupted_processes import kill_saves
 from udec_ia import Model
 from udec_ia.checker import check_links
 from udec_ia.errors import MESSAGES, UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import find, lose
-from udec_ia.heap.words import ALL_SCHEMES, scheme
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.restart import info, load, save

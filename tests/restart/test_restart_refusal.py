@@ -13,8 +13,8 @@ from support.resealed_files import ARRAYS, SCHEMES, Edit, edit, refusal
 
 from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.layout.table import COMMON_TYPES, TABLE, parse
 from udec_ia.restart import info, load, save
 from udec_ia.restart.layout import text

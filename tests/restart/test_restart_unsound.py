@@ -11,7 +11,7 @@ import pytest
 from support.resealed_files import ARRAYS, SCHEMES, Edit, edit, refusal
 
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import groups
 from udec_ia.restart import load, save

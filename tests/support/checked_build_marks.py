@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from udec_ia.heap.checked import CHECKED
+from udec_ia.compiling.build_choice import CHECKED
 
 without_groups = pytest.mark.skipif(CHECKED, reason="uses words where no group is, which this build refuses")
 with_any_offset = pytest.mark.skipif(

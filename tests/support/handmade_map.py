@@ -16,8 +16,8 @@ from __future__ import annotations
 from math import sqrt
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, puti, putr, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.layout import offsets as g
 
 SIDE = 1.0

@@ -10,13 +10,13 @@ import sys
 from hashlib import sha256
 
 from udec_ia import Model
+from udec_ia.compiling.kernel_decorators import outlined
+from udec_ia.compiling.outlined_calls import entry
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.apart import entry
-from udec_ia.heap.jit import apart
 from udec_ia.kernels.drive import passes
 
 
-@apart
+@outlined
 def nothing_found(h: Memory, domain: int) -> bool:
     """Stands for the update of domains, two thirds of the time to compile: a lone block finds nothing."""
     return True

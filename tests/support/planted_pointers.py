@@ -17,12 +17,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from udec_ia import Model
+from udec_ia.checked_build.group_kinds import enter, shadow
+from udec_ia.compiling.build_choice import CHECKED
+from udec_ia.compiling.interpreting import interpreted
+from udec_ia.errors import WrongAddress
 from udec_ia.heap.census import census
-from udec_ia.heap.checked import CHECKED
-from udec_ia.heap.entering import enter
-from udec_ia.heap.guarding import Astray
-from udec_ia.heap.interpreting import interpreted
-from udec_ia.heap.kinds import shadow
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 
@@ -103,7 +102,10 @@ def said(m: Model) -> str:
         m.cycle(2)
     except Exception as error:  # outside of kernels Python says that an address is none
         kept = words(m) == before or m.array.h.ci[g.MCTOT] > cycles
-        who, left = "" if isinstance(error, Astray) else "before: ", "" if kept else "; it has changed words"
+        who, left = (
+            "" if isinstance(error, WrongAddress) else "before: ",
+            "" if kept else "; it has changed words",
+        )
         return who + str(error).splitlines()[0] + left
     return "nothing"
 

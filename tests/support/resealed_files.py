@@ -11,7 +11,7 @@ import pytest
 
 from support.handmade_map import two_blocks
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.restart import load
 from udec_ia.restart.seal import SIZE, seal
 

@@ -9,7 +9,7 @@ import pytest
 
 from support.every_group_kind import every_kind
 from support.headless_browser import BROWSER, Browser
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.view import Page
 

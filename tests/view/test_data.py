@@ -19,7 +19,7 @@ from support.every_group_kind import GROUPS, every_kind
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.reader.atlas import Atlas
 from udec_ia.view import Page, page
 

@@ -22,8 +22,8 @@ from support.every_group_kind import GROUPS, every_kind
 from support.replayable_steps import blocks, outline
 
 from udec_ia import Model
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.output.outline import domain_polygons

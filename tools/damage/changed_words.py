@@ -35,9 +35,9 @@ from udec_ia.checker import check, check_links
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.pointers_and_codes import allowed
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field
 from udec_ia.ops.run.watch import Series

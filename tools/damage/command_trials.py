@@ -40,9 +40,9 @@ from damage.hostile_files import SECRET, hostile
 from damage.storage_edits import one
 
 from udec_ia import cli
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import working_time
-from udec_ia.heap.words import ALL_SCHEMES
+from udec_ia.compiling.compile_time import working_time
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.reader.atlas import KINDS

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numba import njit
 
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.changes import TURNED
 from udec_ia.layout import offsets as g
 from udec_ia.reader.group_tables import table

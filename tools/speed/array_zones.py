@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from speed.array_cycle import compiled
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.jit import kernel
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.layout import offsets as g
 from udec_ia.reader.group_tables import table

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 from speed.cycle_speed import FAR, slab
 
 from udec_ia import Model
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import IBPNT, KXD, MFREE
 
 ALL = (-FAR, FAR, -FAR, FAR)

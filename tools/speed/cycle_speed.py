@@ -27,12 +27,12 @@ from speed import array_zones
 from speed.array_cycle import EVENTS, Slab, extract, run_soa
 
 from udec_ia import Model
+from udec_ia.compiling.law_calls_numba import MATERIAL_SIZE, _jump
 from udec_ia.heap.accessors import putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.heap_tools.convert_word_scheme import convert
 from udec_ia.heap_tools.renumber_groups import renumber
-from udec_ia.kernels.constitutive.law_call_numba import MATERIAL_SIZE, _jump
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.ops.run.watch import run_unwatched

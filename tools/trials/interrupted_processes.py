@@ -35,7 +35,7 @@ import numpy as np
 from trials.interrupted_commands import SCENE, Lines, interrupt_lines
 
 from udec_ia import Model, UdecError, cli
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.restart import load, save
 

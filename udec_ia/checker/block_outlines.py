@@ -9,7 +9,7 @@ import numpy as np
 
 from udec_ia.checker.block_members import zoned
 from udec_ia.checker.checked_state import State
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.outlines import (
     Outlines,
     fill_blocks,
@@ -22,7 +22,7 @@ from udec_ia.reader.field_reading import INDEX, Numbers, told
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
-    Sparing(kernel, 7e4, LOOKS)  # blocks
+    InterpretWhenSmall(kernel, 7e4)  # blocks
     for kernel in (measure, fill_blocks, fill_circles, short_edges, wrong_circles)
 )
 

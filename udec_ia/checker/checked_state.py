@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import STRETCH, lay_out_lists, rows_of
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.untrusted_lists import STRETCH, lay_out_lists, rows_of
 from udec_ia.layout import offsets as g
 from udec_ia.reader.block_rings import Boundaries, one_before
 from udec_ia.reader.field_reading import HOSTS, INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
 from udec_ia.reader.group_lists import Lists
 
-LAY_OUT = Sparing(lay_out_lists, 1e6, LOOKS)  # items
+LAY_OUT = InterpretWhenSmall(lay_out_lists, 1e6)  # items
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def corner_before(rings: Rings) -> Numbers:
     return np.asarray(corner[one_before(rings.owner[corner])])
 
 
-ROWS_OF = Sparing(rows_of, 1e6, LOOKS)  # addresses
+ROWS_OF = InterpretWhenSmall(rows_of, 1e6)  # addresses
 
 LOST = "are in no group"  # what is said of words that no list leads to
 

@@ -20,18 +20,17 @@ from collections import Counter
 import numpy as np
 
 from udec_ia.checker.checked_state import State
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.counting import counted
 from udec_ia.errors import DISORDERED
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.reals import place_items
-from udec_ia.heap.walks import ill_linked
+from udec_ia.heap.untrusted_lists import ill_linked, place_items
 from udec_ia.kernels.audit.faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names, told
 
-PASSAGES, CYCLES = Sparing(passages, 1.7e6, LOOKS), Sparing(cycles, 3e6, LOOKS)  # items, passages
-ILL_LINKED = Sparing(ill_linked, 5e5, LOOKS)  # items
-PIECES = Sparing(pieces, 6e5, LOOKS)  # contacts
+PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
+ILL_LINKED = InterpretWhenSmall(ill_linked, 5e5)  # items
+PIECES = InterpretWhenSmall(pieces, 6e5)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]
@@ -227,7 +226,7 @@ def _check_connected(state: State) -> None:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 
-AREAS, PLACE_ITEMS = Sparing(areas, 9e5, LOOKS), Sparing(place_items, 1e6, LOOKS)  # items
+AREAS, PLACE_ITEMS = InterpretWhenSmall(areas, 9e5), InterpretWhenSmall(place_items, 1e6)  # items
 
 
 def check_outer(state: State) -> None:

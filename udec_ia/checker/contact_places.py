@@ -15,13 +15,13 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_map import AHEAD
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.outlines import Outlines
 from udec_ia.kernels.audit.standing import OVERLAP, PASSED_OVER, PLACE, disordered, standing, touching, unlike
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, told
 
-TOUCHING, UNLIKE = Sparing(touching, 5e5, LOOKS), Sparing(unlike, 1e6, LOOKS)  # contacts
+TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(unlike, 1e6)  # contacts
 
 
 class Touches(NamedTuple):
@@ -80,8 +80,8 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
             state.report(7, f"the overlap of contact@{contact} is {max(noted[k], overlap)}, DTOL2 is {limit}")
 
 
-STANDING = Sparing(standing, 2e5, LOOKS)  # contacts
-DISORDERED = Sparing(disordered, 2e6, LOOKS)  # items
+STANDING = InterpretWhenSmall(standing, 2e5)  # contacts
+DISORDERED = InterpretWhenSmall(disordered, 2e6)  # items
 
 
 @dataclass(frozen=True)

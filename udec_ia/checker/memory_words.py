@@ -1,6 +1,6 @@
 """Invariant 1: every word below MFREE belongs to exactly one group, in use or in the junk list.
 
-The junk list is a chain of chains, one for each size (heap/memory.py). Laid side by side in order of
+The junk list is a chain of chains, one for each size (heap/find_lose.py). Laid side by side in order of
 address, the groups in use and the junk groups must tile the heap without gap or overlap.
 """
 
@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import LOST, State
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.walks import gaps
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.untrusted_lists import gaps
 from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers, told
 
 JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
-GAPS = Sparing(gaps, 9e6, LOOKS)  # places where a group could begin
+GAPS = InterpretWhenSmall(gaps, 9e6)  # places where a group could begin
 
 
 def check_memory(state: State) -> None:

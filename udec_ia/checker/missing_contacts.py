@@ -25,14 +25,17 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import Touches
-from udec_ia.heap.interpreting import LOOKS, Sparing
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.meetings import EDGE, crossing, lonely_meetings
 from udec_ia.kernels.audit.outlines import Outlines, in_rounded
 from udec_ia.reader.field_reading import HOSTS, Numbers, told
 
 CHUNK = 100_000  # pairs of blocks looked at together
 AROUND = 8  # directions in which it is looked whether a block holds a point
-LONELY_MEETINGS, CROSSING = Sparing(lonely_meetings, 1.7e4, LOOKS), Sparing(crossing, 2e4, LOOKS)  # pairs
+LONELY_MEETINGS, CROSSING = (
+    InterpretWhenSmall(lonely_meetings, 1.7e4),
+    InterpretWhenSmall(crossing, 2e4),
+)  # pairs
 
 
 class Joined:

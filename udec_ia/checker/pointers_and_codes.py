@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
+from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
 from udec_ia.errors import MESSAGES
-from udec_ia.heap.array import variable
 from udec_ia.heap.census import SOFT, one_of
-from udec_ia.heap.interpreting import LOOKS, Sparing, interpreted
-from udec_ia.heap.reals import all_finite
+from udec_ia.heap.main_array import variable
+from udec_ia.heap.untrusted_lists import all_finite
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import KBEX, TABLE, TARGETS, allowed, in_words
@@ -95,7 +95,7 @@ def check_codes(state: State) -> None:
 
 COMMON_REALS = [field for field in TABLE.common if field.type != "int"]
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
-ALL_FINITE = Sparing(all_finite, 4e5, LOOKS)  # groups
+ALL_FINITE = InterpretWhenSmall(all_finite, 4e5)  # groups
 
 
 def check_numbers(state: State) -> None:

@@ -21,7 +21,7 @@ from udec_ia.printable import folded, printable
 
 if TYPE_CHECKING:
     from udec_ia.checker import Violation
-    from udec_ia.heap.array import MainArray
+    from udec_ia.heap.main_array import MainArray
     from udec_ia.reader.listing import Listing
     from udec_ia.restart.reader import Restored
 
@@ -68,7 +68,7 @@ def _change(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
 
 
 def _convert(args: argparse.Namespace) -> Listing:
-    from udec_ia.heap.words import scheme
+    from udec_ia.heap.word_scheme import scheme
     from udec_ia.heap_tools.convert_word_scheme import prove
     from udec_ia.heap_tools.rewrite_heap import rewrite
     from udec_ia.reader.listing import Listing
@@ -86,7 +86,8 @@ def _convert_line(args: argparse.Namespace) -> str:
 
 def _convert_script(args: argparse.Namespace) -> str:
     imports = (
-        "from udec_ia.heap.words import scheme\nfrom udec_ia.heap_tools.convert_word_scheme import convert"
+        "from udec_ia.heap.word_scheme import scheme\n"
+        "from udec_ia.heap_tools.convert_word_scheme import convert"
     )
     proof = "print(made.broken)" if args.force else "assert made.broken == []"
     change = f"made = convert(state.array, scheme({args.build!r}))\nprint(*made.said, sep='\\n')\n{proof}"

@@ -44,7 +44,7 @@ def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
 
 def word_scheme(parser: argparse.ArgumentParser) -> None:
     """The argument --build NAME."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+    from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 
     parser.add_argument(
         "--build",

@@ -68,7 +68,7 @@ def add_commands(commands: Any) -> None:
 
 def _builds(args: argparse.Namespace) -> list[str]:
     """The word schemes of the first and the second. ValueError for what is none."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+    from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 
     if args.cycles is not None and (
         args.builds or args.other is None or args.cycles < 0 or args.set or args.other_set

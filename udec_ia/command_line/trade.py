@@ -154,7 +154,7 @@ def _base(args: argparse.Namespace) -> Path:
 
 
 def _options(args: argparse.Namespace) -> Options:
-    from udec_ia.heap.words import ALL_SCHEMES
+    from udec_ia.heap.word_scheme import ALL_SCHEMES
     from udec_ia.trade.shop import Options
 
     builds = tuple(_names("--builds", args.builds, ALL_SCHEMES))

@@ -55,7 +55,7 @@ def _chosen(option: str, given: str | None, default: str, known: Any) -> list[st
 
 def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Word schemes and types of blocks."""
-    from udec_ia.heap.words import ALL_SCHEMES, DEFAULT_SCHEME
+    from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
     from udec_ia.verify.case import BLOCKS
 
     builds = _chosen("--build", args.build, DEFAULT_SCHEME, ALL_SCHEMES)
@@ -63,7 +63,7 @@ def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _verify(args: argparse.Namespace) -> Listing:
-    from udec_ia.heap.words import scheme
+    from udec_ia.heap.word_scheme import scheme
     from udec_ia.reader.listing import Listing
     from udec_ia.verify.page import COLUMNS, brief, rows, write
     from udec_ia.verify.run import run

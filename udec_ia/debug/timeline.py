@@ -19,7 +19,7 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.replay import Replay

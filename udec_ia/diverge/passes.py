@@ -7,13 +7,13 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from udec_ia.compiling.interpreting import interpreted, observe
 from udec_ia.debug.cycle_trace import ROOT, UNDER
 from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import interpreted, observe
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.watch import run_unwatched
@@ -54,7 +54,7 @@ def _pass_of(frame: FrameType | None) -> str:
     """The routine that the loop of the passes has called; that loop itself if it has called none."""
     name = ROOT
     while frame is not None and frame.f_code.co_name != ROOT:
-        if frame.f_globals not in UNDER:
+        if not frame.f_globals["__name__"].startswith(UNDER):
             name = frame.f_code.co_name
         frame = frame.f_back
     return name

@@ -19,15 +19,15 @@ from typing import Any, cast
 
 import numpy as np
 
-from udec_ia.heap.checked import WITH_HEAD, offset
-from udec_ia.heap.checked import at_offset as at_offset
-from udec_ia.heap.guarding import guarded
-from udec_ia.heap.loading import has_numba_side
-from udec_ia.heap.views import Memory as Memory
+from udec_ia.compiling.build_choice import CHECKED, checked_build, offset
+from udec_ia.compiling.build_choice import at_offset as at_offset
+from udec_ia.compiling.kernel_memory import Memory as Memory
+from udec_ia.compiling.numba_loading import numba_form
 
-Offset = tuple[int, int, int]  # and more in the checked build: checked.py
+Offset = tuple[int, int, int]  # and more in the checked build: checked_build/tagged_offsets.py
 Address = int
-HEAD: Offset = offset("HEAD", (0, 0, 0), WITH_HEAD)  # head code of a group
+INSTRUCTIONS = "udec_ia.compiling.instructions_numba"
+HEAD: Offset = offset("HEAD", (0, 0, 0), "headed")  # head code of a group
 
 # The integer that kernels calculate with. numba sees the 64-bit type; to a type checker it is an int.
 int64 = cast(Callable[[Any], int], np.int64)
@@ -38,6 +38,7 @@ def _which(h: Any) -> int:
     return int(h.ra.itemsize // h.ia.itemsize) >> 1
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_iget")
 def iget(h: Memory, iad: Address, k: Offset, i: int = 0) -> int:
     """Integer at IA(iad + k + i)."""
     return int(h.ia[iad + k[_which(h)] + i - 1])
@@ -59,33 +60,37 @@ def gather(h: Memory, iads: Any, words: int, real: bool) -> Any:
     return h.ra.take(at >> _which(h)) if real else h.ia.take(at).astype(np.int64, copy=False)
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_puti")
 def puti(h: Memory, iad: Address, k: Offset, n: int, i: int = 0) -> None:
     """IA(iad + k + i) := n."""
     h.ia[iad + k[_which(h)] + i - 1] = n
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_getr")
 def getr(h: Memory, iad: Address, k: Offset) -> Any:
     """Real number k of the reals that start at IA(iad)."""
     j = _which(h)
     return h.ra[((iad - 1) >> j) + k[j] - 1]
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_putr")
 def putr(h: Memory, iad: Address, k: Offset, v: Any) -> None:
     """Real number k of the reals that start at IA(iad) := v."""
     j = _which(h)
     h.ra[((iad - 1) >> j) + k[j] - 1] = v
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_size_of")
 def size_of(h: Memory, nv: Offset) -> int:
     """Number of words of a group (NVBL, NVCR, ...) in the scheme at hand."""
     return nv[_which(h)]
 
 
+@numba_form(f"{INSTRUCTIONS}:compile_real")
 def real(h: Memory, value: float) -> Any:
     """`value` as a real of the scheme at hand: a bare literal would widen 32-bit arithmetic."""
     return h.cr.dtype.type(value)
 
 
-PLAIN = iget, puti, getr, putr
-iget, puti, getr, putr = guarded(iget, puti, getr, putr)
-has_numba_side(__name__)
+if CHECKED:
+    iget, puti, getr, putr = checked_build("access_checks").checked_accessors(iget, puti, getr, putr)

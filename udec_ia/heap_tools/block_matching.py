@@ -17,14 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import groups_along
+from udec_ia.heap.untrusted_lists import groups_along
 from udec_ia.heap_tools.row_matching import Pairs, fold, only_ones, rising
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 
-GROUPS_ALONG = Sparing(groups_along, 1e7, LOOKS)  # words
+GROUPS_ALONG = InterpretWhenSmall(groups_along, 1e7)  # words
 LOST = -1  # the number of a group that matches none, and of what is no group
 
 

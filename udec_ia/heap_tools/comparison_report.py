@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap.array import MainArray, variable
+from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.heap_tools.state_comparison import tolerance as limits

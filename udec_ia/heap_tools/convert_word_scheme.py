@@ -22,12 +22,12 @@ from udec_ia.checker.block_outlines import circles, extent, outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import touches
 from udec_ia.heap.accessors import Memory, getr, putr
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.field_translation import Fit
 from udec_ia.heap_tools.rewrite_heap import Rewritten, rewrite
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
+from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, last_digit
 from udec_ia.reader.group_tables import addresses
 
 

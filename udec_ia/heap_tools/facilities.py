@@ -14,12 +14,13 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.settings import PROPERTIES
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.model_settings import PROPERTIES
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.ops.run.remarks import on_laws, on_loads
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.listing import Listing
@@ -86,8 +87,7 @@ class Scene:
         return True
 
 
-RELAXATIONS = {g.LOCAL: "LOCAL", g.COMBINED: "COMBINED", g.KINETIC: "KINETIC", g.ADAPTIVE: "ADAPTIVE"}
-REMEMBER = (g.COMBINED, g.ADAPTIVE)  # relaxations that keep the forces of the cycle before
+REMEMBER = [one.code for one in MODES if one.keeps_forces]
 COLUMNS = ("facility", "words", "bytes", "percent", "in this scene")
 
 
@@ -177,14 +177,15 @@ def _coefficient(k: int, name: str, unit: str) -> Callable[[Scene], str]:
 
 
 def _adapts(s: Scene) -> bool:
-    return bool(s.h.ci[g.LREST] == g.ADAPTIVE)
+    mode = mode_of(s.h)
+    return bool(mode and mode.sets_alpha)
 
 
 def _relaxation(s: Scene) -> str:
-    how = int(s.h.ci[g.LREST])
-    if how not in RELAXATIONS:
+    mode = mode_of(s.h)
+    if mode is None:
         return ""
-    return RELAXATIONS[how] + ("" if how == g.KINETIC else f" {s.h.cr[g.RESTF]:g}")
+    return f"{mode.name} {s.h.cr[g.RESTF]:g}" if mode.fraction else mode.name
 
 
 def _remembered(s: Scene) -> int:
@@ -267,12 +268,12 @@ def _motion(s: Scene) -> Found:
 
 def _damping(s: Scene) -> Found:
     """Damping of what is not there."""
-    adapts = s.h.ci[g.LREST] == g.ADAPTIVE
-    if s.h.cr[g.ALPB] and not s.count("sdef") and not adapts:
+    mode = mode_of(s.h)
+    if s.h.cr[g.ALPB] and not s.count("sdef") and not _adapts(s):
         yield "DAMPING INTERNAL", "no block is simply-deformable"
     if s.h.cr[g.BETA] and s.moves and not (s.touching.any() or s.count("zone")):
         yield "DAMPING STIFFNESS", "there is no contact and no zone"
-    if s.h.ci[g.LREST] in (g.LOCAL, g.COMBINED) and not s.h.cr[g.RESTF]:
+    if mode and mode.fraction and not _adapts(s) and not s.h.cr[g.RESTF]:
         yield "DAMPING to rest", "its fraction is 0"
 
 

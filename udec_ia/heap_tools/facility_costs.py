@@ -19,15 +19,15 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES, REMEMBER, Facility, Scene
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary import forget_blocks
-from udec_ia.ops.commands.change import change_types
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import cycle, prepare
 from udec_ia.ops.run.guard import Guard

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.table_translation import (
     HISTORY,
     KIND,

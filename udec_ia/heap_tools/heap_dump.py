@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.array import variable
-from udec_ia.heap.junk import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.heap.main_array import variable
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span, leads_to, names
 from udec_ia.reader.field_rows import (
     COLUMNS,

@@ -20,7 +20,7 @@ import numpy as np
 from udec_ia.checker import Violation, check, in_short
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.places import Place, PlaceError, find_number

@@ -21,14 +21,14 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, iget, integers, size_of
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.relocate import relocate
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.relocation import relocate
 from udec_ia.heap_tools.rewrite_heap import junk_words, movable
 from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.common.block_ranges import chain
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.listing import Listing
 

@@ -23,11 +23,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.interpreting import interpreted
-from udec_ia.heap.slack import give_back
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.freed_memory import give_back
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.field_translation import Fit, Translation
 from udec_ia.heap_tools.written_state import words_of
 from udec_ia.kernels.geometry.tolerances import tolset

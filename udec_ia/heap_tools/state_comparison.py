@@ -15,8 +15,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import variable
-from udec_ia.heap.slack import give_back
+from udec_ia.heap.freed_memory import give_back
+from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.group_matching import Matching
 from udec_ia.layout.table import Field
 from udec_ia.reader.atlas import KINDS, TABLE

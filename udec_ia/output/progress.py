@@ -12,8 +12,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from udec_ia.compiling.compile_time import working_time
 from udec_ia.counting import counted
-from udec_ia.heap.compiling import working_time
 from udec_ia.printable import printable
 
 LINES = 10  # plain lines for one CYCLE command, at most

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
 
+from udec_ia.compiling.compile_time import working_time
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.compiling import working_time
 from udec_ia.kernels.drive.unbalanced import unbalanced
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.ops.run.timestep import share_of
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, gather
 from udec_ia.heap.census import CHOICES, census, one_of
-from udec_ia.heap.junk import junk_chains
+from udec_ia.heap.junk_list import junk_chains
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 

@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import closed_lists
+from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.heap.untrusted_lists import closed_lists
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import FORWARD, HOSTS, INDEX, KL, KP, KR, Numbers, Reading
 
-CLOSED_LISTS = Sparing(closed_lists, 1e7, LOOKS)  # places where a group could begin
+CLOSED_LISTS = InterpretWhenSmall(closed_lists, 1e7)  # places where a group could begin
 
 
 class Boundaries(NamedTuple):

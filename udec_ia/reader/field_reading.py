@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import gather
-from udec_ia.heap.array import MainArray
 from udec_ia.heap.census import CHOICES
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
 from udec_ia.reader.list_walks import HEADS, Unsound
@@ -130,7 +130,7 @@ def in_words(field: Field) -> str:
 ROOM = 100  # rows that are expected
 
 
-def told(kernel: Sparing, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
+def told(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
     """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
 
     groups: how many it goes through; of: int or float.

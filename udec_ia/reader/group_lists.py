@@ -17,16 +17,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.array import MainArray
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.census import SOFT, census, one_of
-from udec_ia.heap.interpreting import LOOKS, Sparing
-from udec_ia.heap.walks import astray, chains
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.untrusted_lists import astray, chains
 from udec_ia.reader.block_rings import Boundaries, boundaries
 from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names, told
 from udec_ia.reader.list_walks import HEADS
 
-CHAINS = Sparing(chains, 2e7, LOOKS)  # places where a group could begin
-ASTRAY = Sparing(astray, 9e5, LOOKS)  # addresses
+CHAINS = InterpretWhenSmall(chains, 2e7)  # places where a group could begin
+ASTRAY = InterpretWhenSmall(astray, 9e5)  # addresses
 
 
 class Pointers(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any
 from udec_ia.checker.invariants import unfinished
 from udec_ia.counting import counted
 from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.heap.array import variable
+from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.written_state import Words
 from udec_ia.layout.table import read_table
 from udec_ia.printable import printable

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.checker import check_links
-from udec_ia.heap.array import MainArray, variable
-from udec_ia.heap.words import ALL_SCHEMES, Scheme
+from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme
 from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.table_translation import news
 from udec_ia.heap_tools.written_state import TranslationError, Words

@@ -21,8 +21,8 @@ import h5py
 import numpy as np
 
 from udec_ia.files import put_in_place
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.words import Scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.run.watch import Series

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from time import monotonic, thread_time
 
-from udec_ia.heap.compiling import compile_seconds
+from udec_ia.compiling.compile_time import compile_seconds
 
 
 class Clock:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.solution import Solution
 from udec_ia.ops.run.watch import Series

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.study.runs import ENDED, Result
 from udec_ia.trade.levers import Numbers, Setting
 from udec_ia.trade.limit import Limit

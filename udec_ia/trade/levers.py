@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import median
 from typing import TextIO
 
-from udec_ia.heap.words import DEFAULT_SCHEME
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.study.many import RUNS, run_all
 from udec_ia.study.progress import Told

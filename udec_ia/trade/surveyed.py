@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.compiling import compile_seconds
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.damped import damped

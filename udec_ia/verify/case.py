@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.model import Model
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.words import scheme
+from udec_ia.heap.word_scheme import scheme
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.verify.answer import Answer
 from udec_ia.verify.case import Case

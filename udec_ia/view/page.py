@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from udec_ia.files import put_in_place
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MFREE
 from udec_ia.printable import printable
 from udec_ia.view.states import state

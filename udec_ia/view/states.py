@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.checker import check
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.printable import MESSAGE, printable
 from udec_ia.reader.atlas import NAMES, TABLE, UNUSED, Atlas, Span
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.heap.census import CHOICES
-from udec_ia.heap.junk import JNEXT
+from udec_ia.heap.junk_list import JNEXT
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, Layout, layouts, read_table
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED

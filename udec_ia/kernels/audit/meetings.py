@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from udec_ia.heap.kernel import over_arrays
+from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.kernels.audit.outlines import (
     Outlines,
     arc_at,

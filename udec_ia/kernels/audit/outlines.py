@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from udec_ia.heap.kernel import over_arrays
+from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.kernels.geometry.shape import BULGE, FLAT, KEPT
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from udec_ia.heap.kernel import over_arrays
+from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.kernels.audit.outlines import Outlines, deepest, end_of, start_of, turn_at
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g

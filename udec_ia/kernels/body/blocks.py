@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.prefetch import LEAD, fetch
 from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
-from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
 from udec_ia.kernels.links.lists import corner_of

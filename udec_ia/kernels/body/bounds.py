@@ -19,8 +19,8 @@ import math
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
 from udec_ia.layout import offsets as g
@@ -219,7 +219,7 @@ def drive(h: Memory, iu: int) -> None:
     h.cd[g.WDRIVE] += max(power, 0.0) * h.cr[g.TDEL]
 
 
-@apart
+@outlined
 def apply_bounds(h: Memory) -> bool:
     """Apply all boundary conditions for the step that begins."""
     set_signals(h)

@@ -24,9 +24,9 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import INSIDE_OUT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.constitutive.block_laws import stress_increment
 from udec_ia.kernels.geometry.shape import round_anew
 from udec_ia.kernels.geometry.tensor import cayley, turned

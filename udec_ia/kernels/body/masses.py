@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.sdef import put_strain_rate, put_stress
 from udec_ia.kernels.geometry.shape import density_of, geo, makeb

@@ -1,7 +1,8 @@
 """Block laws by constitutive number: linear elasticity (1, CL1) and the user's (2 to 5; IV-4).
 
 `laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
-`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws (law_call.py).
+`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws
+(compiling/law_calls.py).
 """
 
 from __future__ import annotations
@@ -10,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.errors import LAW_FAILED
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
-from udec_ia.heap.jit import inlined, kernel
-from udec_ia.kernels.constitutive.law_call import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.layout import offsets as g
 
 IN_BLOCKS, AT_JOINTS = 0, 1  # rows of what numbers_in_use fills

@@ -14,8 +14,8 @@ before the step. The law returns those after it and the forces of the dashpots.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined
 from udec_ia.heap.accessors import Memory, getr, real
-from udec_ia.heap.jit import inlined
 from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, strength
 from udec_ia.layout import offsets as g
 

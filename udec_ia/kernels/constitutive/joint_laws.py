@@ -13,12 +13,12 @@ joint that dilates holds its blocks apart. It closes when blocks overlap, and it
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined
+from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import inlined
 from udec_ia.kernels.constitutive.block_laws import failed
 from udec_ia.kernels.constitutive.coulomb_joint import coulomb_forces
 from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, material_of, stiffest
-from udec_ia.kernels.constitutive.law_call import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.layout import offsets as g
 
 

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.layout import offsets as g
 
 JOINT_ARRAYS = ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")  # properties of joints

@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
 from udec_ia.kernels.constitutive.joint_laws import is_idle, no_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
@@ -204,7 +204,7 @@ def settle_all(h: Memory) -> None:
         ic = following
 
 
-@apart
+@outlined
 def change_map(h: Memory, waiting: Any, n: int) -> bool:
     """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.boundary_point import putfce
 from udec_ia.kernels.body.fdef import stand_still, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied

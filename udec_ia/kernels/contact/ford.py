@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.outlined_calls import call_entry
+from udec_ia.compiling.prefetch import LEAD, fetch
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.ahead import LEAD, fetch
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
 from udec_ia.kernels.contact.changes import is_still, opens

@@ -12,8 +12,8 @@ What follows a law of the user's, whose memory only that law knows, stays until 
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.constitutive.joint_laws import no_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.geometry.contact_geometry import ce, has_no_arc, meet, past

@@ -10,8 +10,8 @@ outside of one block, and none the space between.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import is_contact, is_corner, nextcp, other, prevcp
 from udec_ia.layout import offsets as g
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, iget, int64, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.detect.search import box, facing
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.contact_geometry import over_ends
 from udec_ia.layout import offsets as g
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.depth import depth_in
 from udec_ia.kernels.detect.tunnelling import arc_point, carried, was_at, ways
 from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.detect.crossed_tips import AROUND, would_cross
 from udec_ia.kernels.detect.depth import do_not_meet
 from udec_ia.kernels.detect.gaps import taken_between

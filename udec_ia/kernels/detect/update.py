@@ -19,11 +19,11 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel, outlined
+from udec_ia.compiling.outlined_calls import entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.apart import entry
-from udec_ia.heap.jit import apart, kernel
-from udec_ia.heap.memory import room_for_two
+from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.gaps import give_up_taken
 from udec_ia.kernels.detect.search import SMALL, STRAY, search
 from udec_ia.kernels.detect.tunnelling import edge_lies_in
@@ -181,12 +181,12 @@ def _update_all(h: Memory) -> bool:
     return True
 
 
-@apart
+@outlined
 def update_domains(h: Memory, idm: int) -> bool:
     """Update domain `idm`, or with 0 every domain that needs it. False if memory ran out."""
     return bool(_update_all(h) if idm == 0 else update(h, idm))
 
 
 def updating(h: Memory) -> Any:
-    """What kernels that lead to updates are handed: see heap.apart."""
+    """What kernels that lead to updates are handed: see compiling.outlined_calls."""
     return entry(update_domains, h, 0)

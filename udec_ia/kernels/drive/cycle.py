@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.outlined_calls import call_entry
 from udec_ia.heap.accessors import Memory, int64
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import room
+from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.blocks import move_all
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.detect.domains import accumulate
@@ -51,7 +51,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if
-    `soft` is. joints: None if no contact follows a law of the user's, else these (constitutive.law_call).
+    `soft` is. joints: None if no contact follows a law of the user's, else these (compiling.law_calls).
     passes: see drive.passes. Stops early, too, when a safe time-step has to be judged.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.constitutive.joint_properties import joint_of, stiffest
 from udec_ia.layout import offsets as g
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
-from udec_ia.heap.jit import kernel
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 

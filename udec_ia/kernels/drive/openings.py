@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import outlined
 from udec_ia.heap.accessors import Memory, getr, iget, int64
-from udec_ia.heap.jit import apart
 from udec_ia.layout import offsets as g
 
 LOOK = 100  # cycles from one look to the next
 STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; behind the three sizes there may be more
 
 
-@apart
+@outlined
 def note_openings(h: Memory, marks: Any) -> bool:
     """Look at all contacts. marks: one byte for STRIDE words of IA(); none for those behind."""
     ic = int64(h.ci[g.ICPNT])

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.inertial import energy_of_motion
@@ -138,7 +138,7 @@ def adapt(h: Memory) -> None:
     h.cr[g.CON2] = h.cr[g.C2B] = 1.0 / (1.0 + half)
 
 
-@apart
+@outlined
 def look_at_motion(h: Memory) -> bool:
     """What KINETIC or ADAPTIVE does before the step that begins."""
     if h.ci[g.LREST] == g.ADAPTIVE:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel, outlined
+from udec_ia.compiling.outlined_calls import call_entry, entry
 from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
-from udec_ia.heap.apart import call_entry, entry
-from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.drive.unbalanced import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
@@ -16,48 +16,48 @@ from udec_ia.layout import offsets as g
 INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
 
 
-@apart
+@outlined
 def measure_unbalanced(h: Memory, row: Any, i: int) -> bool:
     """Put the greatest unbalanced force into `row`, at `i`."""
     row[i] = unbalanced(h, True)[0]
     return True
 
 
-@apart
+@outlined
 def measure_ratio(h: Memory, row: Any, i: int) -> bool:
     """The same for the force ratio."""
     row[i] = force_ratio(h, True)
     return True
 
 
-@apart
+@outlined
 def measure_kinetic(h: Memory, row: Any, i: int) -> bool:
     """The same for the kinetic energy."""
     row[i] = kinetic(h, True)
     return True
 
 
-@apart
+@outlined
 def measure_strain(h: Memory, row: Any, i: int) -> bool:
     """The same for the strain energy."""
     row[i] = strain_of_contacts(h) + strain_of_blocks(h, True)
     return True
 
 
-@apart
+@outlined
 def measure_potential(h: Memory, row: Any, i: int) -> bool:
     """The same for the potential of gravity against that at ENERGY ON."""
     row[i] = height(h) - h.cd[g.EREF]
     return True
 
 
-# Of the whole model, in the order of ops.commands.recordable.QUANTITIES.
+# Of the whole model, in the order of reader.recordable_numbers.QUANTITIES.
 MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
 NOT_MEASURED = (0,) * len(MEASURED)
 
 
 def measures(h: Memory) -> tuple[Any, ...]:
-    """Addresses of these (heap.apart), 0 for those that no history asks for."""
+    """Addresses of these (compiling.outlined_calls), 0 for those that no history asks for."""
     asked, ih = set(), h.ci[g.IHPNT]
     while ih != 0:
         if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
@@ -91,11 +91,12 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
     return float(getr(h, group, k)) if type_code == REAL else float(iget(h, group, k))
 
 
-@apart
+@outlined
 def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool:
     """Add a row with what is due after this cycle: cycle, time, and NaN for what is not due.
 
-    Returns True if anything was. places: see ops.commands.history.places. count: number of rows, in an array.
+    Returns True if anything was. places: see ops.commands.history_definitions.places.
+    count: number of rows, in an array.
     measures: addresses of what measures the whole model, as `measures` gives them.
     """
     row = rows[count[0]]

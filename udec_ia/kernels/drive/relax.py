@@ -25,8 +25,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.fdef import next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain, straining_force
@@ -157,7 +157,7 @@ def relax_strain(h: Memory, ie: int, ir: int) -> None:
         h.cd[g.WREST] += work * h.cr[g.TDEL] * 0.5
 
 
-@apart
+@outlined
 def relax(h: Memory) -> bool:
     """LOCAL, COMBINED and KINETIC damping and scaled masses of all that moves, for the step that begins."""
     if h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] != 0 and h.ci[g.LSCALE] == 0:

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.constitutive.joint_properties import joint_of, stiffest
 from udec_ia.kernels.links.lists import corner_of

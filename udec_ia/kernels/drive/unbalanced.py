@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import apart, kernel
 from udec_ia.kernels.body.bounds import load, push_load
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.sdef import straining_force
@@ -244,13 +244,13 @@ def motion_ratio(h: Memory, soft: Any) -> float:
     return moving / strained if strained > 0 else np.inf
 
 
-@apart
+@outlined
 def at_rest(h: Memory, ratio: float) -> bool:
     """True if the model is at rest to within `ratio`: the forces are balanced, and little moves."""
     return bool(force_ratio(h, True) <= ratio and motion_ratio(h, True) <= ratio)
 
 
-@apart
+@outlined
 def at_rest_in_mean(h: Memory, ratio: float) -> bool:
     """The same by the mean unbalanced force."""
     return bool(force_ratios(h, True)[1] <= ratio and motion_ratio(h, True) <= ratio)

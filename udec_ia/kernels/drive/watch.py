@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.outlined_calls import call_entry
 from udec_ia.heap.accessors import Memory, iget, int64
-from udec_ia.heap.apart import call_entry
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.drive.cycle import has_to_judge, run_cycles
 from udec_ia.kernels.drive.openings import LOOK
 from udec_ia.kernels.drive.passes import MEASURES, OPENINGS, RECORD, REST

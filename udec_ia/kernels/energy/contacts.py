@@ -7,8 +7,8 @@ it, too (ops/run/runaway.py).
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, real
-from udec_ia.heap.jit import apart, inlined
 from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_of
 from udec_ia.layout import offsets as g
 
@@ -40,7 +40,7 @@ def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
     h.cd[g.WSTIF] += h.cr[g.BETA] * h.cr[g.TDEL] * real(h, 0.5) * done
 
 
-@apart
+@outlined
 def note_contact(
     h: Memory, ic: int, own: bool, before: float, normal: Pair, velocity: Pair, forces: Pair, dashpots: Pair
 ) -> bool:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.energy.stored import inertia
 from udec_ia.kernels.links.relaxations import following

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force

@@ -25,8 +25,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
-from udec_ia.heap.jit import apart, inlined, kernel
 from udec_ia.kernels.body.bounds import load, velocity_of
 from udec_ia.kernels.body.fdef import gradient, next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
@@ -133,7 +133,7 @@ def stress_power(h: Memory, ib: int, ahead: bool) -> float:
     return total
 
 
-@apart
+@outlined
 def note_loads(h: Memory) -> bool:
     """The same for the loads of the boundary conditions."""
     iu = int64(h.ci[g.IBNPNT])
@@ -156,7 +156,7 @@ def note_loads(h: Memory) -> bool:
     return True
 
 
-@apart
+@outlined
 def note_forces(h: Memory) -> bool:
     """Before the block pass: what is done with the forces of now."""
     ib = int64(h.ci[g.IBPNT])
@@ -177,7 +177,7 @@ def note_forces(h: Memory) -> bool:
     return True
 
 
-@apart
+@outlined
 def note_rigid(h: Memory) -> bool:
     """The same where all blocks are rigid."""
     ib = int64(h.ci[g.IBPNT])
@@ -188,7 +188,7 @@ def note_rigid(h: Memory) -> bool:
     return True
 
 
-@apart
+@outlined
 def note_stresses(h: Memory) -> bool:
     """After the block pass, when grid-points feel the zones only: what is done with the stresses of now."""
     ib = int64(h.ci[g.IBPNT])

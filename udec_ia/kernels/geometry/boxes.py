@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.jit import kernel
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.kernels.geometry.sorting import stable_order
 
 LEFT, BELOW, RIGHT, ABOVE = 0, 1, 2, 3  # columns of the boxes

@@ -24,8 +24,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.shape import is_edge_point, zcs
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g

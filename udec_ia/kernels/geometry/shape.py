@@ -16,9 +16,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import TOO_SHORT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import idomp, next_corner
 from udec_ia.layout import offsets as g

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.jit import kernel
+from udec_ia.compiling.kernel_decorators import kernel
 
 
 @kernel

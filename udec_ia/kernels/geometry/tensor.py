@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined
 from udec_ia.heap.accessors import Memory, real
-from udec_ia.heap.jit import inlined
 
 ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
 

@@ -10,8 +10,8 @@ between two successive items of its list: it is named by the block and the item 
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti
-from udec_ia.heap.jit import kernel
 from udec_ia.layout import offsets as g
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, iget
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import is_corner, nextcp, other
 from udec_ia.layout import offsets as g
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64
-from udec_ia.heap.jit import kernel
 from udec_ia.layout import offsets as g
 
 NOBODY, BLOCK, STRAIN, GRIDPOINT, ZONE = 0, 1, 2, 3, 4

@@ -5,9 +5,9 @@ They stand in the order of the block list and the lists of grid-points, so whoev
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti, putr, real
-from udec_ia.heap.jit import inlined, kernel
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
 from udec_ia.layout import offsets as g
 
 

@@ -8,9 +8,9 @@ or broken on a large domain costs as much as its small side.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find, lose
+from udec_ia.heap.find_lose import find, lose
 from udec_ia.kernels.constitutive.joint_laws import no_force
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.contact_geometry import begin

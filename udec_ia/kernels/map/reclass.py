@@ -18,8 +18,8 @@ such case: the point comes to the arc first.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, puti
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, is_blunt, over_ends, past
 from udec_ia.kernels.geometry.shape import zcs
 from udec_ia.kernels.links.flag import flag

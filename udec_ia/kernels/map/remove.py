@@ -8,9 +8,9 @@ one goes with the block.
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import lose
+from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (
     dellst,

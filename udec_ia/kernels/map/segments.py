@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64
-from udec_ia.heap.jit import inlined, kernel
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.geometry.shape import is_edge_point
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, nextcp, prevcp

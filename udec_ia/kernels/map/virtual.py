@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.constitutive.joint_laws import no_force
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.contact_geometry import begin

@@ -24,8 +24,8 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, real
-from udec_ia.heap.jit import kernel
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real, size_of
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import next_corner
 from udec_ia.layout import offsets as g

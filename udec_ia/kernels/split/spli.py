@@ -14,9 +14,9 @@ contacts cA and cB; the domains outside A and B stay as they are and are flagged
 
 from __future__ import annotations
 
+from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
-from udec_ia.heap.jit import kernel
-from udec_ia.heap.memory import find
+from udec_ia.heap.find_lose import find
 from udec_ia.kernels.geometry.shape import density_of, geo, makeb
 from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import (

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
+from udec_ia.compiling.outlined_calls import call_entry, entry
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
-from udec_ia.heap.apart import call_entry, entry
-from udec_ia.heap.jit import apart, inlined, kernel
-from udec_ia.heap.memory import room
+from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.masses import share_extension
 from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map, restart
 from udec_ia.kernels.detect.update import updating
@@ -145,7 +145,7 @@ def _shortest(h: Memory, ib: int) -> float:
     return shortest
 
 
-@apart
+@outlined
 def share(h: Memory, ib: int, jb: int) -> bool:
     """Block `jb`, cut from block `ib`, gets its share of what hangs on that one."""
     if iget(h, ib, HEAD) == g.MSDEF:
@@ -156,7 +156,7 @@ def share(h: Memory, ib: int, jb: int) -> bool:
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
-    """What `cut_path` calls by its address (heap.apart), 0 for what it need not.
+    """What `cut_path` calls by its address (compiling.outlined_calls), 0 for what it need not.
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """

@@ -8,17 +8,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from udec_ia.compiling.interpreting import mode
+from udec_ia.compiling.law_calls import FIRST, LAST, Laws
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.interpreting import mode
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.block_laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.kernels.constitutive.joint_properties import material_of
-from udec_ia.kernels.constitutive.law_call import FIRST, LAST, Laws
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
-from udec_ia.ops.common.limits import NCONS, NMAT
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.number_limits import NCONS, NMAT
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.printable import printable
 

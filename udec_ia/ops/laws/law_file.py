@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.build_choice import DISABLED
+from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
-from udec_ia.heap.loading import DISABLED
-from udec_ia.kernels.constitutive.law_call import FIRST, LAST
 from udec_ia.layout.material import Material
 
 NUMBERS = range(FIRST, LAST + 1)
@@ -197,7 +197,7 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
     python = _in_python(plain, n, noted)
     if DISABLED:
         return Law(name, origin, digest, python, 0, None, plain, noted)
-    from udec_ia.kernels.constitutive.law_call_numba import MATERIAL, STATE, machine_code
+    from udec_ia.compiling.law_calls_numba import MATERIAL, STATE, machine_code
 
     compiled = _compiled(function, {})
     try:

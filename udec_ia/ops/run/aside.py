@@ -6,7 +6,7 @@ import math
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.cycle import cycle
 

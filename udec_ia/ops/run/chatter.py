@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.openings import LOOK, STRIDE
 from udec_ia.kernels.drive.timestep import addresses

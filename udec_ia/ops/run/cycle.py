@@ -10,6 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from udec_ia.compiling.compile_time import working_time
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import (
     INSIDE_OUT,
     LAW_FAILED,
@@ -21,20 +23,18 @@ from udec_ia.errors import (
     UdecError,
 )
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.heap.array import MainArray
-from udec_ia.heap.compiling import working_time
-from udec_ia.heap.interpreting import Sparing
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.masses import make_masses
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands import energy
-from udec_ia.ops.commands.rounding import check_strained_edges, crowded, settle_default
-from udec_ia.ops.common.limits import last_digit
-from udec_ia.ops.common.lists import chain
-from udec_ia.ops.common.memory import find_room, keep_spare
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.commands import energy_account
+from udec_ia.ops.commands.corner_rounding import check_strained_edges, crowded, settle_default
+from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.ops.laws.law_book import Bound, LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.remarks import sinks_too_far
@@ -44,7 +44,7 @@ from udec_ia.ops.run.timestep import kind_of, share_of, time_step
 from udec_ia.ops.run.watch import Watch, run_unwatched
 from udec_ia.signals import poll
 
-NOT_FINITE = Sparing(not_finite, 2e3)
+NOT_FINITE = InterpretWhenSmall(not_finite, 2e3)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # errors of impossible states
 KINDS = {head.value: head.group for head in read_table().heads}
 REPORT_SECONDS = 0.2
@@ -120,7 +120,7 @@ def cycle(
     array.h.ci[g.NCYC] = n
     # a run that was interrupted may have left an error behind, or a wish for memory
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
-    energy.begin(array)
+    energy_account.begin(array)
     guard = guard or Guard()
     guard.runaway.begin(array, bound.own_blocks)
     try:
@@ -139,7 +139,7 @@ def cycle(
 
 def finish(array: MainArray, watch: Watch | None) -> None:
     """What a run that ends leaves, why ever it ends. To do it twice does no harm."""
-    energy.end(array)
+    energy_account.end(array)
     if watch is not None:
         watch.hand_on()
 

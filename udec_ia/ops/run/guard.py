@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.chatter import Chatter
 from udec_ia.ops.run.drift import Drift

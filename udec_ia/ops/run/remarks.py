@@ -14,13 +14,13 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.limits import NMAT, last_digit
+from udec_ia.ops.common.number_limits import NMAT, last_digit
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}

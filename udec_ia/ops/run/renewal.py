@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.damped import damped

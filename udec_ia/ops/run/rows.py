@@ -19,15 +19,15 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
-from udec_ia.heap.interpreting import Sparing
 from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tensor import ROUND
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there
-ADD_CONTACTS = Sparing(add_contacts, 2e3)
+ADD_CONTACTS = InterpretWhenSmall(add_contacts, 2e3)
 # A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.bearing import borne, overlap

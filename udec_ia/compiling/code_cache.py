@@ -1,0 +1,107 @@
+"""The cache of machine code on disk: one file for each kernel and types of its arguments.
+
+numba's own cache looks at the kernel's own file only: change an offset, or a function that the kernel calls,
+and it would go on running the old machine code. So the cache is in a folder named by a hash of the field
+table and of every source file that kernels can depend on: any change starts afresh, and two copies of the
+same sources share what is in it.
+
+numba numbers its files and keeps an index of them. Two processes that compile at the same time may take the
+same number, and what one of them has compiled is then found under the name of the other. Here a file is named
+by the types, and contains for which types it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import config
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.runtime import rtsys
+
+from udec_ia.compiling.build_choice import CHECKED, plain_wanted
+from udec_ia.layout import offsets as g
+
+PACKAGE = Path(__file__).parent.parent
+FOLDERS = "layout", "compiling", "checked_build", "heap", "kernels"  # whose files kernels can depend on
+
+
+def _cache_home() -> Path:
+    if "UDEC_CACHE" in os.environ:
+        return Path(os.environ["UDEC_CACHE"])
+    from platformdirs import user_cache_dir
+
+    return Path(user_cache_dir("udec_ia", appauthor=False))
+
+
+def source_digest() -> str:
+    """Hash of the field table and of the sources that compiled kernels can depend on."""
+    digest = hashlib.sha256(g.DIGEST.encode())
+    sources = (sorted((PACKAGE / folder).rglob("*.py")) for folder in FOLDERS)
+    for path in [PACKAGE / "errors.py", *chain.from_iterable(sources)]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def cache_folder() -> Path:
+    """The folder of what is compiled from these sources, by this numba, in this build."""
+    build = ("-plain" if plain_wanted() else "") + ("-checked" if CHECKED else "")
+    return _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{build}"
+
+
+class CodeFile(IndexDataCacheFile):
+    """The files of one kernel. key: types of arguments, machine and hash of the kernel, as numba gives it."""
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write `data`. Another process that reads at the same time finds all of it or nothing."""
+        self._save_data(self._name(key), (key, data))
+
+    def load(self, key: Any) -> Any:
+        """What was saved for `key`, or None."""
+        try:
+            known, data = self._load_data(self._name(key))
+        except OSError:
+            return None
+        return data if known == key else None
+
+    def _name(self, key: Any) -> str:
+        return str(self._data_name(int(hashlib.sha256(str(key).encode()).hexdigest()[:12], 16)))
+
+
+class _Cache(FunctionCache):
+    """What numba asks for the machine code of a kernel before it compiles it. folder: where our files are.
+
+    numba prepares itself to compile before it asks, which takes longer than to read a dozen kernels. What
+    machine code needs to run, which is numba's memory for arrays, is prepared here, and the rest if there is
+    no file.
+    """
+
+    def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
+        super().__init__(kernel)
+        self._impl.locator._cache_path = str(folder)
+        self._cache_file = CodeFile(str(folder), self._impl.filename_base, None)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """What was saved for the types `sig`, or None."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            if found := self._load_overload(sig, target_context):
+                return found
+        target_context.refresh()
+        return None
+
+
+def use_cache(dispatcher: Any, folder: Path) -> None:
+    """Have numba keep the machine code of `dispatcher` in files of our kind in `folder`."""
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder.parent)
+    try:
+        dispatcher._cache = _Cache(dispatcher.py_func, folder)
+    finally:
+        config.CACHE_DIR = before

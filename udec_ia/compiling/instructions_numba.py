@@ -1,0 +1,222 @@
+"""Accessors, prefetch and outlined calls as machine instructions, written out for numba.
+
+The kernels have two thousand accesses. Were an accessor a function of its own to numba, each would be a call
+that is made, and then taken apart again by LLVM: a tenth of the time that it takes to compile them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from inspect import signature as parameters
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.typing import signature
+from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.extending import intrinsic, lower_builtin, overload, typeof_impl
+
+from udec_ia.compiling.build_choice import CHECKED
+from udec_ia.compiling.memory_type_numba import MemoryType
+
+INDEX = types.uint64  # never negative: numba would look
+LINE = 64  # bytes that the machine's memory hands out at a time
+READ, KEEP, DATA = 0, 3, 1  # arguments of llvm.prefetch: to be read, often, no instructions
+
+# ---- accessors
+
+
+def which_type(h: MemoryType) -> tuple[int, int]:
+    """Index into an offset tuple for the compiled type of `h`; bits from a word's address to a real's."""
+    ratio = h.dtypes[1].bitwidth // h.dtypes[0].bitwidth
+    return ratio >> 1, ratio.bit_length() - 1
+
+
+def _compile(accessor: Callable[..., Any], typed: Callable[..., Any], write: Callable[..., Any]) -> None:
+    """Have numba compile `accessor` to the instructions that `write` writes.
+
+    typed: called with the types of the arguments in a call, it returns those of result and arguments.
+    """
+    named = parameters(accessor)
+
+    class _Template(AbstractTemplate):
+        key = accessor
+
+        def generic(self, args: Any, kws: Any) -> Any:
+            bound = named.bind(*args, **kws)
+            bound.apply_defaults()
+            result, *wanted = typed(*bound.args)
+            return signature(result, *wanted).replace(pysig=named)
+
+    infer_global(accessor, types.Function(_Template))
+    lower_builtin(accessor, MemoryType, types.VarArg(types.Any))(write)
+
+
+def _number(context: Any, builder: Any, k: Any, kind: Any, j: int) -> Any:
+    """Element `j` of the offset `k`, less 1: a literal in the code, as offsets are known when it is made."""
+    word = context.cast(builder, builder.extract_value(k, j), kind[j], INDEX)
+    return builder.sub(word, word.type(1))
+
+
+def _integer(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    """Address of the integer that `args`, the memory, an address, an offset and an element, are about."""
+    h, iad, k, *_, i = args
+    words = context.make_helper(builder, sig.args[0], value=h).ia
+    j, _ = which_type(sig.args[0])
+    at = builder.add(iad, _number(context, builder, k, sig.args[2], j))
+    return builder.gep(words, [builder.add(at, i)])
+
+
+def _real(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    """Address of the real that `args`, the memory, an address and an offset, are about."""
+    h, iad, k, *_ = args
+    j, shift = which_type(sig.args[0])
+    ra = sig.args[0].dtypes[1]
+    words = context.make_helper(builder, sig.args[0], value=h).ia
+    reals = builder.bitcast(words, context.get_value_type(types.CPointer(ra)))
+    first = builder.lshr(builder.sub(iad, iad.type(1)), iad.type(shift))
+    return builder.gep(reals, [builder.add(first, _number(context, builder, k, sig.args[2], j))])
+
+
+def compile_iget(iget: Callable[..., Any]) -> None:
+    """An integer of IA() is loaded."""
+
+    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        kind = sig.args[0].dtypes[0]
+        word = context.unpack_value(builder, kind, _integer(context, builder, sig, args))
+        return context.cast(builder, word, kind, types.int64)
+
+    _compile(iget, lambda h, iad, k, i: (types.int64, h, INDEX, k, INDEX), write)
+
+
+def compile_puti(puti: Callable[..., Any]) -> None:
+    """An integer of IA() is stored."""
+
+    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        context.pack_value(builder, sig.args[0].dtypes[0], args[3], _integer(context, builder, sig, args))
+        return context.get_dummy_value()
+
+    _compile(puti, lambda h, iad, k, n, i: (types.none, h, INDEX, k, h.dtypes[0], INDEX), write)
+
+
+def compile_getr(getr: Callable[..., Any]) -> None:
+    """A real of IA() is loaded."""
+
+    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return context.unpack_value(builder, sig.return_type, _real(context, builder, sig, args))
+
+    _compile(getr, lambda h, iad, k: (h.dtypes[1], h, INDEX, k), write)
+
+
+def compile_putr(putr: Callable[..., Any]) -> None:
+    """A real of IA() is stored."""
+
+    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        context.pack_value(builder, sig.args[0].dtypes[1], args[3], _real(context, builder, sig, args))
+        return context.get_dummy_value()
+
+    _compile(putr, lambda h, iad, k, v: (types.none, h, INDEX, k, h.dtypes[1]), write)
+
+
+def compile_size_of(size_of: Callable[..., Any]) -> None:
+    """The size of a group is a literal."""
+
+    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        j, _ = which_type(sig.args[0])
+        return context.cast(builder, builder.extract_value(args[1], j), sig.args[1][j], types.int64)
+
+    _compile(size_of, lambda h, nv: (types.int64, h, nv), write)
+
+
+def compile_real(real: Callable[..., Any]) -> None:
+    """A number is converted to a real of the scheme."""
+    _compile(
+        real, lambda h, value: (h.dtypes[3], h, h.dtypes[3]), lambda context, builder, sig, args: args[1]
+    )
+
+
+# ---- prefetch
+
+
+@intrinsic
+def _prefetch(typing: Any, array: Any, index: Any) -> Any:
+    """The machine's instruction for it, for element `index` of `array`."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = builder.gep(args[0], [args[1]])
+        number = ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [place.type, number, number, number])
+        instruction = builder.module.declare_intrinsic("llvm.prefetch", [place.type], kind)
+        builder.call(instruction, [place, *(number(n) for n in (READ, KEEP, DATA))])
+        return context.get_dummy_value()
+
+    return types.void(array, types.int64), generate
+
+
+def compile_fetch(fetch: Callable[..., Any]) -> None:
+    """One instruction for each line of memory that the group touches."""
+
+    @overload(fetch)
+    def _fetch(h: Any, iad: Any, nv: Any, beyond: Any = 0) -> Callable[..., Any]:
+        j, _ = which_type(h)
+        step = LINE * 8 // h.dtypes[0].bitwidth
+
+        def impl(h: Any, iad: Any, nv: Any, beyond: Any = 0) -> None:
+            first = iad - 1 + beyond * nv[j]
+            for word in range(0, nv[j], step):
+                _prefetch(h.ia, first + word)
+
+        return impl
+
+
+# ---- kernels, and calls of them by their addresses
+
+
+def type_of_kernels(kernel_class: type) -> None:
+    """To the kernels that call it, a kernel has the type of what numba makes of it."""
+
+    @typeof_impl.register(kernel_class)
+    def _type_of(kernel: Any, context: Any) -> Any:
+        found = typeof_impl(kernel.made, context)
+        return found if found is not None else types.Dispatcher(kernel.made)
+
+
+@intrinsic
+def _call(typing: Any, where: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        taken = [context.get_value_type(kind) for kind in signature.args[1]]
+        function = ir.FunctionType(context.get_value_type(types.boolean), taken)
+        address = builder.inttoptr(args[0], function.as_pointer())
+        return builder.call(address, cgutils.unpack_tuple(builder, args[1]))
+
+    return types.boolean(types.int64, given), generate
+
+
+@intrinsic
+def _call_and_raise(typing: Any, where: Any, given: Any) -> Any:
+    """The same in the checked build: an exception that the kernel raises is passed on to the caller."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kinds, convention = tuple(signature.args[1]), context.call_conv
+        function = convention.get_function_type(types.boolean, kinds)
+        address = builder.inttoptr(args[0], function.as_pointer())
+        taken = cgutils.unpack_tuple(builder, args[1])
+        status, result = convention.call_function(builder, address, types.boolean, kinds, taken)
+        with cgutils.if_unlikely(builder, status.is_error):
+            convention.return_status_propagate(builder, status)
+        return result
+
+    return types.boolean(types.int64, given), generate
+
+
+def compile_call_entry(call_entry: Callable[..., Any]) -> None:
+    """A call of what lies at an address."""
+    call = _call_and_raise if CHECKED else _call
+
+    @overload(call_entry)
+    def _call_entry(where: Any, *args: Any) -> Callable[..., Any]:
+        def impl(where: Any, *args: Any) -> Any:
+            return call(where, args)
+
+        return impl

@@ -1,0 +1,85 @@
+"""The decorators that make kernels: functions that are compiled when they are first called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from udec_ia.compiling.build_choice import CHECKED, DISABLED, checked_build, plain_wanted
+from udec_ia.compiling.interpreting import ObservedMemory, interpreted, mode
+from udec_ia.compiling.numba_loading import load, numba_form
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@numba_form("udec_ia.compiling.instructions_numba:type_of_kernels")
+class Kernel:
+    """A kernel: compiled when it is first called, or run as Python where kernels are (interpreting.py).
+
+    inline, outlined, counted: as the decorators below set them.
+    """
+
+    def __init__(self, function: Callable[..., Any], inline: bool, outlined: bool, counted: bool) -> None:
+        update_wrapper(self, function)
+        self.py_func, self.inline, self.outlined, self.counted = function, inline, outlined, counted
+
+    def __call__(self, *args: Any) -> Any:
+        if mode.python:
+            return self.py_func(*args)
+        if args and args[0].__class__ is ObservedMemory:
+            with interpreted():
+                return self.py_func(*args)
+        return self.whole(*args)
+
+    @cached_property
+    def made(self) -> Any:
+        """What numba makes of it, for each types of arguments when they first come.
+
+        No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
+        follows IEEE 754 instead of raising.
+        """
+        load()
+        from udec_ia.compiling.code_cache import cache_folder
+
+        layer = Path(self.py_func.__code__.co_filename).parent.name  # two may have a file of the same name
+        folder = cache_folder() / layer
+        flags = {"error_model": "numpy", "forceinline": self.inline, "_nrt": self.counted}
+        if plain_wanted():
+            from udec_ia.compiling.plain_path import plain_kernel
+
+            return plain_kernel(self.py_func, folder, **flags)
+        from udec_ia.compiling.linking import LinkedKernel
+
+        return LinkedKernel(self.py_func, folder, self.outlined, **flags)
+
+    @cached_property
+    def whole(self) -> Any:
+        """That which Python calls."""
+        return getattr(self.made, "whole", self.made)
+
+
+def kernel(function: F, inline: bool = False, outlined: bool = False) -> F:
+    """Have `function` compiled on first use, for the word scheme of the arrays it is called with."""
+    if CHECKED:
+        return cast(F, checked_build("access_checks").CheckedKernel(function, inline, outlined))
+    return function if DISABLED else cast(F, Kernel(function, inline, outlined, True))
+
+
+def inlined(function: F) -> F:
+    """A kernel that becomes a part of its callers: for what the cycle does once for every contact."""
+    return kernel(function, inline=True)
+
+
+def outlined(function: F) -> F:
+    """A kernel that other kernels call by its address (outlined_calls.py)."""
+    return kernel(function, outlined=True)
+
+
+def over_arrays(function: F) -> F:
+    """A kernel over arrays that its caller keeps: it makes none, and references to them are not counted.
+
+    To count takes ten times as long as to look at a corner, where arrays come by the dozen.
+    """
+    return function if DISABLED else cast(F, Kernel(function, False, False, False))

@@ -1,0 +1,56 @@
+"""How a compiled kernel calls a law that its user has written (Appendix IV-4).
+
+A law of the user's is compiled when a session begins, long after the kernels that call it, and the kernels
+stay on disk from session to session. So a kernel must not depend on which law it calls: it is handed
+addresses of machine code, as numbers, and calls what lies there with a fixed list of arguments,
+
+    void law(double, double, double, double, double, double, const double *material, double *result)
+
+`machine_code` (law_calls_numba.py) brings a compiled law to this form, `call` calls it. A call costs what it
+costs in C, and no kernel is compiled anew for it. Laws calculate with 64-bit reals in every word scheme.
+Kernels that are not compiled call the Python function itself.
+
+What a law raises never comes to the kernel: its increments are then no numbers, and it is noted what it was
+called with.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.compiling.numba_loading import numba_form
+
+FIRST, LAST = 2, 5  # constitutive numbers of the user's laws
+JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws
+
+
+class Laws(NamedTuple):
+    """The user's laws, and the materials that they may be called with.
+
+    calls: CL2 ... CL5, CLJ2 ... CLJ5, those that were not given 0. materials: the Material of each number.
+    Compiled, both are addresses: of the table of the addresses of the laws, and of the reals of material 1.
+    """
+
+    calls: Any
+    materials: Any
+
+
+@numba_form("udec_ia.compiling.law_calls_numba:compile_is_given")
+def is_given(laws: Laws, i: int) -> bool:
+    """True if there is a law at place `i` of the calls."""
+    return bool(laws.calls[i] != 0)
+
+
+@numba_form("udec_ia.compiling.law_calls_numba:compile_call")
+def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
+    """What law `i` returns for material `mat` and six reals: three reals, of which joint laws use two.
+
+    What is not a number if the law raises an exception, whatever it is: no pass may end half way.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            return laws.calls[i](*map(np.float64, state), laws.materials[mat - 1])
+    except Exception:
+        return (np.nan, np.nan, np.nan)

@@ -1,0 +1,326 @@
+"""The monitor: takes the commands of a deck one after the other and has a model obey them (MON, III-3).
+
+It echoes every line behind a `>`, hands the call to the method of Model that has the command's name, and
+writes what that method returns. What goes wrong becomes a numbered error with its place in the deck;
+in a run the state is then saved, so that nothing that was computed is lost.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Protocol, TextIO, TypeVar
+
+from udec_ia.counting import counted
+from udec_ia.deck.command_forms import RUNS, Counts, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import WORD, Statement, at, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
+from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.heap.accessors import Memory
+from udec_ia.layout import offsets as g
+from udec_ia.printable import printable
+from udec_ia.signals import hold, passing, poll
+
+FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
+RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
+RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
+
+
+class Monitor:
+    """Obeys statements on `model` and writes to `out`.
+
+    echo: False where the user sees what he types. ended: True after STOP or END. values: of variables.
+    """
+
+    def __init__(
+        self, model: Obeying, out: TextIO, *, echo: bool = True, values: Values | None = None
+    ) -> None:
+        self.model = model
+        self.out = out
+        self.echo = echo
+        self.variables = Variables(values)
+        self.ended = False
+        self._stopped = False
+
+    def run(self, lines: Iterable[str], file: str) -> None:
+        """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
+
+        Whatever ends it, the state is saved before: UdecError.saved, the argument of KeyboardInterrupt and
+        a note to any other exception name the restart file.
+        """
+        with hold():  # around all of it: no signal comes between what ends the run and its rescue
+            try:
+                for statement in self.variables.filled(statements(_awaited(lines), file)):
+                    self.obey(statement)
+                    if self.ended:
+                        return
+                    poll()
+            except UdecError as error:
+                error.saved = self.rescue(sound=error.number != DAMAGED)
+                raise
+            except KeyboardInterrupt as interrupt:
+                raise type(interrupt)(self.rescue()) from None
+            except BrokenPipeError:
+                raise
+            except BaseException as failure:  # of ours, or of a function of the user's
+                failure.add_note(f"the results so far are saved in {self.rescue()}")
+                raise
+
+    def obey(self, statement: Statement) -> None:
+        """Echo and obey one statement, with its values put in. Raises UdecError with its place."""
+        if self.echo:
+            for line in statement.lines:
+                self._write(f"> {line.shown}".rstrip())
+        if not statement.tokens:
+            return
+        call = parse(statement)
+        name = call.command.name
+        if not (call.command.opens or self.model.started):
+            raise at(UdecError(3, f"this is {name.upper()}"), call.head)
+        try:
+            result = self.model.whole(lambda: self._carry_out(call, statement))
+        except MemoryError as error:
+            runs = call.command.kind is RUNS
+            stays = "the results so far are kept" if runs else "nothing was changed"
+            advice = f"use a smaller model, or a machine with more memory;  {stays}"
+            raise at(UdecError(1, "this machine is out of memory", advice), call.head) from error
+        except UdecError as error:
+            raise at(error, call.place_of(error)) from error.__cause__
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            refused = UdecError(31, f"{error.strerror or error}: {error.filename or name}")
+            raise at(refused, call.place_of(refused)) from error
+        if call.command.counts is not None and isinstance(result, int):
+            self._write(outcome(call, call.command.counts, result, self.model))
+        self._show(result)
+
+    def stop(self) -> None:
+        """End the run, as STOP does, if a run was started and has not been ended.
+
+        What cannot be written is told, and the summary written all the same, before the error is raised.
+        """
+        if not self.model.started or self._stopped:
+            return
+        self._stopped = True
+        try:
+            last = self.model.stop()
+        except BaseException as failure:
+            self._write(f"not all pictures were written: {str(failure) or 'interrupted'}")
+            self._show(self.model.summary())
+            raise
+        self._show(last)
+
+    def _carry_out(self, call: Call, statement: Statement) -> object:
+        """Obey `call` and log its lines; what is returned is to be shown."""
+        result = self._call(call)
+        lines = dict.fromkeys(token.line for token in statement.tokens)
+        if call.command.name != "default":  # the lines that are logged have their values
+            self.model.log_lines([line.shown for line in lines])
+        return result
+
+    def _call(self, call: Call) -> object:
+        name = call.command.name
+        if name == "default":  # obeyed when its line was read
+            return None
+        if call.command.ends:
+            self.ended = True
+            if name == "stop":
+                self.stop()
+            return None
+        named = dict(call.named)
+        place = self.place(name, named.get("path"))
+        if place is not None:
+            named["path"] = place
+        model = self.model
+        before = model.tell, model.inform, model.explain_step, model.logs_calls
+        model.explain_step, model.logs_calls = True, False
+        model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
+        try:
+            return getattr(model, name)(*call.positional, **named)
+        finally:
+            model.tell, model.inform, model.explain_step, model.logs_calls = before
+
+    def place(self, command: str, name: str | None) -> Path | None:
+        """Where the file is that a command names: in the folder for files. None if it names none."""
+        return None if name is None else _in_folder(self.model.out, name)
+
+    def _show(self, result: object) -> None:
+        """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
+        if isinstance(result, Path):
+            self._write(f"written: {printable(str(result))}")
+        elif isinstance(result, list):
+            for one in result:
+                self._show(one)
+        elif result is not None and not isinstance(result, int):
+            self._write(str(result))
+
+    def _write(self, text: str) -> None:
+        self.out.write(text + "\n")
+        self.out.flush()
+
+    def rescue(self, *, sound: bool = True) -> str | None:
+        """Save the state, and end the run. Returns the name of the restart file.
+
+        An unsound state is saved by force. The file is read again and proved before it is named. A failure
+        here must not hide what has gone wrong before. However often Ctrl-C is pressed, the file is written;
+        then only the pictures are left out.
+        """
+        if not self.model.started:
+            return None
+        saved = None
+        with suppress(Exception, KeyboardInterrupt), hold():
+            try:
+                with hold(firm=True):
+                    path = self._save(sound)
+                saved = self._proved(path)
+            except Exception as failure:
+                self._write(f"the state could not be saved: {failure}")
+            self.stop()  # which tells what it cannot write
+        return saved
+
+    def _save(self, sound: bool) -> Path:
+        """Save the state for the rescue, by force if it is not sound."""
+        path = (self.model.out / RESCUE).absolute()
+        if sound:
+            try:
+                return self.model.save(path)
+            except UdecError as error:
+                if error.number != DAMAGED:
+                    raise
+        return self.model.save(path, force=True)
+
+    def _proved(self, path: Path) -> str:
+        """The name of the restart file `path`; says what is wrong with the state in it."""
+        try:
+            violations = self.model.check_file(path)
+        except KeyboardInterrupt:
+            self._write(f"{path} was written, but the check by reading it again was interrupted")
+            raise
+        for violation in violations[:1]:
+            self._write(f"the saved state is for inspection only: {violation}")
+        return str(path)
+
+
+def _in_folder(folder: Path, name: str) -> Path:
+    """The file `name` in `folder`, which need not be there yet: no system finds the `..` of such a one."""
+    path = folder / name
+    return path if folder.exists() else Path(os.path.normpath(path))
+
+
+def _awaited(lines: Iterable[str]) -> Iterator[str]:
+    """`lines`, for which it may take long to come: they can be interrupted."""
+    source = iter(lines)
+    while True:
+        with passing():
+            line = next(source, None)
+        if line is None:
+            return
+        yield line
+
+
+def run_deck(
+    model: Obeying, deck: str | Path | TextIO, out: TextIO, values: Values | None = None, name: str = "text"
+) -> Monitor:
+    """Obey a whole deck on `model` and return the monitor that did.
+
+    deck: the path of a deck, its text, or a stream; a str is a path if there is a file of that name, or if it
+    looks like one. values: of its variables, by name. name: what errors call a text or a stream. Raises
+    UdecError, and OSError if the file cannot be read.
+    """
+    monitor = Monitor(model, out, values=values)
+    if not isinstance(deck, str | Path):
+        _run_whole(monitor, deck, name)
+    elif isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
+        with _opened(deck) as lines:
+            _run_whole(monitor, lines, str(deck))
+    else:
+        _run_whole(monitor, io.StringIO(deck, newline=None), name)
+    return monitor
+
+
+def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
+    """Have the monitor obey a deck, after a look at all its variables.
+
+    What comes out of a pipe is obeyed as it comes, but for one to which values are given.
+    """
+    if lines.seekable() or monitor.variables.given:
+        lines = io.StringIO(lines.read())
+        monitor.variables.check(lines, file)
+        lines.seek(0)
+    monitor.run(lines, file)
+
+
+def _opened(deck: str | Path) -> TextIO:
+    """The file `deck`. A name that no file can have, with a NUL in it, is that of no file."""
+    try:
+        return open(deck, encoding="utf-8-sig", errors="replace")
+    except ValueError as error:
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(deck)) from error
+
+
+def names_a_file(text: str) -> bool:
+    """True if `text` is one line that begins with no command and ends like the name of a file: in `.dat`."""
+    if FILE_NAME.fullmatch(text) is None or match(COMMANDS, text.split()[0]):
+        return False
+    return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
+
+
+def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
+    """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
+    name = call.command.name
+    if n == 0:
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
+    now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
+    return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
+
+
+# ---- What the monitor needs of a model, beside a method for every command of the table
+
+R = TypeVar("R")
+
+
+class Obeying(Protocol):
+    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+
+    started: bool
+    tell: Callable[[str], None]
+    inform: Callable[[str], None]
+    explain_step: bool
+    logs_calls: bool
+
+    @property
+    def out(self) -> Path:
+        """The folder for files."""
+
+    @property
+    def h(self) -> Memory:
+        """The array."""
+
+    def whole(self, action: Callable[[], R]) -> R:
+        """Have all that `action` does done, or nothing of it."""
+
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
+        """Why a command has found nothing."""
+
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
+        """SAVE."""
+
+    def check_file(self, path: str | Path) -> list[Any]:
+        """All violations in a restart file."""
+
+    def stop(self) -> str:
+        """STOP."""
+
+    def summary(self) -> str:
+        """The line that sums up the run."""

@@ -1,0 +1,493 @@
+"""The table of commands: every command of the deck language, its parameters and its help (Appendix I-1).
+
+The parser, the log, studies, HELP, suggestions in error messages and docs/commands.md come from this table.
+
+python -m udec_ia.deck.command_table > docs/commands.md
+"""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+
+from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word, match
+from udec_ia.deck.deck_statements import quoted
+from udec_ia.deck.keyword_suggestions import with_suggestion
+from udec_ia.errors import ADVICE, MESSAGES, UdecError
+from udec_ia.kernels.drive.damping_modes import MODES
+from udec_ia.layout.table import read_table
+from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
+
+WIDTH = 96
+
+INTRODUCTION = """\
+# Commands
+
+A deck is a text file with one command to a line. The language is that of the report's Appendix I-1.
+
+- Upper-case letters of a command or word below must be typed, the others may be left off from the end, and
+  the case of what is typed does not matter: `PROperty` is `PROP`, `Print Blocks` is `P B`. Where two keywords
+  fit, the first one below is meant.
+- Lower-case parameters stand for numbers. Those that begin with i, j, k, l, m or n must be integers; the
+  others are reals, which may be given as integers. `0.5`, `.5`, `5.`, `1.E08` and `1D8` are reals.
+- `[ ]` encloses what may be left off, `|` separates alternatives, `...` means that more of the same follows.
+- Parameters are separated by blanks or any of `= ( ) , /`.
+- A line that begins with `*`, `;`, `#` or `!` is a comment, and so is what follows a `;`, `#` or `!` in any
+  other line. In the name of a file these three belong to the name, unless a blank stands before them and the
+  name is not in quotes.
+- A line that begins with `+` continues the one before it, but the numbers of a pair or triple must stand on
+  one line.
+- At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
+  with `...` in their form ask for more by themselves, until an empty line or the next command. A line that
+  continues them with a word that is a command, too, needs a `+` before it: `G` is GRAVITY, `GRID` is not.
+- The first command is START or RESTART. Lines after STOP are ignored.
+"""
+
+MATERIAL = Word("Material", "n")
+PROPERTIES = [
+    Word(one.keyword, one.value, sets=one.argument if one.argument != one.keyword.lower() else "")
+    for one in read_table().properties
+    if one.keyword
+]
+CONSTITUTIVE = Word("Constitutive", "m")
+BY_FORCE = Word("FORCE")
+RANGE = "x1 x2 y1 y2"
+FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
+
+COMMANDS = (
+    Command(
+        "Block",
+        CHANGES,
+        "Create a rigid block with the corners (x,y), given clockwise. A run has one BLOCK; SPLIT makes "
+        "more blocks.",
+        "BLOCK MAT=2 0,0 0,40 60,40 60,0",
+        words=(MATERIAL, CONSTITUTIVE),
+        list="x y",
+    ),
+    Command(
+        "BOundary",
+        CHANGES,
+        "Boundary conditions in x1<x<x2, y1<y<y2. Velocities and forces act on the grid-points and block "
+        "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension"
+        " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
+        "non-reflecting, with the present properties. A sine (frequency, duration) begins now; a FUNCTION "
+        "depends on the time of the model. Either multiplies loads and velocities. Loads add to existing "
+        "loads. A velocity replaces the previous one. Free removes all conditions.",
+        "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
+        numbers=RANGE,
+        words=(
+            Word("XVel", "v"),
+            Word("YVel", "v"),
+            Word("XForce", "f"),
+            Word("YForce", "f"),
+            Word("Stress", "s11 s12 s22"),
+            Word("XGrad", "g11 g12 g22"),
+            Word("YGrad", "g11 g12 g22"),
+            Word("Viscous"),
+            Word("SIne", "freq t"),
+            Word("Function", "n"),
+            Word("FRee"),
+        ),
+        ours="the command, which the report lists under further developments",
+        counts=Counts("condition", "in the range", none="no condition in range"),
+    ),
+    Command(
+        "Change",
+        CHANGES,
+        "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "CHANGE 0 60 30 40 MATERIAL=2",
+        numbers=RANGE,
+        words=(
+            Word("Sdef", sets="type"),
+            Word("Fdef", sets="type"),
+            Word("Rigid", sets="type"),
+            MATERIAL,
+            CONSTITUTIVE,
+        ),
+        ours="Rigid",
+        counts=Counts("block", "changed"),
+    ),
+    Command(
+        "CYcle",
+        RUNS,
+        "Calculate n cycles.",
+        "CYCLE 300",
+        numbers="n",
+        ours="listed in no appendix, but used in both example runs",
+    ),
+    Command(
+        "DAmping",
+        CHANGES,
+        "Rayleigh damping: the fraction of critical damping at the centre frequency, in cycles per unit "
+        "time. Mass or Stiffness keeps that half alone, which is fcrit/2 at that frequency. There is no "
+        "damping by default, and DAMPING 0 1 switches it off again. The other kinds only lead to rest and "
+        "are not physical. " + " ".join(f"{one.name} {one.help}." for one in MODES),
+        "DAMP 0.1 30 STIFFNESS",
+        optional="fcrit freq",
+        words=(
+            Word("Mass", sets="only"),
+            Word("Stiffness", sets="only"),
+            Word("Internal", sets="only"),
+            *(Word(one.keyword, one.fraction) for one in MODES),
+        ),
+        ours=", ".join(one.name for one in MODES),
+    ),
+    Command(
+        "DEFAult",
+        SESSION,
+        "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
+        "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
+        "given with the deck, by --set F=0.4, takes precedence.",
+        "DEFAULT F=0.5 N=1000",
+        text="assignments",
+        needs_text=True,
+        opens=True,
+        ours="the command, and variables",
+    ),
+    Command(
+        "DElete",
+        CHANGES,
+        "Delete the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "DELETE 20 40 10 20",
+        numbers=RANGE,
+        counts=Counts("block", "deleted", of_all=True),
+    ),
+    Command(
+        "Dump",
+        SHOWS,
+        "Dump the main array from address n to address m, and its five pointers.",
+        "DUMP 1 100",
+        numbers="n m",
+    ),
+    Command(
+        "ENErgy",
+        CHANGES,
+        "ON starts an account of the energy, which PRINT ENERGY shows: motion, springs, weight, friction, "
+        "damping, boundary conditions. Cycles take longer with it. OFF ends it.",
+        "ENERGY ON",
+        words=(Word("ON", sets="state"), Word("OFf", sets="state")),
+        first="state",
+        ours="the command",
+    ),
+    Command(
+        "END",
+        SESSION,
+        "The last line of a deck, after STOP.",
+        "END",
+        opens=True,
+        ours="only said to be one more line",
+        ends=True,
+    ),
+    Command(
+        "FUnction",
+        CHANGES,
+        "Define function number n for BOUNDARY: factors f at the times t of the model, linear in between.",
+        "FUNCTION 1 0 0 0.5 1",
+        numbers="n",
+        list="t f",
+        ours="the command",
+    ),
+    Command(
+        "FRaction",
+        CHANGES,
+        "Use the fraction f of the critical time-step. Without a word this is the estimate of 1980, which "
+        "is only approximate; the default is 0.1 of it. SAFE: of a bound that no mode of the present "
+        "contacts and zones exceeds. SCALED: of that bound, with inertial masses that make all modes as "
+        "quick as the quickest. The path to rest is then not that of the model, and time has no meaning.",
+        "FRAC 0.1",
+        numbers="f",
+        words=(Word("Safe"), Word("SCaled")),
+        ours="Safe, Scaled",
+    ),
+    Command(
+        "Fix",
+        CHANGES,
+        "Fix the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "FIX 0 60 0 10",
+        numbers=RANGE,
+        counts=Counts("block", "fixed"),
+    ),
+    Command(
+        "FRee",
+        CHANGES,
+        "Set free the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "FREE 0 60 0 10",
+        numbers=RANGE,
+        counts=Counts("block", "set free"),
+    ),
+    Command(
+        "GEnerate",
+        CHANGES,
+        "Make the first block in the range that has no zones fully-deformable; the same command again takes "
+        "the next block. Manual: grid-points (x,y), and zones as "
+        "triples of their numbers; the last grid-point is number 1. Automatic: triangles with sides of "
+        "about d. Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
+        "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
+        numbers=RANGE,
+        words=(
+            Word("Manual", sets="mode"),
+            Word("Automatic", sets="mode"),
+            Word("Gridpoints", "x y", repeated=True),
+            Word("Zones", "l m n", repeated=True),
+            Word("Edge", "d"),
+            Word("MIxed"),
+        ),
+        first="mode",
+        first_error=22,
+        ours="the form, whose line the scan of the report has lost; Edge and Mixed",
+    ),
+    Command(
+        "Gravity",
+        CHANGES,
+        "Set the gravitational accelerations in x and y.",
+        "GRAVITY 0 -9.81",
+        numbers="gx gy",
+    ),
+    Command(
+        "HElp",
+        SHOWS,
+        "Explain a command, or list them all.",
+        "HELP PROPERTY",
+        text="command",
+        opens=True,
+        ours="the command",
+    ),
+    Command(
+        "HIStory",
+        CHANGES,
+        "Record a number every n cycles. It is a field of a group, named as in the table of data groups; "
+        "the group is given by its address, or as the one nearest to a point. Or it is a variable of the "
+        "common block, such as TIME or WFRIC, or a quantity of the whole model: "
+        + ", ".join(QUANTITIES)
+        + ". The numbers go to NAME-history.csv and NAME-history.h5 after every CYCLE.",
+        "HISTORY 10 KXD AT 15,25 25,25",
+        numbers="n",
+        words=(
+            *FIELDS,
+            *(Word(keyword, sets="field") for keyword in QUANTITIES),
+            Word("Address", "ia"),
+            Word("AT", "x y", repeated=True),
+        ),
+        first="field",
+        ours="the command",
+    ),
+    Command(
+        "INsitu",
+        CHANGES,
+        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive;"
+        " XGrad and YGrad are the increases with x and y. Joints start without force and close under these "
+        "stresses.",
+        "INSITU 0 60 0 40 -1.E6 0 -2.E6",
+        numbers=RANGE + " s11 s12 s22",
+        words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
+        ours="the command",
+        counts=Counts("block", "stressed"),
+    ),
+    Command(
+        "PAtch",
+        CHANGES,
+        "Change words of the main array by name: a field of a group, a variable of the common block, or an "
+        "integer word by its address. Separate several with commas. The state is first proved sound with "
+        "the new values; otherwise nothing is changed.",
+        "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
+        text="assignments",
+        needs_text=True,
+        ours="the command",
+        writes_words=True,
+    ),
+    Command(
+        "PLot",
+        SHOWS,
+        "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
+        " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
+        " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
+        "stress. WINDOW is the range that the picture shows. HISTORY alone plots the histories instead. A "
+        "picture is written at once; one with more than ten states is written when it has grown by a "
+        "quarter, and when it ends.",
+        "PLOT 0 CONTACTS",
+        optional="n",
+        words=(
+            Word("Contacts"),
+            Word("Domains"),
+            Word("Addresses"),
+            Word("Stresses"),
+            Word("Velocities"),
+            Word("DIsplacements"),
+            *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
+            Word("HIStory"),
+            Word("Window", RANGE),
+        ),
+        ours="the words; n is used in both example runs",
+    ),
+    Command(
+        "Print",
+        SHOWS,
+        "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
+        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or the"
+        " histories.",
+        "PRINT BLOCKS CONTACTS",
+        words=tuple(
+            Word(keyword, sets=SEVERAL)
+            for keyword in (
+                "Blocks",
+                "Contacts",
+                "CORners",
+                "Domains",
+                "List",
+                "DList",
+                "Gridpoints",
+                "Zones",
+                "BOundaries",
+                "ENErgy",
+                "HIStories",
+            )
+        ),
+        first=SEVERAL,
+    ),
+    Command(
+        "PROperty",
+        CHANGES,
+        "Define the properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
+        "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
+        "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
+        "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
+        "blocks face to face have two contacts. A contact has the material of its first block, so the "
+        "contacts of one joint between two materials can differ (PRINT CONTACTS shows them): give both the "
+        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, "
+        "residual friction and cohesion, and the critical slip that "
+        "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
+        "laws of your own. Frictions and dilations are tangents of angles.",
+        "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
+        words=(
+            MATERIAL,
+            *PROPERTIES,
+            Word("K", "b", sets="bulk"),
+        ),
+        first="material",
+        ours="what stands behind G",
+    ),
+    Command(
+        "Restart",
+        SESSION,
+        "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
+        "files (--out). FORCE also accepts an unsound state, for inspection and repair. Commands that "
+        "follow links, such as CYCLE, are then refused until the links are sound.",
+        "RESTART slope.h5",
+        words=(BY_FORCE,),
+        text="path",
+        opens=True,
+        ours="the name of the file; FORCE",
+        begins=True,
+    ),
+    Command(
+        "RSet",
+        CHANGES,
+        "Insert the real v in the main array at address ia, with offset ioff.",
+        "RSET 9.81 100 5",
+        numbers="v ia ioff",
+        writes_words=True,
+    ),
+    Command(
+        "Round",
+        CHANGES,
+        "Round each corner with a circle tangential to its edges at the distance d. The upper limit is half"
+        " the shortest edge, the lower limit twice the greatest overlap. Blocks touch where the circles of "
+        "their corners begin: a block turns about a point at d from its corner.",
+        "ROUND 0.5",
+        numbers="d",
+    ),
+    Command(
+        "SAve",
+        SESSION,
+        "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
+        "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
+        "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
+        "SAVE slope.h5",
+        words=(BY_FORCE,),
+        text="path",
+        ours="the name of the file; FORCE",
+    ),
+    Command("SCale", SHOWS, "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
+    Command(
+        "SOLve",
+        RUNS,
+        "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
+        "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
+        "carry; and until kinetic over strain energy is no more either. At its end it says what still moves, "
+        "and whether joints slipped. LIMIT: cycles after which to give up, "
+        "100000 if it is left off. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, "
+        "whatever DAMPING and FRACTION say; all stands still at its end.",
+        "SOLVE 1E-3 LIMIT 20000",
+        numbers="ratio",
+        words=(
+            Word("Limit", "n"),
+            Word("STatic"),
+            Word("MEan", sets="criterion"),
+            Word("MAx", sets="criterion"),
+        ),
+        ours="the command",
+    ),
+    Command(
+        "SPlit",
+        CHANGES,
+        "Split the blocks in the path of the line from (x1,y1) to (x2,y2).",
+        "SPLIT -1,10 61,10",
+        numbers="x1 y1 x2 y2",
+        counts=Counts("block", "cut off", none="no block was cut", of_all=True),
+    ),
+    Command(
+        "STArt",
+        CHANGES,
+        "Start from nothing.",
+        "START",
+        opens=True,
+        begins=True,
+    ),
+    Command(
+        "Stop",
+        SESSION,
+        "End the run.",
+        "STOP",
+        opens=True,
+        ends=True,
+    ),
+)
+
+
+def meaning(command: Command, width: int, indent: str = "") -> str:
+    """What the command does, in lines of at most `width` characters."""
+    return textwrap.fill(command.help, width, initial_indent=indent, subsequent_indent=indent)
+
+
+def summary() -> str:
+    """What HELP prints: the forms of all commands."""
+    forms = [
+        textwrap.fill(command.form, WIDTH, subsequent_indent=" " * 12, break_on_hyphens=False)
+        for command in COMMANDS
+    ]
+    return "\n".join([*forms, "", "HELP COMMAND explains one of them."])
+
+
+def explain(typed: str) -> str:
+    """What HELP COMMAND prints. Raises UdecError 2 if there is no such command."""
+    command = match(COMMANDS, typed)
+    if command is None:
+        raise UdecError(2, quoted(typed), with_suggestion(typed, (c.keyword for c in COMMANDS), ADVICE[2]))
+    return f"{command.form}\n{meaning(command, WIDTH, '    ')}\n    Example: {command.example}"
+
+
+def reference() -> str:
+    """The text of docs/commands.md."""
+    parts = [INTRODUCTION]
+    for command in COMMANDS:
+        parts.append(f"## {command.name.upper()}\n\n    {command.form}\n\n{meaning(command, 110)}\n")
+        if command.ours:
+            parts.append(f"Not in Appendix I-1: {command.ours}.\n")
+        parts.append(f"    {command.example}\n")
+    rows = [f"| {number} | {text} | {ADVICE[number]} |" for number, text in MESSAGES.items()]
+    parts.append("\n".join(["## Errors\n", "| number | message | what to do |", "|---|---|---|", *rows]))
+    return "\n".join(parts) + "\n"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(reference())

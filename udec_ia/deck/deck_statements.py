@@ -1,0 +1,176 @@
+"""From lines to statements: comments, continuation lines and separators (TIDY and SEP, Appendix III-3).
+
+A statement is one command with all its continuation lines, as a row of tokens. Each token knows its file,
+line and column, so that an error can point at it. A command is complete only when the line after it is
+known not to continue it: this is why the report asks for one more line after STOP.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from udec_ia.errors import UdecError
+
+SEPARATORS = "=(),/"
+WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
+COMMENTS = "*;#!"  # a line that begins with one of them is a comment
+REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, being of 1980
+CONTINUATION = "+"
+SHOWN = 40  # characters of a word that are worth repeating
+WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
+
+
+class Put(NamedTuple):
+    """A value that was put into a line: its columns first to end - 1 stand for those from at to after - 1."""
+
+    first: int
+    end: int
+    at: int
+    after: int
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of a deck. number counts from 1.
+
+    written: the line as it was written, if values were put in for its variables; put_in: these, in order.
+    """
+
+    file: str
+    number: int
+    text: str
+    written: Line | None = None
+    put_in: tuple[Put, ...] = ()
+
+    @property
+    def shown(self) -> str:
+        """The line as it can be printed: one visible character or blank for each of its characters."""
+        if self.text.isprintable():
+            return self.text
+        return "".join(c if c.isprintable() else " " if c.isspace() else "?" for c in self.text)
+
+    def as_written(self, column: int) -> tuple[Line, int]:
+        """The line as it was written, and the column there of what stands in `column` here."""
+        shift = 0
+        for put in self.put_in:
+            if column < put.first:
+                break
+            if column < put.end:
+                return self.written or self, put.at
+            shift = put.after - put.end
+        return self.written or self, column + shift
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word or number of a deck, and where it stands. column counts from 1."""
+
+    text: str
+    line: Line
+    column: int
+
+    @property
+    def end(self) -> int:
+        """The column just after the token."""
+        return self.column + len(self.text)
+
+
+@dataclass
+class Statement:
+    """A command: its tokens, and all lines that it was read from with the comments between them."""
+
+    lines: list[Line]
+    tokens: list[Token] = field(default_factory=list)
+
+
+def at(error: UdecError, place: Token) -> UdecError:
+    """`error`, with its place: file, line and column as the line was written."""
+    line, column = place.line.as_written(place.column)
+    error.file, error.line, error.column = line.file, line.number, column
+    error.token = place.text
+    if column <= WIDTH:
+        error.source = line.shown if len(line.shown) <= WIDTH else line.shown[: column + SHOWN] + " ..."
+    return error
+
+
+def quoted(text: str) -> str:
+    """`text` in quotes, cut off when it is very long, harmless to print."""
+    shown = "".join(c if c.isprintable() else "?" for c in text[:SHOWN])
+    return f'"{shown}{"..." if len(text) > SHOWN else ""}"'
+
+
+def obeyed(text: str) -> str:
+    """What there is to obey in a line: all but its comment."""
+    return "" if text.lstrip()[:1] in tuple(COMMENTS) else REMARK.split(text, 1)[0]
+
+
+def tokens(line: Line, start: int = 0) -> list[Token]:
+    """The words and numbers of `line` from the character `start` on."""
+    return [
+        Token(found.group(), line, found.start() + 1) for found in WORD.finditer(obeyed(line.text), start)
+    ]
+
+
+def tokens_of(lines: Iterable[Line]) -> list[Token]:
+    """The words and numbers of a command that has these lines, comments among them."""
+    found: list[Token] = []
+    for line in lines:
+        if WORD.search(obeyed(line.text)):
+            found += tokens(line, line.text.index(CONTINUATION) + 1 if found else 0)
+    return found
+
+
+class Reader:
+    """Puts lines together to statements.
+
+    `pending` is the last command, which may yet be continued. Comments and blank lines after it are
+    held back until it is known where they belong.
+    """
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.pending: Statement | None = None
+        self._held: list[Line] = []
+        self._number = 0
+
+    def feed(self, text: str) -> Statement | None:
+        """Read one line. Returns the command before it if the line shows that it is complete."""
+        self._number += 1
+        line = Line(self.file, self._number, text)
+        if not WORD.search(obeyed(text)):
+            self._held.append(line)
+            return None
+        complete = None
+        if text.lstrip().startswith(CONTINUATION) and self.pending is not None:
+            self.pending.lines += [*self._held, line]
+            self.pending.tokens += tokens(line, text.index(CONTINUATION) + 1)
+        else:
+            complete = self.pending
+            self.pending = Statement([*self._held, line], tokens(line))
+        self._held = []
+        return complete
+
+    def flush(self) -> Statement | None:
+        """The pending command, or None: no line will continue it."""
+        complete, self.pending = self.pending, None
+        return complete
+
+    def rest(self) -> Statement | None:
+        """What is left at the end of the deck: comments and blank lines, as a statement without tokens."""
+        held, self._held = self._held, []
+        return Statement(held) if held else None
+
+
+def statements(lines: Iterable[str], file: str) -> Iterator[Statement]:
+    """The statements of a deck, in order. A statement without tokens holds comments only."""
+    reader = Reader(file)
+    for text in lines:
+        complete = reader.feed(text.rstrip("\r\n"))
+        if complete is not None:
+            yield complete
+    for last in (reader.flush(), reader.rest()):
+        if last is not None:
+            yield last

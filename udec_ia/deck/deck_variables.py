@@ -1,0 +1,162 @@
+"""Variables of a deck: what `$F` and `${F}` stand for.
+
+DEFAULT gives a variable a value, unless whoever runs the deck has given it another one. The values are put
+into the lines before they are read as commands: all that follows, the log of the run among it, knows lines
+with values only, and an error still points at the place in the line as it was written.
+
+A value is a number or a word. In comments, and before what is no name, a `$` is a character like others.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from udec_ia.deck.command_forms import Command
+from udec_ia.deck.deck_statements import (
+    Line,
+    Put,
+    Statement,
+    Token,
+    at,
+    obeyed,
+    quoted,
+    statements,
+    tokens_of,
+)
+from udec_ia.deck.keyword_suggestions import with_suggestion
+from udec_ia.deck.lines_and_calls import APART, NUMBER, QUOTED, command_of
+from udec_ia.errors import UdecError
+
+Value = int | float | str
+Values = Mapping[str, Value]
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
+PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
+FORM = "the form is: DEFAult name value ..., as in DEFAULT F=0.5"
+IS_NAME = "a name is a letter, then letters, digits and _"
+IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
+
+
+def spelt(name: str, value: object) -> str:
+    """The value of a variable as a line of a deck has it. Raises UdecError 10 for what can be none."""
+    if isinstance(value, str) and (NUMBER.fullmatch(value) or PLAIN.fullmatch(value)):
+        return value
+    if isinstance(value, int | np.integer) and not isinstance(value, bool):
+        return str(int(value))
+    if isinstance(value, float | np.floating) and math.isfinite(value):
+        return repr(float(value))
+    raise UdecError(10, f"{name} cannot be {quoted(str(value))}", IS_VALUE)
+
+
+class Variables:
+    """The variables of one deck. given: values that go before those of DEFAULT, by name in any case.
+
+    used: names that the lines have asked for until now, in order. Raises UdecError 10 for what cannot be
+    given.
+    """
+
+    def __init__(self, given: Values | None = None) -> None:
+        for name in given or {}:
+            if not NAME.fullmatch(name):
+                raise UdecError(10, f"{quoted(name)} is not the name of a variable", IS_NAME)
+        self.given = {name.upper(): spelt(name.upper(), value) for name, value in (given or {}).items()}
+        self.defaults: dict[str, tuple[str, Token]] = {}
+        self.used: dict[str, None] = {}
+
+    def fill(self, statement: Statement) -> Statement:
+        """`statement` with values in the place of its variables. One that is a DEFAULT is noted.
+
+        Raises UdecError 7 for a variable without a value, 10 for a DEFAULT that cannot be understood.
+        """
+        command = command_of(statement)
+        if command is not None and command.name == "default":
+            self._note(statement)
+            return statement
+        lines = [self._filled(line, command) for line in statement.lines]
+        return Statement(lines, tokens_of(lines)) if lines != statement.lines else statement
+
+    def filled(self, deck: Iterable[Statement]) -> Iterator[Statement]:
+        """All statements of a deck with their values."""
+        return map(self.fill, deck)
+
+    def check(self, lines: Iterable[str], file: str) -> None:
+        """Go through a whole deck beforehand: error 7 or 10 for what is wrong with its variables.
+
+        So it is for a value that was given and is used nowhere.
+        """
+        ahead = Variables(self.given)
+        for statement in ahead.filled(statements(lines, file)):
+            command = command_of(statement)
+            if command is None and statement.tokens:
+                return  # with which the run will end
+            if command is not None and command.ends:
+                break
+        for name in self.given:
+            if name not in ahead.used:
+                known = ", ".join(f"${one}" for one in ahead.used)
+                advice = f"the variables of the deck are {known}" if known else "the deck has no variables"
+                raise UdecError(10, f"{file} has no ${name}", with_suggestion(name, ahead.used, advice))
+
+    def _note(self, statement: Statement) -> None:
+        """Note the defaults that a statement gives."""
+        head, *rest = statement.tokens
+        if not rest:
+            raise at(
+                UdecError(7, f"nothing follows {quoted(head.text)}", FORM), Token("", head.line, head.end)
+            )
+        for name, value in zip(rest[::2], [*rest[1::2], None], strict=False):
+            if not NAME.fullmatch(name.text):
+                advice = "write the name without $ here" if name.text.startswith("$") else FORM
+                raise at(UdecError(10, f"{quoted(name.text)} is not the name of a variable", advice), name)
+            if value is None:
+                place = Token("", name.line, name.end)
+                raise at(UdecError(7, f"no value follows {quoted(name.text)}", FORM), place)
+            if not (NUMBER.fullmatch(value.text) or PLAIN.fullmatch(value.text)):
+                raise at(UdecError(10, f"{quoted(value.text)} is not a value of a variable", IS_VALUE), value)
+            key = name.text.upper()
+            if key in self.defaults:
+                before = self.defaults[key][1].line.number
+                raise at(UdecError(10, f"{key} already has a default, in line {before}"), name)
+            self.defaults[key] = value.text, name
+
+    def _filled(self, line: Line, command: Command | None) -> Line:
+        """`line` with values."""
+        text, put_in, end = "", list[Put](), 0
+        for use in USE.finditer(line.text, 0, _end_of(line.text, command)):
+            value = self._value(line, use)
+            text += line.text[end : use.start()]
+            put_in.append(Put(len(text) + 1, len(text) + len(value) + 1, use.start() + 1, use.end() + 1))
+            text, end = text + value, use.end()
+        return Line(line.file, line.number, text + line.text[end:], line, tuple(put_in)) if put_in else line
+
+    def _value(self, line: Line, use: re.Match[str]) -> str:
+        """What stands for the variable at a place of `line`."""
+        name, place = (
+            (use[1] if use[2] is None else use[2]).strip().upper(),
+            Token(use[0], line, use.start() + 1),
+        )
+        if not NAME.fullmatch(name):
+            raise at(UdecError(10, f"{quoted(use[0])} is not a variable", IS_NAME), place)
+        self.used[name] = None
+        if name in self.given:
+            return self.given[name]
+        if name in self.defaults:
+            return self.defaults[name][0]
+        cure = f"give it with --set {name}=..., or by DEFAULT {name}=... before this line"
+        known = [one for one in self.given | self.defaults if one != name]
+        raise at(UdecError(7, f"the variable {name} has no value", with_suggestion(name, known, cure)), place)
+
+
+def _end_of(text: str, command: Command | None) -> int:
+    """Where the obeyed part of a line ends: a name of a file may hold what else begins a comment."""
+    whole = obeyed(text)
+    if not whole or command is None or not command.text:
+        return len(whole)
+    head = len(text) - len(text.lstrip()) + len(text.split()[0])
+    name = text[head:].lstrip(" \t=")
+    named = QUOTED.match(name)
+    return len(text) - len(name) + (named.end(1) if named else len(APART.split(name, maxsplit=1)[0]))

@@ -1,0 +1,144 @@
+"""Commands typed at a terminal: a prompt, a history, and errors that do not end the session.
+
+Each command is obeyed when its line ends. A line that ends with `+` asks for more behind a prompt `+`. So do
+the commands that take a list, BLOCK and GENERATE among them, by themselves: they are obeyed at an empty line
+or at the next command, as in a deck, and a deck can be pasted in unless it continues other commands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TextIO
+
+from platformdirs import user_state_dir
+
+from udec_ia.deck.command_forms import Command, match
+from udec_ia.deck.command_monitor import Monitor, Obeying
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, obeyed
+from udec_ia.deck.deck_variables import Values
+from udec_ia.errors import UdecError
+from udec_ia.signals import Terminated
+
+PROMPT = "> "
+MORE = f"{CONTINUATION} "
+GREETING = "Type START to begin, HELP for the commands, STOP to leave. A line that ends with + is continued."
+NUMERIC = "+-.0123456789"  # what a number begins with
+HISTORY_LENGTH = 1000
+
+
+def converse(
+    model: Obeying, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
+) -> None:
+    """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
+
+    values: of variables.
+
+    Raises UdecError if STOP itself fails, and Terminated, after the state has been saved as in a run.
+    """
+    monitor, typed = Monitor(model, out, echo=False, values=values), Typed()
+    complete: list[Statement] = []
+    over = False
+    print(GREETING, file=out)
+    while not monitor.ended and (complete or not over):
+        try:
+            if complete:
+                monitor.obey(monitor.variables.fill(complete.pop(0)))
+            else:
+                complete = typed.read(ask(typed.prompt))
+        except UdecError as error:
+            if monitor.ended:
+                raise
+            print(error, file=out)
+        except Terminated:
+            raise Terminated(monitor.rescue()) from None
+        except KeyboardInterrupt:
+            typed.flush()
+            complete = []
+            print("\ninterrupted", file=out)
+        except EOFError:
+            over = True
+            complete = typed.flush()
+            print(file=out)
+    monitor.stop()
+
+
+class Typed:
+    """Puts typed lines together to statements.
+
+    command: the one that is pending. asked: its last line ended with `+`, and any line continues it.
+    """
+
+    def __init__(self) -> None:
+        self.reader = Reader("terminal")
+        self.command: Command | None = None
+        self.asked = False
+
+    @property
+    def prompt(self) -> str:
+        """What to ask the next line with."""
+        return PROMPT if self.reader.pending is None else MORE
+
+    def read(self, line: str) -> list[Statement]:
+        """The commands that are complete with `line`, in order."""
+        word = WORD.search(obeyed(line))
+        if word is None:
+            self.reader.feed(line)
+            return [] if WORD.search(line) else self.flush()
+        marked = line.lstrip().startswith(CONTINUATION)
+        if self.reader.pending is None or not (marked or self.asked or self._continued_by(word.group())):
+            self.command = match(COMMANDS, word.group())
+        elif not marked:
+            line = MORE + line.lstrip()
+        self.asked = self._asks(line)
+        if self.asked:
+            line = obeyed(line).rstrip().removesuffix(CONTINUATION).rstrip()
+        before = self.reader.feed(line)
+        complete = [] if before is None else [before]
+        if self.asked or (self.command is not None and self.command.extends):
+            return complete
+        return complete + self.flush()
+
+    def flush(self) -> list[Statement]:
+        """The command that is pending, if there is one: no line will continue it."""
+        self.asked = False
+        last = self.reader.flush()
+        return [] if last is None else [last]
+
+    def _continued_by(self, word: str) -> bool:
+        """True if a line that begins with `word` is no command of its own, but more of the pending one."""
+        if self.command is None or match(COMMANDS, word) is not None:
+            return False
+        return word[0] in NUMERIC or match(self.command.words, word) is not None
+
+    def _asks(self, line: str) -> bool:
+        """True if `line` ends with a `+` that is not part of a text, such as the name of a file."""
+        if self.command is not None and self.command.text:
+            return False
+        return obeyed(line).rstrip().endswith(CONTINUATION) and obeyed(line).strip() != CONTINUATION
+
+
+def history_file() -> Path:
+    """Where the lines typed in earlier sessions are kept."""
+    return Path(user_state_dir("udec_ia", appauthor=False)) / "history"
+
+
+@contextmanager
+def history(path: Path) -> Iterator[None]:
+    """Let the arrow keys bring back earlier lines, where Python has the readline module."""
+    try:
+        import readline
+    except ImportError:
+        yield
+        return
+    with suppress(OSError):
+        readline.read_history_file(path)
+    readline.set_history_length(HISTORY_LENGTH)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            readline.write_history_file(path)

@@ -1,0 +1,379 @@
+"""From a statement to a call of the model: numbers, words and lists by the table (VAR, IVAR and RVAR, III-3).
+
+An integer is accepted where a real is wanted, and not the other way round. A number that is missing is
+reported where it should stand: just after the last parameter that was read.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+
+from udec_ia.deck.command_forms import SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token, at, quoted
+from udec_ia.deck.keyword_suggestions import with_suggestion
+from udec_ia.errors import ADVICE, UdecError
+
+INTEGER = re.compile(r"[+-]?[0-9]+")
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
+QUOTED = re.compile(rf"""((['"]).*?\2)\s*([A-Za-z]*)\s*({REMARK.pattern}.*)?$""")
+LAST = re.compile(r"(?:(.*\S)\s+)?(\S+)\s*")  # a text, and the word that stands last in it
+APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
+INTEGER_NAMES = "ijklmn"
+INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
+RESTART_FILE = ["udec_ia", "restart", "file"]  # the words that such a file begins with
+NO_DECK = "this is a restart file: udec info shows its contents, RESTART in a deck continues from it"
+ALONE = "there is no command before this line to continue; at a terminal, end the line of the command with +"
+NO_COMMENT = "a comment after a command begins with ; # or !; one with * needs a line of its own"
+NO_WORD = "a line begins with a command, or with + if it continues the one before"
+CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
+
+
+@dataclass
+class Call:
+    """A command ready to be obeyed: what the method of Model gets, and where each argument stands."""
+
+    command: Command
+    head: Token
+    positional: list[Any] = field(default_factory=list)
+    named: dict[str, Any] = field(default_factory=dict)
+    places: dict[str, Token] = field(default_factory=dict)
+
+    def place_of(self, error: UdecError) -> Token:
+        """Where the argument that `error` blames stands; a text is a command's only one, else the command."""
+        return self.places.get(error.parameter or self.command.text, self.head)
+
+
+def command_of(statement: Statement) -> Command | None:
+    """The command that `statement` begins with; None for comments and for what is no command."""
+    return match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+
+
+def parse(statement: Statement) -> Call:
+    """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
+    head = statement.tokens[0]
+    command = match(COMMANDS, head.text)
+    if command is None and head.text.startswith(CONTINUATION):
+        raise at(UdecError(2, quoted(head.text), ALONE), head)
+    if command is None and NUMBER.fullmatch(head.text):
+        raise at(UdecError(2, quoted(head.text), NO_WORD), head)
+    if command is None and [token.text for token in statement.tokens] == RESTART_FILE:
+        raise at(UdecError(2, quoted(head.text), NO_DECK), head)
+    if command is None:
+        raise at(UdecError(2, quoted(head.text), _which_command(statement.tokens)), head)
+    return _Parser(command, statement.tokens).parse()
+
+
+def _which_command(tokens: list[Token]) -> str:
+    """Advice on an unknown command: one that is spelt alike, or stands after the first word.
+
+    The whole line must be readable as that command.
+    """
+    if len(tokens) > 1 and (command := match(COMMANDS, tokens[1].text)) and _reads_as(command, tokens[1:]):
+        return f"did you mean {command.name.upper()}? {ADVICE[2]}"
+    by_name = {command.name.upper(): command for command in COMMANDS}
+    return with_suggestion(tokens[0].text, by_name, ADVICE[2], lambda name: _reads_as(by_name[name], tokens))
+
+
+def _reads_as(command: Command, tokens: list[Token]) -> bool:
+    """True if `tokens` have the form of `command`, whatever their first word is."""
+    try:
+        text = str(_Parser(command, tokens).parse().named.get(command.text, ""))
+    except UdecError:
+        return False
+    if command.text == "assignments":
+        return "=" in text
+    if command.text == "command":
+        return not text or match(COMMANDS, text) is not None
+    return not text or "." in text  # the name of a file
+
+
+def number(token: Token, name: str, advice: str) -> int | float:
+    """The value of the number `name` that is spelt by `token`. Raises UdecError 10 or 28 there."""
+    if not NUMBER.fullmatch(token.text):
+        raise at(UdecError(10, f"{quoted(token.text)} is not a number", advice), token)
+    if name[0] in INTEGER_NAMES:
+        if not INTEGER.fullmatch(token.text):
+            raise at(
+                UdecError(10, f"{quoted(token.text)} is not an integer", f"{name} must be an integer"), token
+            )
+        digits = token.text.lstrip("+-0") or "0"
+        if len(digits) > INTEGER_DIGITS:
+            raise at(UdecError(28, f"{quoted(token.text)} has more than {INTEGER_DIGITS} digits"), token)
+        return -int(digits) if token.text.startswith("-") else int(digits)
+    value = float(token.text.upper().replace("D", "E"))
+    if math.isinf(value):
+        raise at(UdecError(28, f"{quoted(token.text)} is too large a number"), token)
+    return value
+
+
+class _Parser:
+    """Walks once over the tokens of a command."""
+
+    def __init__(self, command: Command, tokens: list[Token]) -> None:
+        self.command = command
+        self.tokens = tokens
+        self.read = 1  # tokens that are read
+        self.call = Call(command, tokens[0])
+
+    def parse(self) -> Call:
+        """The call that the tokens spell: numbers, then words, then the list."""
+        command = self.command
+        if command.text:
+            self._text()
+            return self.call
+        for given in self.tokens[1:]:
+            if given.text.startswith(COMMENTS[0]):
+                raise at(UdecError(10, quoted(given.text), NO_COMMENT), given)
+        for name in command.numbers.split():
+            self._positional(name)
+        for name in command.optional.split():
+            if self._at_number():
+                self._positional(name)
+        if command.first:
+            self._check_first()
+        while (token := self._next()) and not self._at_number():
+            self._word(token)
+        if command.list:
+            self._list(command.list)
+        if (token := self._next()) is not None:
+            raise at(UdecError(10, self._surplus(token), self._advice()), token)
+        return self.call
+
+    def _next(self) -> Token | None:
+        return self.tokens[self.read] if self.read < len(self.tokens) else None
+
+    def _at_number(self) -> bool:
+        token = self._next()
+        return token is not None and NUMBER.fullmatch(token.text) is not None
+
+    def _gap(self) -> Token:
+        """The place just after the last token that was read."""
+        last = self.tokens[self.read - 1]
+        return Token("", last.line, last.end)
+
+    def _advice(self) -> str:
+        return f"the form is: {self.command.form}"
+
+    def _surplus(self, token: Token) -> str:
+        """What is wrong with `token`, at which the command should have ended."""
+        if NUMBER.fullmatch(token.text):
+            return f"{quoted(token.text)} is one number too many"
+        if match(self.command.words, token.text):
+            return f"{quoted(token.text)} must stand before the list {self.command.list} ..."
+        return f"{quoted(token.text)} is not a number"
+
+    def _text(self) -> None:
+        """Take the rest of the line as it stands: names of files may hold separators."""
+        line, end = self.tokens[0].line, self.tokens[0].end - 1
+        rest = line.text[end:].lstrip(" \t=")
+        text, last = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
+        if text is None:
+            detail = f"{rest[0]} stands before the name; it must be the last word of the line"
+            place = Token(rest[0], line, len(line.text) - len(rest) + 1)
+            raise at(UdecError(10, detail, "put the whole name in quotes, or none of it"), place)
+        place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
+        if not place.text.isprintable() or self.tokens[-1].line is not line:
+            raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
+        if last is not None:
+            self.call.named[last.argument], self.call.places[last.argument] = True, self.tokens[-1]
+        if self.command.needs_text and not place.text:
+            raise at(UdecError(7, self.command.text, self._advice()), self._gap())
+        if place.text:
+            self.call.named[self.command.text] = place.text.strip("\"'")
+            self.call.places[self.command.text] = place
+
+    def _quoted(self, rest: str) -> tuple[str | None, Word | None]:
+        """A name with its quotes, and the word behind it; no name if something else is there."""
+        whole = QUOTED.match(rest)
+        last = match(self.command.words, whole[3]) if whole and whole[3] else None
+        return whole[1] if whole and (last or not whole[3]) else None, last
+
+    def _unquoted(self, rest: str) -> tuple[str, Word | None]:
+        """A name, and the word behind it."""
+        text = APART.split(rest, maxsplit=1)[0]
+        found = LAST.fullmatch(text)
+        last = match(self.command.words, found[2]) if found else None
+        return found[1] or "" if found and last else text, last
+
+    def _number(self, name: str, missing: int = 7, line: Line | None = None, advice: str = "") -> int | float:
+        """Read the number `name`; error `missing` if there is none, and with `advice` on the same `line`."""
+        token = self._next()
+        if token is None or match(self.command.words, token.text) or line not in (None, token.line):
+            last = self.tokens[self.read - 1].text
+            detail = f"number {name} is missing after {quoted(last)}"
+            raise at(UdecError(missing, detail, advice if line else self._advice()), self._gap())
+        self.read += 1
+        return number(token, name, self._advice())
+
+    def _positional(self, name: str) -> None:
+        self.call.positional.append(self._number(name))
+        self.call.places[name] = self.tokens[self.read - 1]
+
+    def _list(self, names: str) -> None:
+        """Read the tuples that end the command: x1, y1, x2, y2, ... are the names of their numbers."""
+        first = self.read
+        values = [value for values in self._tuples(names) for value in values]
+        self.call.positional += values
+        n = len(names.split())
+        for k, (token, name) in enumerate(zip(self.tokens[first:], cycle(names.split()), strict=False)):
+            self.call.places[f"{name}{k // n + 1}"] = token
+
+    def _tuples(self, names: str) -> list[tuple[int | float, ...]]:
+        """Read one tuple and all that follow; the numbers of a tuple stand on one line."""
+        first, *others = names.split()
+        found: list[tuple[int | float, ...]] = []
+        while not found or self._at_number():
+            values = [self._number(first)]
+            line = self.tokens[self.read - 1].line
+            missing = CUT_SHORT[len(names.split())]
+            advice = f"{first} and {others[0]} must stand on one line" if missing == 8 else ""
+            values += [self._number(name, missing, line, advice) for name in others]
+            found.append(tuple(values))
+        return found
+
+    def _check_first(self) -> None:
+        """The first word must set the argument `first` of the command."""
+        token = self._next()
+        if token is None:
+            detail = f"nothing follows {quoted(self.tokens[self.read - 1].text)}"
+            raise at(UdecError(7, detail, self._advice()), self._gap())
+        allowed = [word for word in self.command.words if word.argument == self.command.first]
+        if match(allowed, token.text) is not None:
+            return
+        if NUMBER.fullmatch(token.text) and allowed[0].values:
+            detail = f"{quoted(token.text)} stands in place of {allowed[0].form}"
+            raise at(UdecError(10, detail, self._advice()), token)
+        if self.command.first_error == 10 and match(self.command.words, token.text) is not None:
+            detail = f"{self.command.first.upper()} is missing before {quoted(token.text)}"
+            raise at(UdecError(7, detail, self._advice()), self._gap())
+        raise self._unrecognised(token, self.command.first_error, allowed)
+
+    def _unrecognised(self, token: Token, error: int, allowed: list[Word] | tuple[Word, ...]) -> UdecError:
+        by_name = {word.keyword.upper(): word for word in allowed}
+        following = self.tokens[self.read + 1 : self.read + 2]
+        has_number = bool(following) and NUMBER.fullmatch(following[0].text) is not None
+        advice = with_suggestion(
+            token.text, by_name, self._advice(), lambda name: bool(by_name[name].values) == has_number
+        )
+        return at(UdecError(error, quoted(token.text), advice), token)
+
+    def _word(self, token: Token) -> None:
+        """Read a word and its values, and set its argument."""
+        word = match(self.command.words, token.text)
+        if word is None:
+            raise self._unrecognised(token, 10, self.command.words)
+        self.read += 1
+        if word.argument == SEVERAL:
+            self.call.positional.append(word.keyword.lower())
+            return
+        if word.argument in self.call.named:
+            raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} twice"), token)
+        self.call.places[word.argument] = (self._next() if word.values else token) or token
+        self.call.named[word.argument] = self._value(word)
+
+    def _value(self, word: Word) -> Any:
+        """What `word` sets its argument to, read from the tokens after it."""
+        if word.repeated:
+            return self._tuples(word.values)
+        names = word.values.split()
+        if len(names) > 1:
+            return tuple(self._number(name) for name in names)
+        if names:
+            return self._number(word.values)
+        return word.keyword.lower() if word.sets else True
+
+
+# ---- What was done in Python, said as a deck says it: the way back from a call to its lines
+
+WIDTH = 79  # of a line
+WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+# Commands of the session are no part of what has made a state.
+BY_NAME = {one.name: one for one in COMMANDS if one.kind is not SESSION}
+
+
+def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]) -> list[str]:
+    """The lines of a deck that have done what method(model, *args, **named) does; none if no deck can.
+
+    method: of Model, by its name a command.
+    """
+    command = BY_NAME.get(method.__name__)
+    if command is None:
+        return []
+    given = _signature(method).bind(None, *args, **named).arguments
+    if command.text:
+        return [
+            " ".join([command.keyword.upper(), *given[command.text].split()])
+        ]  # which no line may be cut in
+    parts = [command.keyword.upper(), *_parts(command, _signature(method), given)]
+    return textwrap.wrap(" ".join(parts), WIDTH, subsequent_indent=f"{CONTINUATION} ", **WHOLE_WORDS)
+
+
+@cache
+def _signature(method: Callable[..., Any]) -> inspect.Signature:
+    return inspect.signature(method)
+
+
+def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]) -> Iterator[str]:
+    """The parameters of `command` in the order of a deck: numbers, words, and the list that ends it."""
+    _, *parameters = signature.parameters.values()
+    numbers = len(command.numbers.split() + command.optional.split())
+    for parameter in parameters[:numbers]:
+        if given.get(parameter.name) is not None:
+            yield _number(given[parameter.name])
+    several: tuple[Any, ...] = ()
+    for parameter in sorted(parameters[numbers:], key=lambda one: one.name != command.first):
+        value = given.get(parameter.name, parameter.default)
+        if parameter.kind is parameter.VAR_POSITIONAL:
+            several = given.get(parameter.name, ())
+        elif parameter.name == command.first or not _by_itself(value, parameter.default):
+            yield from _word(command, parameter.name, value)
+    if any(word.argument == SEVERAL for word in command.words):
+        yield from (str(one).upper() for one in several)
+    else:
+        yield from _tuples(several, command.list)
+
+
+def _by_itself(value: Any, default: Any) -> bool:
+    """True if a parameter has this value, or one that says as little, when it is left off."""
+    return value is None or value is False or np.array_equal(value, default)
+
+
+def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
+    """The word that sets `argument` to `value`, and what follows it."""
+    word = next(word for word in command.words if word.argument == argument and _says(word, value))
+    yield word.keyword.upper()
+    if word.repeated:
+        yield from _tuples(value, word.values)
+    elif len(word.values.split()) > 1:
+        yield from map(_number, value)
+    elif word.values:
+        yield _number(value)
+
+
+def _tuples(values: Any, names: str) -> Iterator[str]:
+    """Numbers in tuples, each of which stays on one line."""
+    for row in np.reshape(np.asarray(values), (-1, len(names.split()) or 1)).tolist():
+        yield ",".join(map(_number, row))
+
+
+def _says(word: Word, value: Any) -> bool:
+    return bool(word.values) or not word.sets or word.keyword.lower() == str(value).lower()
+
+
+def _number(value: Any) -> str:
+    """A number, as short as it is read as the same."""
+    if isinstance(value, int | np.integer):
+        return str(int(value))
+    short = f"{float(value):g}"
+    return short if float(short) == float(value) else repr(float(value))

@@ -1,0 +1,139 @@
+"""Memory management: FIND and LOSE (report 3.4).
+
+Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
+reuses it for the next request of exactly the same size (junk_list.py); groups are never cut up.
+
+Its address may soon be that of another group. So whoever watches a group from outside the map, as a history
+does, is told when the group is given back.
+"""
+
+from __future__ import annotations
+
+from udec_ia.compiling.build_choice import CHECKED, checked_build, offset
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.numba_loading import numba_form
+from udec_ia.errors import OVERFLOW
+from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
+from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
+from udec_ia.layout import offsets as g
+
+WORD: Offset = offset("WORD", (0, 0, 0), "any")  # the first one of any group
+
+
+def begins(h: Memory, iad: int, nv: Offset) -> None:
+    """FIND hands out the words at `iad` for a group of the size `nv`: noted by the checked build."""
+
+
+def ends(h: Memory, iad: int, nv: Offset) -> None:
+    """LOSE takes them back: tested and noted by the checked build."""
+
+
+if CHECKED:
+    begins, ends = checked_build("access_checks").begins, checked_build("access_checks").ends
+for each in begins, ends:
+    numba_form("numba.extending:register_jitable")(each)
+
+
+@kernel
+def _chain(h: Memory, n: int) -> tuple[int, int]:
+    """First junk group of `n` words and first group of the chain before it; 0 where there is none."""
+    before = int64(0)
+    group = int64(h.ci[g.JUNK])
+    while group != 0 and iget(h, group, JSIZE) != n:
+        before = group
+        group = iget(h, group, JSIZES)
+    return group, before
+
+
+@kernel
+def _link_chain(h: Memory, before: int, group: int) -> None:
+    if before == 0:
+        h.ci[g.JUNK] = group
+    else:
+        puti(h, before, JSIZES, group)
+
+
+@kernel
+def want(h: Memory, words: int) -> None:
+    """Ask for `words` words of fresh memory (NWANT): error 1, unless there is another error already."""
+    h.ci[g.NWANT] = words
+    if h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = OVERFLOW
+
+
+@kernel
+def find(h: Memory, nv: Offset) -> int:
+    """Address of a group of the size `nv` (NVBL, NVCR, ...), its words zero.
+
+    Returns 0 and sets error 1 when memory cannot be found; nothing else changes then.
+    """
+    n = int64(size_of(h, nv))
+    group, before = _chain(h, n)
+    if group != 0:
+        after = iget(h, group, JNEXT)
+        if after != 0:
+            puti(h, after, JSIZES, iget(h, group, JSIZES))
+            _link_chain(h, before, after)
+        else:
+            _link_chain(h, before, iget(h, group, JSIZES))
+    else:
+        group = h.ci[g.MFREE]
+        if group + n - 1 > h.ci[g.MTOP]:
+            want(h, n)
+            return int64(0)
+        h.ci[g.MFREE] = group + n
+    begins(h, group, nv)
+    for i in range(n):
+        puti(h, group, WORD, 0, i)
+    return group
+
+
+@kernel
+def unwatch(h: Memory, group: int) -> None:
+    """Histories of the group at `group` lose sight of it."""
+    ih = int64(h.ci[g.IHPNT])
+    while ih != 0:
+        if iget(h, ih, g.KHG) == group:
+            puti(h, ih, g.KHG, 0)
+        ih = iget(h, ih, g.KH)
+
+
+@kernel
+def lose(h: Memory, group: int, nv: Offset) -> None:
+    """Give the group of the size `nv` at `group` back to the junk list."""
+    unwatch(h, group)
+    ends(h, group, nv)
+    n = int64(size_of(h, nv))
+    first, before = _chain(h, n)
+    if first == 0:
+        puti(h, group, JSIZES, h.ci[g.JUNK])
+        h.ci[g.JUNK] = group
+    else:
+        puti(h, group, JSIZES, iget(h, first, JSIZES))
+        _link_chain(h, before, group)
+    puti(h, group, JNEXT, first)
+    puti(h, group, JSIZE, n)
+
+
+@kernel
+def room(h: Memory, words: int) -> bool:
+    """True if `words` words of fresh memory are left; else asks for them (error 1, NWANT).
+
+    A routine that changes the map asks for all it may need before its first change, so that running
+    out of memory never leaves the map half-made.
+    """
+    if h.ci[g.MFREE] + words - 1 > h.ci[g.MTOP]:
+        want(h, words)
+        return False
+    return True
+
+
+@kernel
+def room_for_two(h: Memory, nv: Offset, nw: Offset) -> bool:
+    """True if a group of size `nv` and one of the other size `nw` can be found; else asks for them."""
+    words = int64(0)
+    if _chain(h, int64(size_of(h, nv)))[0] == 0:
+        words += size_of(h, nv)
+    if _chain(h, int64(size_of(h, nw)))[0] == 0:
+        words += size_of(h, nw)
+    return words == 0 or room(h, words)

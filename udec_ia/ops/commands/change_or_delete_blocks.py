@@ -1,0 +1,201 @@
+"""CHANGE: type, material and constitutive numbers of blocks (report 4.2, 4.3).
+
+What a change of type keeps. Momentum and angular momentum: always. Stress: a rigid block that becomes
+deformable in a run begins with the mean stress of contact forces and loads on it, so that a block at rest
+stays at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
+simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
+lost, and so are, with its zones or for them, boundary conditions on the block and the corners that GENERATE
+has put on its edges. Masses never change after the first cycle.
+"""
+
+from __future__ import annotations
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.bounds import push_loads
+from udec_ia.kernels.body.masses import share_mass, zone_means
+from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.sdef import put_stress
+from udec_ia.kernels.constitutive.joint_properties import assign_material
+from udec_ia.kernels.geometry.shape import geo
+from udec_ia.kernels.links.lists import is_corner
+from udec_ia.kernels.map.remove import delb
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
+from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
+from udec_ia.ops.common.array_growth import all_or_nothing, require
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items
+from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.hosted_groups import lose_hosted
+from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
+
+STAYS = "leave the block fully-deformable"
+TYPES = {"rigid": g.MRIG, "sdef": g.MSDEF, "fdef": g.MFDEF}
+Stress = tuple[float, float, float]  # 11, 12, 22
+
+
+def change(
+    array: MainArray, where: Range, kind: str | None, material: int | None, constitutive: int | None
+) -> int:
+    """CHANGE: attributes of the blocks in the range. Returns their number.
+
+    A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
+    follow a new material only before the first cycle. Errors 1, 4, 9, 10, 14 and 28; nothing is changed then.
+    """
+    if kind is not None and kind not in TYPES:
+        raise UdecError(10, f"{kind}", ", ".join(TYPES))
+    if material is not None:
+        material_number(material)
+    if constitutive is not None:
+        constitutive_number(constitutive)
+    blocks = blocks_in(array, where)
+    if kind is not None:
+        change_types(array, blocks, TYPES[kind])
+    h = array.h
+    for ib in blocks if material is not None or constitutive is not None else ():
+        for number, of_block in ((material, g.KMAT), (constitutive, g.KCONS)):
+            if number is not None:
+                puti(h, ib, of_block, number)
+        for ic in items(h, ib):
+            if not is_corner(h, ic):
+                assign_material(h, ic)
+    return len(blocks)
+
+
+def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
+    """Make all `blocks` the type `kind`. Error 1, 14 or 28, and nothing is changed, if one of them cannot."""
+    changing = [ib for ib in blocks if iget(array.h, ib, HEAD) != kind]
+    require(array, len(changing) * (size_of(array.h, g.NVSD) + size_of(array.h, g.NVFD)))
+    meshed = [ib for ib in changing if edge_points(array.h, ib)]
+    for ib in meshed:
+        check_straight(array.h, ib)
+    with all_or_nothing(array):
+        for ib in meshed:
+            straighten(array.h, ib)
+        _change_types(array, changing, kind)
+        if meshed:
+            bring_up(array)
+            check_overlaps(array, float(array.h.cr[g.DTOL]), STAYS)
+            if array.h.ci[g.MCTOT] > 0:
+                renew_forces(array)
+
+
+def _change_types(array: MainArray, changing: list[int], kind: int) -> None:
+    h = array.h
+    rigid = [ib for ib in changing if iget(h, ib, HEAD) == g.MRIG]
+    for ib in rigid:
+        become(h, ib, g.MSDEF)
+    if h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+        push_loads(h, h.cr.dtype.type(0))
+        for ib in rigid:
+            stress = applied_stress(h, ib)
+            held(array, f"the stress in block@{ib}", stress)
+            _put_stress(h, ib, stress)
+    forget_blocks(h, [ib for ib in changing if g.MFDEF in (kind, iget(h, ib, HEAD))])
+    for ib in changing:
+        if iget(h, ib, HEAD) != kind:
+            become(h, ib, kind, mean_stress(h, ib))
+    if h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+
+
+def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> None:
+    """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one.
+
+    Conditions on a block that is or becomes fully-deformable must have been taken away before.
+    """
+    if iget(h, ib, HEAD) == g.MFDEF:
+        _lose_zones(h, ib)
+    if iget(h, ib, HEAD) != g.MRIG:
+        lose(h, iget(h, ib, g.KBEX), g.NVSD if iget(h, ib, HEAD) == g.MSDEF else g.NVFD)
+        h.ci[g.NSOFT] -= 1
+    puti(h, ib, HEAD, kind)
+    puti(h, ib, g.KBEX, 0)
+    if kind != g.MRIG:
+        puti(h, ib, g.KBEX, find(h, g.NVSD if kind == g.MSDEF else g.NVFD))
+        h.ci[g.NSOFT] += 1
+        _put_stress(h, ib, stress)
+        share_mass(h, ib)
+
+
+def _put_stress(h: Memory, ib: int, stress: Stress) -> None:
+    """Internal stress of simply-deformable block `ib`, or that which the zones of `ib` are to begin with."""
+    s11, s12, s22 = stress
+    if iget(h, ib, HEAD) == g.MSDEF:
+        put_stress(h, iget(h, ib, g.KBEX), *(h.cr.dtype.type(s) for s in stress))
+        return
+    for k, value in ((g.KFS11, s11), (g.KFS12, s12), (g.KFS22, s22)):
+        putr(h, iget(h, ib, g.KBEX), k, value)
+
+
+def _lose_zones(h: Memory, ib: int) -> None:
+    """Give back zones and grid-points of block `ib`, which goes on as a rigid body with their momentum.
+
+    Its centroid is that of its area then, no more that of the masses at the grid-points.
+    """
+    ie = iget(h, ib, g.KBEX)
+    turning = float(getr(h, ib, g.KBI)) * float(getr(h, ib, g.KTD))
+    for item in items(h, ib):
+        if is_corner(h, item):
+            puti(h, item, g.KGP, 0)
+    for ig in chain(h, iget(h, ie, g.KFG), g.KG):
+        lose(h, ig, g.NVGP)
+    for iz in chain(h, iget(h, ie, g.KFZ), g.KZ):
+        lose(h, iz, g.NVZO)
+    area, x, y, jxx, _, jyy = (float(n) for n in geo(h, ib))
+    mass, xd, yd = (float(getr(h, ib, k)) for k in (g.KBM, g.KXD, g.KYD))
+    second = mass * (jxx + jyy) / area
+    turning += mass * ((float(getr(h, ib, g.KX)) - x) * yd - (float(getr(h, ib, g.KY)) - y) * xd)
+    for k, value in ((g.KX, x), (g.KY, y), (g.KBI, second), (g.KTD, turning / second if second else 0.0)):
+        putr(h, ib, k, value)
+    renew_reach(h, ib)
+    carry_corners(h, ib)
+
+
+def applied_stress(h: Memory, ib: int) -> Stress:
+    """Stress in simply-deformable block `ib` that would balance the applied stress."""
+    ie = iget(h, ib, g.KBEX)
+    s11, s12, s21, s22, area = (float(getr(h, ie, k)) for k in (g.KSA11, g.KSA12, g.KSA21, g.KSA22, g.KSAREA))
+    return s11 / area, (s12 + s21) / 2 / area, s22 / area
+
+
+def mean_stress(h: Memory, ib: int) -> Stress:
+    """Mean stress by area in deformable block `ib`."""
+    ie = iget(h, ib, g.KBEX)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        return float(getr(h, ie, g.KS111)), float(getr(h, ie, g.KS112)), float(getr(h, ie, g.KS122))
+    if iget(h, ie, g.KFZ) == 0:
+        return float(getr(h, ie, g.KFS11)), float(getr(h, ie, g.KFS12)), float(getr(h, ie, g.KFS22))
+    area, s11, s12, s22 = zone_means(h, ie)
+    return float(s11 / area), float(s12 / area), float(s22 / area)
+
+
+# ---- DELETE: blocks are taken away; what is left stays one connected map
+
+
+def delete(array: MainArray, where: Range) -> int:
+    """Delete the blocks whose centroids lie in the range. Returns their number.
+
+    Error 19, and nothing is deleted, if no contact would be left.
+    """
+    h = array.h
+    blocks = blocks_in(array, where)
+    if not blocks:
+        return 0
+    if h.ci[g.NBLK] - len(blocks) < 2:
+        raise UdecError(
+            19, f"only {int(h.ci[g.NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
+        )
+    forget_blocks(h, blocks)
+    lose_hosted(h, blocks)
+    for ib in blocks:
+        become(h, ib, g.MRIG)  # gives back what only a deformable block has
+        delb(h, ib)
+    update_flagged(array)
+    if h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    return len(blocks)

@@ -1,0 +1,149 @@
+"""BLOCK: the single block that everything else is cut from (CREATE)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import puti, size_of
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.geometry.boxes import meeting
+from udec_ia.kernels.geometry.shape import density_of, makeb
+from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
+from udec_ia.kernels.map.bridge import maked
+from udec_ia.kernels.split.spli import makep, new_block
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.corner_rounding import check_rounding
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.number_limits import (
+    EDGE_DIGITS,
+    NMAT,
+    ROUNDING_DIGITS,
+    bearable,
+    check_resolution,
+    constitutive_number,
+    finite,
+    material_number,
+)
+
+Point = tuple[float, float]
+PART = 0.01  # length of the smallest parts that are cut, as a part of the block's
+CLOCKWISE = "give the corners in clockwise order, along an outline that does not cross itself"
+
+
+def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
+    """Create the block with the given corners (clockwise). Returns its address.
+
+    Errors 4, 5, 6, 9 for what is wrong with it, 18 for a second block.
+    """
+    h = array.h
+    if h.ci[g.NBLK] > 0:
+        raise UdecError(18, "", "cut the existing block with SPLIT, remove parts with DELETE")
+    material_number(material)
+    constitutive_number(constitutive)
+    if len(corners) < 3:
+        raise UdecError(5, f"{len(corners)} given", "give at least three corners, clockwise")
+    for k, (x, y) in enumerate(corners, 1):
+        finite(array, **{f"x{k}": x, f"y{k}": y})
+    size = _check_size(array, corners)
+    bearable(array, float(h.cr[g.DENS : g.DENS + NMAT].max()), size)
+    _check_outline(array, corners)
+    _check_edges(array, corners)
+    require(array, size_of(h, g.NVBL) + len(corners) * size_of(h, g.NVCR) + size_of(h, g.NVDO))
+    h = array.h
+    ib = new_block(h, material, constitutive)
+    ips = [makep(h, ib, h.cr.dtype.type(x), h.cr.dtype.type(y)) for x, y in corners]
+    for here, following in zip(ips, ips[1:] + ips[:1], strict=True):
+        puti(h, here, g.KL, following)
+        puti(h, following, g.KLB, here)
+        puti(h, following, g.KR, here)
+    puti(h, ib, g.KP, ips[0])
+    h.ci[g.IODPNT] = maked(h)
+    makeb(h, ib, density_of(h, ib))
+    set_rounding(h, h.cr[g.DTOL] if h.ci[g.LROUND] else default_rounding(h))
+    return int(ib)
+
+
+def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
+    """How far the block reaches. Error 28 unless the reals can hold its fourth power."""
+    reals = np.finfo(array.scheme.real_type)
+    size = max(abs(x) + abs(y) for x, y in corners)
+    smallest, largest = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
+    if not smallest <= size <= largest:
+        bits = array.scheme.real_bits
+        detail = f"a block {size:g} across, where {bits}-bit reals bear {smallest:.0e} to {largest:.0e}"
+        raise UdecError(28, detail, "use another unit of length", parameter="x1")
+    return size
+
+
+def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
+    """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings."""
+    ends = zip(corners, (*corners[1:], corners[0]), strict=True)
+    shortest, x, y = min((math.dist(a, b), *b) for a, b in ends)
+    size = max(abs(x) + abs(y) for x, y in corners)
+    check_resolution(array, "x1", "an edge", shortest, EDGE_DIGITS, size)
+    if array.h.ci[g.LROUND]:
+        d = float(array.h.cr[g.DTOL])
+        check_rounding(d, shortest, x, y)
+        check_resolution(array, "x1", "a rounding length", d, ROUNDING_DIGITS, size)
+
+
+def _check_outline(array: MainArray, corners: Sequence[Point]) -> None:
+    """Error 6 unless the corners, taken clockwise, enclose an area and no two edges meet elsewhere."""
+    n = len(corners)
+    edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
+    for i, (a, b) in enumerate(edges):
+        if a == b:
+            raise _crooked(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
+    for i, j in _near(array, edges):
+        (a, b), (c, d) = edges[i], edges[j]
+        if j - i in (1, n - 1):
+            start, shared, end = (a, b, d) if j - i == 1 else (b, a, c)
+            if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
+                corner = corners.index(shared)
+                raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
+        elif _meet(a, b, c, d):
+            raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
+    x, y = corners[0]  # far from the origin the products of coordinates would lose the area
+    if not sum((b[0] - x) * (a[1] - y) - (a[0] - x) * (b[1] - y) for a, b in edges) > 0:
+        raise UdecError(6, "its corners are in anticlockwise order", CLOCKWISE)
+
+
+def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[int, int]]:
+    """Numbers of the edges whose boxes meet, two by two, in ascending order."""
+    ends = np.array(edges, array.scheme.real_type)
+    boxes = np.hstack([ends.min(axis=1), ends.max(axis=1)])
+    if np.ptp(boxes[:, 1]) > np.ptp(boxes[:, 0]):  # the sweep is along x
+        boxes = boxes[:, [1, 0, 3, 2]]
+    pairs = np.sort(meeting(np.ascontiguousarray(boxes), len(boxes)), axis=1)
+    return [(i, j) for i, j in pairs[np.lexsort(pairs.T[::-1])].tolist()]
+
+
+def _crooked(detail: str, k: int) -> UdecError:
+    """Error 6 at corner `k`, counted from 0."""
+    return UdecError(6, detail, CLOCKWISE, parameter=f"x{k + 1}")
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+
+
+def _along(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
+
+
+def _meet(a: Point, b: Point, c: Point, d: Point) -> bool:
+    """True if the closed segments ab and cd have a point in common."""
+
+    def between(p: Point, q: Point, r: Point) -> bool:
+        inside_x = min(p[0], q[0]) <= r[0] <= max(p[0], q[0])
+        return inside_x and min(p[1], q[1]) <= r[1] <= max(p[1], q[1])
+
+    t = (_turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b))
+    if (t[0] > 0) != (t[1] > 0) and (t[2] > 0) != (t[3] > 0) and 0 not in t:
+        return True
+    pairs = zip(t, ((a, b, c), (a, b, d), (c, d, a), (c, d, b)), strict=True)
+    return any(turn == 0 and between(*points) for turn, points in pairs)

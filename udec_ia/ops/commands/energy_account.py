@@ -1,0 +1,132 @@
+"""The account of the energy: what was put in, what is there, and what was lost (ENERGY, PRINT ENERGY).
+
+It begins with ENERGY ON: what the model holds then is the first that was put in, and gravity's potential
+counts from there. Between two CYCLEs commands change a model in ways that no force does: they delete what
+moves, set velocities, change stiffnesses. What they put in or take out is the difference of what is stored,
+kinetic and strain energy, between the end of one CYCLE and the beginning of the next. So the account of the
+cycles themselves has to balance, and its residual is the error of the time-step, of contacts that open and
+close within one, and of forgotten terms.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.number_limits import held
+
+SUM_BITS = 64  # of the reals that hold the account, in every word scheme
+
+
+class Balance(NamedTuple):
+    """Energies in J per m of thickness. commands: there at first, and put in by commands since."""
+
+    commands: float
+    boundary: float
+    kinetic: float
+    contacts: float
+    blocks: float
+    potential: float
+    friction: float
+    mass_damping: float
+    relaxation: float
+    stiffness_damping: float
+    yielding: float
+    shape: float
+
+    @property
+    def strain(self) -> float:
+        """Strain energy of contacts and deformable blocks."""
+        return self.contacts + self.blocks
+
+    @property
+    def residual(self) -> float:
+        """What was put in and is neither there nor lost."""
+        return self.commands + self.boundary - sum(self[2:])
+
+    @property
+    def throughput(self) -> float:
+        """What came in from all sources, or went to all sinks: the mean of both."""
+        return sum(map(abs, self)) / 2
+
+
+def switch(array: MainArray, on: bool) -> None:
+    """ENERGY ON: an account begins, with sums of 0. ENERGY OFF: it ends.
+
+    Error 26 if masses are scaled, 28 as `begin`.
+    """
+    h = array.h
+    if on and h.ci[g.LSCALE]:
+        advice = "FRACTION without SCALED"
+        raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
+    energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
+    h.ci[g.LENER] = int(on)
+    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT):
+        h.cd[name] = 0
+    h.cd[g.EPUT] = h.cd[g.ESTOR] = energy
+    h.cd[g.EREF] = reference
+
+
+def balance(h: Memory) -> Balance:
+    """The account as it is now. Error 26 if none is kept."""
+    if not h.ci[g.LENER]:
+        raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
+    stored = _stored(h)
+    commands = _put_in(h, sum(stored))
+    lost = (float(h.cd[name]) for name in (g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE))
+    return Balance(commands, float(h.cd[g.WBOUND]), *stored, float(h.cd[g.EPOT]), *lost)
+
+
+def begin(array: MainArray) -> None:
+    """A CYCLE begins: note what commands have done since the last one.
+
+    Error 28, and nothing is noted, if 64-bit reals cannot hold the energy of the stresses there are, or its
+    change.
+    """
+    h = array.h
+    if h.ci[g.LENER]:
+        energy, reference = _energy(array), _height(array) - float(h.cd[g.EPOT])
+        put = _put_in(h, energy)
+        held(array, "the energy put in by commands", [put, reference], SUM_BITS)
+        h.cd[g.EPUT], h.cd[g.ESTOR], h.cd[g.EREF] = put, energy, reference
+
+
+def end(array: MainArray) -> None:
+    """A CYCLE has ended. What the reals cannot hold becomes infinite."""
+    h = array.h
+    if h.ci[g.LENER]:
+        with np.errstate(over="ignore"):
+            h.cd[g.ESTOR] = sum(_stored(h))
+            h.cd[g.EPOT] = float(height(h)) - float(h.cd[g.EREF])
+
+
+def _height(array: MainArray) -> float:
+    """Potential of gravity against the origin. Error 28 if 64-bit reals cannot hold it."""
+    potential = float(height(array.h))
+    held(array, "the potential of gravity", [potential], SUM_BITS)
+    return potential
+
+
+def _energy(array: MainArray) -> float:
+    """Kinetic and strain energy. Error 28 if 64-bit reals cannot hold it."""
+    energy = sum(_stored(array.h))
+    held(array, "the kinetic and strain energy", [energy], SUM_BITS)
+    return energy
+
+
+def _stored(h: Memory) -> tuple[float, float, float]:
+    """Kinetic energy, and strain energy of contacts and of blocks."""
+    soft = soft_in(h)
+    return float(kinetic(h, soft)), float(strain_of_contacts(h)), float(strain_of_blocks(h, soft))
+
+
+def _put_in(h: Memory, energy: float) -> float:
+    """What commands have put in so far, where `energy` is what is stored now, and ESTOR was before them."""
+    return float(h.cd[g.EPUT]) + (energy - float(h.cd[g.ESTOR]))

@@ -1,0 +1,396 @@
+"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1), here those of MANUAL.
+
+Grid-points within 0.9 D of a corner are placed on it, others within 0.9 D of an edge on the edge, where
+they become corners of the block; every corner must have one. A flat corner is a point of an edge from then
+on, too. What does not fit is refused before anything is changed, and a grid-point that does not stay where it
+was asked for is reported.
+
+What AUTOMATIC divides a block into is found in generate_automatic.py and put into IA() here, by `divide`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from udec_ia.counting import counted
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.masses import share_mass
+from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.geometry.shape import crad
+from udec_ia.kernels.links.lists import is_corner
+from udec_ia.kernels.split.spli import corner_on_edge
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.commands.corner_rounding import update_flagged
+from udec_ia.ops.commands.remove_edge_points import flag_around
+from udec_ia.ops.commands.triangulation import Mesh, mesh
+from udec_ia.ops.common.array_growth import all_or_nothing, require
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items, why_no_block
+from udec_ia.ops.common.deformable_scene import renew_forces
+
+Point = tuple[float, float]
+Triple = tuple[int, int, int]
+NEAR = 0.9  # part of the rounding length within which a grid-point is placed on a corner or an edge
+
+
+@dataclass
+class Place:
+    """Where a grid-point goes: at a corner, on the edge that ends at a corner, or inside (corner 0)."""
+
+    x: float
+    y: float
+    corner: int = 0
+    on_edge: bool = False
+    along: float = 0.0  # distance from the start of the edge
+
+
+class Outline:
+    """Corners of a block, clockwise, as arrays; edge k ends at corner k."""
+
+    def __init__(self, h: Memory, ib: int) -> None:
+        self.corners = [ip for ip in items(h, ib) if is_corner(h, ip)]
+        self.end = np.array([(getr(h, ip, g.KXP), getr(h, ip, g.KYP)) for ip in self.corners], float)
+        self.start = np.roll(self.end, 1, axis=0)
+        self.length = np.hypot(*(self.end - self.start).T)
+        self.unit = (self.end - self.start) / self.length[:, np.newaxis]
+
+    @property
+    def area(self) -> float:
+        """Area of the block."""
+        return float((self.end[:, 0] * self.start[:, 1] - self.start[:, 0] * self.end[:, 1]).sum() / 2)
+
+    @property
+    def where(self) -> str:
+        """Between which coordinates the block lies, in words."""
+        (ax, ay), (bx, by) = self.end.min(axis=0), self.end.max(axis=0)
+        return f"x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
+
+    def place(self, x: float, y: float, near: float) -> Place:
+        """Where the point (x, y) goes: to a corner or an edge within the distance `near`, or where it is."""
+        away = np.hypot(self.end[:, 0] - x, self.end[:, 1] - y)
+        k = int(away.argmin())
+        if away[k] <= near:
+            return Place(float(self.end[k, 0]), float(self.end[k, 1]), self.corners[k])
+        to = np.array((x, y)) - self.start
+        along = (to * self.unit).sum(axis=1)
+        off = np.abs(to[:, 0] * self.unit[:, 1] - to[:, 1] * self.unit[:, 0])
+        off[(along < 0) | (along > self.length)] = np.inf
+        k = int(off.argmin())
+        if off[k] <= near:
+            px, py = self.start[k] + along[k] * self.unit[k]
+            return Place(float(px), float(py), self.corners[k], True, float(along[k]))
+        return Place(x, y)
+
+    def holds(self, x: float, y: float) -> bool:
+        """True if the point (x, y) lies inside."""
+        above = self.end[:, 1] > y
+        crosses = above != (self.start[:, 1] > y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = (y - self.start[:, 1]) / (self.end[:, 1] - self.start[:, 1])
+            at = self.start[:, 0] + part * (self.end[:, 0] - self.start[:, 0])
+        return bool(np.count_nonzero(crosses & (at > x)) % 2)
+
+
+def generate(
+    array: MainArray,
+    ib: int,
+    points: Sequence[Point],
+    triples: Sequence[Triple],
+    near: float,
+    paired: bool = False,
+) -> list[str]:
+    """Divide block `ib` into zones. Returns remarks on grid-points that were moved.
+
+    points: numbered from the last one, which is number 1. triples: three of these numbers for each zone, in
+    either sense. near: distance within which a point is placed on a corner or an edge. paired: zones 1 and
+    2, 3 and 4 ... are pairs for mixed discretisation. Errors 14, 25, 26, 28 and 33; nothing is changed then.
+    """
+    h = array.h
+    outline = Outline(h, ib)
+    places = [outline.place(x, y, near) for x, y in reversed(points)]  # in the order of their numbers
+    boundary = _boundary(outline, places, float(h.cr[g.DTOL]))
+    zones = _clockwise(places, triples)
+    _check_cover(outline, places, boundary, zones)
+    if paired:
+        _check_pairs(zones)
+    divide(array, ib, places, zones, paired)
+    moved = zip(range(1, len(places) + 1), reversed(points), places, strict=True)
+    return [
+        f"grid-point {number} ({x:g}, {y:g}) was moved onto the block's outline at ({place.x:g}, {place.y:g})"
+        for number, (x, y), place in moved
+        if math.hypot(place.x - x, place.y - y) > 1e-3 * float(h.cr[g.DTOL])
+    ]
+
+
+def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Triple], paired: bool) -> None:
+    """Put grid-points at `places` and zones, clockwise triples of their rows, into block `ib`.
+
+    Error 1, and nothing is changed, if there is no memory for all of it and for the contacts that arise.
+    """
+    h = array.h
+    new = sum(place.on_edge for place in places)
+    words = new * (size_of(h, g.NVCR) + 2 * size_of(h, g.NVCN) + 2 * size_of(h, g.NVDO))
+    words += size_of(h, g.NVSD) + size_of(
+        h, g.NVFD
+    )  # a rigid block becomes a simply-deformable one on the way
+    require(array, words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO))
+    with all_or_nothing(array):
+        change_types(array, [ib], g.MFDEF)
+        h = array.h
+        _make_corners(h, ib, places)
+        addresses = _make_gridpoints(h, ib, places)
+        _make_zones(h, ib, addresses, zones, paired)
+        share_mass(h, ib)
+        _set_in_motion(h, ib)
+        crad(h, ib, False)
+        flag_around(h, ib)
+        update_flagged(array)
+        if h.ci[g.MCTOT] > 0:
+            renew_forces(array)
+
+
+def block_to_zone(array: MainArray, where: Range) -> int:
+    """The first block in the range that has no zones. Errors 24 if none is there, 28 if all have zones."""
+    blocks = blocks_in(array, where)
+    if not blocks:
+        raise UdecError(24, why_no_block(array, where), parameter="x1")
+    h = array.h
+    for ib in blocks:
+        if iget(h, ib, HEAD) != g.MFDEF or iget(h, iget(h, ib, g.KBEX), g.KFG) == 0:
+            return ib
+    ib = blocks[0]
+    advice = "give a range with another block, or CHANGE it to RIGID first"
+    raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
+
+
+def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
+    """Rows of `places` on the outline, clockwise.
+
+    Error 26 for a corner without a grid-point, 28 for two at one place, 14 if they stand too close.
+    """
+    on: dict[int, list[int]] = {ip: [] for ip in outline.corners}
+    for row, place in enumerate(places):
+        if place.corner:
+            on[place.corner].append(row)
+        elif not outline.holds(place.x, place.y):
+            detail = f"grid-point {row + 1} ({place.x:g}, {place.y:g}) lies outside the block"
+            advice = f"the first block in the range lies in {outline.where}; the last grid-point is number 1"
+            raise UdecError(28, detail, advice, parameter="gridpoints")
+    found: list[int] = []
+    for k, ip in enumerate(outline.corners):
+        edge = sorted((row for row in on[ip] if places[row].on_edge), key=lambda row: places[row].along)
+        corner = [row for row in on[ip] if not places[row].on_edge]
+        x, y = outline.end[k]
+        if not corner:
+            raise UdecError(26, f"the corner ({x:g}, {y:g}) has no grid-point", "give one for every corner")
+        if len(corner) > 1:
+            numbers = " and ".join(str(row + 1) for row in corner)
+            raise UdecError(
+                28, f"grid-points {numbers} are both within {NEAR} D of the corner ({x:g}, {y:g})"
+            )
+        found += edge + corner
+    for one, two in zip(found, found[1:] + found[:1], strict=True):
+        a, b = places[one], places[two]
+        need = d * ((not a.on_edge) + (not b.on_edge))
+        distance = math.hypot(b.x - a.x, b.y - a.y)
+        if distance < need * (1 - 1e-6) or distance == 0:
+            raise UdecError(
+                14,
+                f"grid-points {one + 1} and {two + 1} are {distance:g} apart, which leaves no room for "
+                f"rounding by {d:g}",
+                "move them farther apart, or use a smaller ROUND",
+            )
+    return found
+
+
+def _clockwise(places: list[Place], triples: Sequence[Triple]) -> list[Triple]:
+    """The zones as rows of `places`, all clockwise. Error 25 for a wrong number, 33 for a flat zone."""
+    zones = []
+    for number, triple in enumerate(triples, 1):
+        for n in triple:
+            if not 1 <= n <= len(places):
+                advice = f"grid-points are numbered from 1 to {len(places)}"
+                raise UdecError(25, f"{n} in zone {number}", advice, parameter="zones")
+        i, j, k = (n - 1 for n in triple)
+        a, b, c = places[i], places[j], places[k]
+        turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
+        if abs(turn) <= 1e-6 * ((b.x - a.x) ** 2 + (b.y - a.y) ** 2 + (c.x - a.x) ** 2 + (c.y - a.y) ** 2):
+            raise _no_cover(f"zone {number} ({triple[0]}, {triple[1]}, {triple[2]}) has no area")
+        zones.append((i, j, k) if turn < 0 else (i, k, j))
+    return zones
+
+
+def _check_cover(outline: Outline, places: list[Place], boundary: list[int], zones: list[Triple]) -> None:
+    """Error 33 unless the zones fill the block: side to side, without gap or overlap."""
+    sides: dict[tuple[int, int], int] = {}
+    for number, (i, j, k) in enumerate(zones, 1):
+        for side in ((i, j), (j, k), (k, i)):
+            if side in sides:
+                what = f"zones {sides[side]} and {number} lie on the same side of grid-points"
+                raise _no_cover(f"{what} {side[0] + 1} and {side[1] + 1}")
+            sides[side] = number
+    outer = set(zip(boundary, boundary[1:] + boundary[:1], strict=True))
+    for i, j in outer:
+        if (i, j) not in sides:
+            raise _no_cover(f"no zone stands on the edge between grid-points {i + 1} and {j + 1}")
+    for (i, j), number in sides.items():
+        if (j, i) not in sides and (i, j) not in outer:
+            raise _no_cover(f"zone {number} has no neighbour over grid-points {i + 1} and {j + 1}")
+    used = {row for zone in zones for row in zone}
+    for row in range(len(places)):
+        if row not in used:
+            raise _no_cover(f"grid-point {row + 1} belongs to no zone")
+    total = sum(_area(places, zone) for zone in zones)
+    if abs(total - outline.area) > 1e-6 * outline.area:
+        raise _no_cover(f"the zones have the area {total:g}, the block {outline.area:g}")
+
+
+def _no_cover(what: str) -> UdecError:
+    """The error of zones that do not fill their block."""
+    return UdecError(33, what, parameter="zones")
+
+
+def _check_pairs(zones: list[Triple]) -> None:
+    """Error 33 unless zones 1 and 2, 3 and 4 ... have a common side."""
+    advice = "with MIXED, zones 1 and 2, 3 and 4 ... have a common side"
+    if len(zones) % 2:
+        raise UdecError(
+            33, f"{counted(len(zones), 'zone')} cannot be made into pairs", advice, parameter="mixed"
+        )
+    for k in range(0, len(zones), 2):
+        if len({*zones[k], *zones[k + 1]}) != 4:
+            raise UdecError(33, f"zones {k + 1} and {k + 2} are not a pair", advice, parameter="mixed")
+
+
+def _area(places: list[Place], zone: Triple) -> float:
+    a, b, c = (places[row] for row in zone)
+    return ((c.x - a.x) * (b.y - a.y) - (b.x - a.x) * (c.y - a.y)) / 2
+
+
+def _make_corners(h: Memory, ib: int, places: list[Place]) -> None:
+    """Put a corner on the block's outline for every grid-point on an edge."""
+    for place in sorted((p for p in places if p.on_edge), key=lambda p: p.along):
+        real = h.cr.dtype.type
+        place.corner = int(corner_on_edge(h, ib, place.corner, real(place.x), real(place.y)))
+
+
+def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
+    """Grid-points at the given places, at rest; addresses in the order of `places`."""
+    ie = iget(h, ib, g.KBEX)
+    addresses = []
+    for place in reversed(places):
+        ig = int(find(h, g.NVGP))
+        puti(h, ig, g.KG, iget(h, ie, g.KFG))
+        puti(h, ie, g.KFG, ig)
+        putr(h, ig, g.KXG, place.x)
+        putr(h, ig, g.KYG, place.y)
+        if place.corner:
+            puti(h, ig, g.KCOR, place.corner)
+            flat = place.on_edge or getr(h, place.corner, g.KRAD) == 0
+            puti(h, ig, g.KGEDGE, int(flat))
+            puti(h, place.corner, g.KGP, ig)
+            putr(h, ig, g.KXG, getr(h, place.corner, g.KXP))
+            putr(h, ig, g.KYG, getr(h, place.corner, g.KYP))
+        addresses.append(ig)
+    puti(h, ie, g.KFNG, len(addresses))
+    return addresses[::-1]
+
+
+def _set_in_motion(h: Memory, ib: int) -> None:
+    """Velocities of the grid-points and corners of block `ib`: those of the block.
+
+    Masses at grid-points have a greater moment of inertia than the block had. In a run the angular velocity
+    is less by as much, for the angular momentum to stay.
+    """
+    x, y, xd, yd, td = (float(getr(h, ib, k)) for k in (g.KX, g.KY, g.KXD, g.KYD, g.KTD))
+    points = [(ig, float(getr(h, ig, g.KXG)) - x, float(getr(h, ig, g.KYG)) - y) for ig in _gridpoints(h, ib)]
+    if h.ci[g.MCTOT] > 0:
+        second = sum(float(getr(h, ig, g.KGPM)) * (rx * rx + ry * ry) for ig, rx, ry in points)
+        td *= float(getr(h, ib, g.KBI)) / second
+        putr(h, ib, g.KTD, td)
+        putr(h, ib, g.KBI, second)
+    for ig, rx, ry in points:
+        putr(h, ig, g.KXDG, xd - td * ry)
+        putr(h, ig, g.KYDG, yd + td * rx)
+    carry_corners(h, ib)
+
+
+def _gridpoints(h: Memory, ib: int) -> list[int]:
+    return list(chain(h, iget(h, iget(h, ib, g.KBEX), g.KFG), g.KG))
+
+
+def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:
+    """Zones of block `ib`, in the order given, with the stress that the block has."""
+    ie = iget(h, ib, g.KBEX)
+    for triple in reversed(zones):
+        iz = int(find(h, g.NVZO))
+        puti(h, iz, g.KZ, iget(h, ie, g.KFZ))
+        puti(h, ie, g.KFZ, iz)
+        for i, row in enumerate(triple):
+            puti(h, iz, g.KZG, addresses[row], i)
+        for here, first in ((g.KZS11, g.KFS11), (g.KZS12, g.KFS12), (g.KZS22, g.KFS22)):
+            putr(h, iz, here, getr(h, ie, first))
+    puti(h, ie, g.KFNZ, len(zones))
+    puti(h, ie, g.KFMIX, int(paired))
+
+
+# ---- GENERATE ... AUTOMATIC: a block is divided into zones with sides of about a given length
+
+SLACK = 1e-6  # part of a rounding length that a part of an edge may be too short
+
+
+def generate_automatically(array: MainArray, ib: int, edge: float, paired: bool = False) -> str:
+    """Divide block `ib` into zones with sides of about `edge` (m). Returns one line on the mesh.
+
+    paired: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation. Errors 1, 14, 23 and 28; nothing
+    is changed then.
+    """
+    outline = Outline(array.h, ib)
+    found = mesh(outline.end, edge, paired, array.h.cr.dtype.type)
+    _check_room(found, len(outline.corners), edge, float(array.h.cr[g.DTOL]))
+    divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+    return (
+        f"block@{ib} has {len(found.zones)} zones and {len(found.points)} grid-points, "
+        f"the least angle is {found.smallest_angle:.1f} degrees"
+    )
+
+
+def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
+    """Error 14 if a grid-point on an edge stands in the rounding of a corner."""
+    ends = np.append(found.ring, found.ring[0])
+    for i, j in pairwise(ends.tolist()):
+        distance = float(np.hypot(*(found.points[i] - found.points[j])))
+        if (i < corners) != (j < corners) and distance < d * (1 - SLACK):
+            x, y = found.points[min(i, j)]
+            detail = f"an edge of {edge:g} sets a grid-point {distance:g} from the corner ({x:g}, {y:g})"
+            raise UdecError(
+                14,
+                f"{detail}, which is rounded by {d:g}",
+                f"use a longer edge, or first ROUND {0.9 * distance:.2g} before",
+                parameter="edge",
+            )
+
+
+def _places(outline: Outline, found: Mesh) -> list[Place]:
+    """Where the points of the mesh, whose first points are the corners, go in the block."""
+    places = [Place(float(x), float(y)) for x, y in found.points]
+    for place, ip in zip(places, outline.corners, strict=False):
+        place.corner = ip
+    edge = 1  # the ring begins at corner 0, with the edge that ends at corner 1
+    for i in found.ring[1:].tolist():
+        k = edge % len(outline.corners)
+        if i < len(outline.corners):
+            edge += 1
+            continue
+        place = places[i]
+        place.corner, place.on_edge = outline.corners[k], True
+        place.along = float(np.hypot(*(found.points[i] - outline.start[k])))
+    return places

@@ -1,0 +1,81 @@
+"""INSITU: initial stresses in deformable blocks.
+
+Zones and simply-deformable blocks get S(x, y) = S0 + x SX + y SY at their centroids, tension positive. The
+forces at contacts follow from overlaps and cannot be given: they grow while the blocks spread against each
+other, by the small strain that closes the joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.sdef import put_stress
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.boundary_conditions import ZERO, Triple
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, why_no_block
+from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.number_limits import finite, held
+
+
+def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:
+    """INSITU: stresses (Pa; 11, 12, 22) of the deformable blocks in the range. Returns the number of blocks.
+
+    Error 24 if no deformable block with zones lies in the range; 28, and nothing is changed, if the reals
+    cannot hold the stresses or the forces that they make.
+    """
+    for name, triple in (("s11", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
+        for component in triple:
+            finite(array, **{name: component})
+    h = array.h
+
+    def at(x: float, y: float) -> Triple:
+        one, two, three = (s + x * sx + y * sy for s, sx, sy in zip(stress, xgrad, ygrad, strict=True))
+        return one, two, three
+
+    stresses: dict[int, dict[int, Triple]] = {}
+    for ib in blocks_in(array, where):
+        inside = {iad: at(x, y) for iad, x, y in _pieces(h, ib)}
+        # no force on a grid-point is more than a stress times this length
+        length = 4 * float(getr(h, ib, g.KBRO)) * len(inside)
+        for what, factor in (("stress", 1.0), ("force", length)):
+            held(array, f"a {what} in block@{ib}", (factor * s for triple in inside.values() for s in triple))
+        if inside:
+            stresses[ib] = inside
+    if not stresses:
+        raise _no_stress(array, where)
+    for ib, inside in stresses.items():
+        for iad, triple in inside.items():
+            if iget(h, ib, HEAD) == g.MSDEF:
+                put_stress(h, iad, *(h.cr.dtype.type(s) for s in triple))
+            else:
+                for k, s in zip((g.KZS11, g.KZS12, g.KZS22), triple, strict=True):
+                    putr(h, iad, k, s)
+    renew_forces(array)
+    return len(stresses)
+
+
+def _no_stress(array: MainArray, where: Range) -> UdecError:
+    """Error 24: no block lies in the range, or none that carries stress."""
+    blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
+    if not blocks:
+        return UdecError(24, why_no_block(array, where), parameter="x1")
+    if any(iget(array.h, ib, HEAD) == g.MFDEF for ib in blocks):
+        advice = f"GENERATE divides a block into zones; CHANGE {limits} SDEF needs no zones"
+        return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
+    detail = f"all blocks there are rigid and carry no stress, such as block@{blocks[0]}"
+    advice = f"first make the blocks deformable: CHANGE {limits} SDEF, with BULK and G of their material"
+    return UdecError(24, detail, advice, parameter="x1")
+
+
+def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:
+    """What bears stress in block `ib`: its zones or its extension, with the centroid."""
+    if iget(h, ib, HEAD) == g.MSDEF:
+        yield iget(h, ib, g.KBEX), float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
+    elif iget(h, ib, HEAD) == g.MFDEF:
+        for iz in chain(h, iget(h, iget(h, ib, g.KBEX), g.KFZ), g.KZ):
+            corners = [iget(h, iz, g.KZG, i) for i in range(3)]
+            x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (g.KXG, g.KYG))
+            yield iz, x, y

@@ -1,0 +1,182 @@
+"""The commands that set numbers: PROPERTY, GRAVITY, DAMPING, FRACTION, SCALE, FIX, FREE, RSET."""
+
+from __future__ import annotations
+
+import math
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.masses import greatest_block
+from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
+from udec_ia.ops.commands.boundary_conditions import given_velocities
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain
+from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.number_limits import bearable, finite, material_number, not_negative, positive, whole
+
+DEFAULT_FRACTION = 0.1
+PROPERTIES = {  # argument of PROPERTY: array of the common block
+    one.argument: getattr(g, one.array) for one in read_table().properties if one.keyword
+}
+RANGES = {field.name: field.allowed for field in read_table().common}
+# may be negative: what they mean is the user's
+FREE = [one.argument for one in read_table().properties if not RANGES[one.array]]
+
+
+def set_property(array: MainArray, material: int, **values: float | None) -> None:
+    """PROPERTY: set properties of a material; those not given stay. Error 4, or 28 for a negative value."""
+    i = material_number(material) - 1
+    given = {name: value for name, value in values.items() if value is not None}
+    finite(array, **{name: value for name, value in given.items() if name in FREE})
+    not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
+    cr = array.h.cr
+    bulk, shear = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
+    lame = {"K + 4G/3": bulk + 4 * shear / 3, "K - 2G/3": bulk - 2 * shear / 3}  # constants of plane strain
+    finite(array, **lame)
+    if "density" in given:
+        bearable(array, given["density"], float(greatest_block(array.h)))
+    for name, value in given.items():
+        cr[PROPERTIES[name] + i] = value
+    cr[g.ALAM1 + i], cr[g.ALAM2 + i] = lame.values()
+
+
+def set_gravity(array: MainArray, gx: float, gy: float) -> None:
+    """GRAVITY: accelerations in the x and y directions."""
+    finite(array, gx=gx, gy=gy)
+    array.h.cr[g.GRAVX], array.h.cr[g.GRAVY] = gx, gy
+
+
+def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = None) -> None:
+    """DAMPING: Rayleigh damping with the fraction `fcrit` of critical at the centre frequency `freq` (Hz).
+
+    ALPHA = fcrit 2 pi freq, BETA = fcrit/(2 pi freq). "mass" or "stiffness" drops the other half without
+    rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
+    internal degrees of freedom of simply-deformable blocks instead. What has mass damping has no other way
+    to rest (set_damping_mode).
+    """
+    not_negative(array, fcrit=fcrit)
+    if fcrit == 0 == freq:
+        raise UdecError(28, "freq is 0", "DAMPING 0 1 switches damping off", parameter="freq")
+    positive(array, freq=freq)
+    if only not in (None, "mass", "stiffness", "internal"):
+        raise UdecError(10, f"{only}", "mass, stiffness or internal", parameter="only")
+    omega = 2 * math.pi * freq
+    alpha, beta = fcrit * omega, fcrit / omega
+    finite(array, alpha=alpha, beta=beta)
+    cr, mode = array.h.cr, mode_of(array.h)
+    if only == "internal":
+        cr[g.ALPB] = alpha
+        return
+    if only != "stiffness":
+        _end_damping_mode(array.h)
+        cr[g.ALPHA] = alpha
+    elif not (mode and mode.sets_alpha):
+        cr[g.ALPHA] = 0
+    cr[g.BETA] = 0 if only == "mass" else beta
+
+
+def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> None:
+    """DAMPING LOCAL f and the other modes of the table: what leads to rest instead of mass damping.
+
+    f: fraction of the unbalanced force, or of critical damping (kernels.drive.relax), up to 1.
+    All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
+    """
+    not_negative(array, **{mode.argument: f})
+    if f > 1:
+        advice = f"{mode.name} takes 0 to 1"
+        raise UdecError(28, f"{f:g} is more than there is", advice, parameter=mode.argument)
+    h = array.h
+    _end_damping_mode(h)
+    h.cr[g.ALPHA] = h.cr[g.ALPB] = 0
+    h.ci[g.LREST], h.cr[g.RESTF] = mode.code, f
+
+
+def _end_damping_mode(h: Memory) -> None:
+    mode = mode_of(h)
+    if mode and mode.sets_alpha:
+        h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # the program's own
+    h.ci[g.LREST], h.cr[g.RESTF], h.cd[g.EMOVES] = g.UNDAMPED, 0, 0
+
+
+def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = False) -> None:
+    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound.
+
+    scaled: inertial masses are scaled, and the fraction is of the safe bound with these (ops.run.scaling).
+    Error 26 while an account of the energy is kept: what scaled masses move with is no energy.
+    """
+    positive(array, f=f)
+    if (safe or scaled) and f > 1:
+        raise UdecError(
+            28,
+            f"{f:g} of the safe bound is not safe",
+            f"f in FRACTION f {'SCALED' if scaled else 'SAFE'} must not exceed 1",
+            parameter="f",
+        )
+    if scaled and array.h.ci[g.LENER]:
+        advice = "ENERGY OFF, or FRACTION without SCALED"
+        raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
+    array.h.cr[g.FRAC] = f
+    array.h.ci[g.LSAFE] = int(safe or scaled)
+    array.h.ci[g.LSCALE] = int(scaled)
+
+
+def set_scale(array: MainArray, s: float) -> None:
+    """SCALE: plot scale; 0 lets the plot fill its frame."""
+    not_negative(array, s=s)
+    array.h.cr[g.PSCALE] = s
+
+
+def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
+    """FIX and FREE: hold or release the blocks in the range. Returns their number.
+
+    A block that is fixed stops at once; one that is set free starts from rest.
+    """
+    h = array.h
+    blocks = blocks_in(array, where)
+    given = {} if fixed else given_velocities(h)
+    for ib in blocks:
+        puti(h, ib, g.KBFIX, g.FIXED if fixed else given.get(ib, 0))
+        if fixed:
+            _stop(h, ib)
+    if not fixed and h.ci[g.MCTOT] > 0 and any(iget(h, ib, HEAD) == g.MFDEF for ib in blocks):
+        renew_forces(array)  # a fixed block has none at its grid-points
+    return len(blocks)
+
+
+def _stop(h: Memory, ib: int) -> None:
+    """Set all velocities of block `ib` to zero, those of corners and grid-points and strain rates, too."""
+    for k in (g.KXD, g.KYD, g.KTD):
+        putr(h, ib, k, 0.0)
+    carry_corners(h, ib)
+    ie = iget(h, ib, g.KBEX)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)
+    elif iget(h, ib, HEAD) == g.MFDEF:
+        for ig in chain(h, iget(h, ie, g.KFG), g.KG):
+            putr(h, ig, g.KXDG, 0.0)
+            putr(h, ig, g.KYDG, 0.0)
+
+
+def rset(array: MainArray, v: float, ia: int, ioff: int) -> None:
+    """RSET: put the real value `v` at offset `ioff` (counted from 1) of the group at address `ia`.
+
+    Error 30 if the real would lie outside the groups in use, or if `ia` cannot be the address of a group.
+    """
+    finite(array, v=v)
+    ia, ioff = whole(ia=ia), whole(ioff=ioff)
+    h, ratio = array.h, array.scheme.ratio
+    last = int(h.ci[g.MFREE]) - 1
+    if ia < 1 or (ia - 1) % ratio:
+        advice = f"addresses are 1 plus a multiple of {ratio}"
+        raise UdecError(30, f"{ia} is not the address of a group", advice, parameter="ia")
+    if ioff < 1:
+        advice = "offsets count from 1: offset 1 is the first real of a group (HELP RSET)"
+        raise UdecError(30, f"offset {ioff}", advice, parameter="ioff")
+    if ia + ioff * ratio - 1 > last:
+        place = f"offset {ioff} from address {ia}"
+        raise UdecError(30, place, f"the last word in use is {last}", parameter="ia" if ia > last else "ioff")
+    h.ra[(ia - 1) // ratio + ioff - 1] = v

@@ -1,0 +1,194 @@
+"""SPLIT: blocks are cut by a line (report 2.7)."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.split.crossing import SHORTEST, X, Y, rounding_is_open
+from udec_ia.kernels.split.split import (
+    DONE,
+    NO_MEMORY,
+    NO_ROWS,
+    REFUSED_SHORT,
+    cut_path,
+    cutting,
+    enter_boxes,
+    path,
+)
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.corner_rounding import update_flagged
+from udec_ia.ops.commands.generate_zones import Outline
+from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
+from udec_ia.ops.common.deformable_scene import renew_forces, soft, soft_or_loaded_in
+from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
+
+CROSSINGS = 64  # of one block that are looked for at first
+ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
+
+
+class Boxes:
+    """The boxes of all blocks, kept from one SPLIT to the next as long as nothing else moved a block."""
+
+    def __init__(self) -> None:
+        self.boxes = np.zeros((0, 4))
+        self.blocks = np.zeros(0, np.int64)
+        self.n = 0
+        self.size = 0.0  # greatest |x| + |y| that a corner can have
+
+    def forget(self) -> None:
+        """Blocks have moved or gone: look at the block list again next time."""
+        self.n = 0
+
+    def enter(self, array: MainArray) -> None:
+        """Make sure that all blocks of the list are entered."""
+        count = int(array.h.ci[g.NBLK])
+        self.make_room(array, count)
+        if self.n != count:
+            self.n = enter_boxes(array.h, self.boxes, self.blocks)
+            far = np.abs(self.boxes[: self.n]).max(axis=0)
+            self.size = float(max(far[0], far[2]) + max(far[1], far[3]))
+
+    def make_room(self, array: MainArray, count: int) -> None:
+        """Make sure that there are `count` rows."""
+        if len(self.blocks) >= count:
+            return
+        boxes, blocks = np.zeros((2 * count, 4), array.h.cr.dtype), np.zeros(2 * count, np.int64)
+        boxes[: self.n], blocks[: self.n] = self.boxes[: self.n], self.blocks[: self.n]
+        self.boxes, self.blocks = boxes, blocks
+
+
+def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: float) -> int:
+    """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
+
+    A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
+    runs too close to a corner or an edge; error 17 if it would split a block that has zones.
+    """
+    finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
+    z = math.hypot(x2 - x1, y2 - y1)
+    finite(array, length=z)
+    if z == 0:
+        raise UdecError(28, "the two ends of the line are the same point", "give two points", parameter="x2")
+    before = int(array.h.ci[g.NBLK])
+    if before == 0:
+        return 0
+    boxes.enter(array)
+    digit = last_digit(array, boxes.size)
+    shortest = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
+    slack = ROUNDINGS * (digit + last_digit(array, abs(x1) + abs(y1)))
+    line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, shortest, slack], array.h.cr.dtype)
+    while not _cut(array, boxes, line):
+        boxes.forget()
+    if array.h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    return int(array.h.ci[g.NBLK]) - before
+
+
+def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
+    """Cut along the line; False if it has to be begun again with more memory."""
+    keep_spare(array)
+    boxes.enter(array)
+    h = array.h
+    rows = np.empty(boxes.n, np.int64)
+    status, room = NO_ROWS, CROSSINGS
+    while status == NO_ROWS:
+        where, which = np.empty((room, 3), h.cr.dtype), np.empty((room, 2), np.int64)
+        status, found, cuts = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where, which)
+        room *= 2
+    if status != DONE:
+        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
+    for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
+        if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
+            raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
+    boxes.make_room(array, boxes.n + cuts)
+    status, boxes.n = cut_path(
+        *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
+        cutting(h, soft_or_loaded_in(h)),
+    )
+    if status == NO_MEMORY:
+        try:
+            find_room(array)
+        finally:
+            boxes.forget()
+        update_flagged(array)
+    return bool(status == DONE)
+
+
+def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest: float) -> None:
+    place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
+    if status == REFUSED_SHORT and rounding_is_open(array.h):
+        bits = array.scheme.real_bits
+        detail = f"{place} it leaves an edge shorter than {shortest:g}, the finest for {bits}-bit reals here"
+        advice = "move the line, put the origin nearer to the blocks, or use a --build with 64-bit reals"
+        raise UdecError(27, detail, advice, group=ib)
+    if status == REFUSED_SHORT:
+        detail = f"the cut {place} leaves an edge shorter than {shortest:g}"
+        raise UdecError(14, detail, "move the line, or first use a smaller rounding length", group=ib)
+    raise UdecError(
+        27,
+        place,
+        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside",
+        group=ib,
+    )
+
+
+# ---- Why a SPLIT has cut no block: the line passes none, touches one at most, or ends inside
+
+LONGER = "a block is cut where the line crosses it from side to side"
+
+
+def why_uncut(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: float) -> str:
+    """Why the line from (x1, y1) to (x2, y2) cuts no block."""
+    boxes.enter(array)
+    if boxes.n == 0:
+        return NO_BLOCK_YET
+    line = np.array([[x1, y1], [x2, y2]])
+    low, high = boxes.boxes[: boxes.n, :2], boxes.boxes[: boxes.n, 2:]
+    met = np.flatnonzero(((line.min(axis=0) <= high) & (line.max(axis=0) >= low)).all(axis=1))
+    slack = ROUNDINGS * (last_digit(array, boxes.size) + last_digit(array, abs(x1) + abs(y1)))  # as SPLIT's
+    ends, touched = ["", ""], 0
+    for ib in boxes.blocks[met].tolist():
+        inside, touches = _along(Outline(array.h, ib), line, slack)
+        for k in range(2):
+            if inside[k]:
+                ends[k] = f"{('begins', 'ends')[k]} inside block@{ib} at ({line[k, 0]:g}, {line[k, 1]:g})"
+        touched = touched or (ib if touches else 0)
+    if any(ends):
+        return f"the line {' and '.join(filter(None, ends))}; {LONGER}"
+    if touched:
+        return f"the line only touches block@{touched}, along an edge or at a corner; {LONGER}"
+    (ax, ay), (bx, by) = low.min(axis=0), high.max(axis=0)
+    return f"the line meets no block; all blocks lie in x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
+
+
+def _along(block: Outline, line: Any, slack: float) -> tuple[Any, bool]:
+    """Whether the start and the end of the line lie inside the block, and whether the line touches it at all.
+
+    The line is divided where it meets the outline, and the middle of each part is looked at. What is nearer
+    than `slack` to the line is on it.
+    """
+    length = math.dist(*line)
+    c, s = unit = (line[1] - line[0]) / length
+    x, y = (block.end - line[0]).T
+    along, off = x * c + y * s, y * c - x * s
+    off[np.abs(off) <= slack] = 0.0
+    next_along, next_off = np.roll(along, -1), np.roll(off, -1)
+    crosses = off * next_off < 0
+    share = off[crosses] / (off[crosses] - next_off[crosses])
+    meets = np.sort([*(along[crosses] + share * (next_along - along)[crosses]), *along[off == 0.0]])
+    flat = (off == 0) & (next_off == 0)  # edges along the line
+    inside = np.zeros(2, bool)
+    for a, b in pairwise(meets.tolist()):
+        middle = (a + b) / 2
+        on_edge = (((along - middle) * (next_along - middle) < 0) & flat).any()
+        if not on_edge and block.holds(*(line[0] + middle * unit)):
+            inside |= a < -slack < slack < b, a < length - slack < length + slack < b
+    beside = flat & (np.minimum(along, next_along) < length) & (np.maximum(along, next_along) > 0)
+    return inside, bool(beside.any() or ((meets >= -slack) & (meets <= length + slack)).any())

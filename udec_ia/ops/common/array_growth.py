@@ -1,0 +1,99 @@
+"""Running a kernel that may ask for memory, and going back when something is refused half-way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from udec_ia.compiling.build_choice import forget_kinds
+from udec_ia.errors import OVERFLOW, UdecError
+from udec_ia.heap.accessors import size_of
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import ALL_SCHEMES
+from udec_ia.layout import offsets as g
+
+SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
+
+
+def find_room(array: MainArray) -> None:
+    """Make the room that an interrupted kernel asked for; error 1 if the scheme or --mtop forbids it.
+
+    What was asked for may include words to spare, so the array takes all words there are before it refuses.
+    """
+    if array.grow():
+        return
+    ci = array.h.ci
+    if ci[g.MTOP] == array.limit:
+        raise _overflow(array)
+    ci[g.NWANT] = array.limit - int(ci[g.MFREE]) + 1
+    array.grow()
+
+
+def _overflow(array: MainArray) -> UdecError:
+    """Error 1 for the words that are asked for in vain."""
+    ci = array.h.ci
+    need = int(ci[g.MFREE] + ci[g.NWANT]) - 1
+    ci[g.NWANT] = 0
+    if ci[g.NERR] == OVERFLOW:
+        ci[g.NERR] = 0
+    wider = [
+        s.name
+        for s in ALL_SCHEMES.values()
+        if s.top_address >= need and s.real_bits == array.scheme.real_bits
+    ]
+    if array.fixed and need <= array.scheme.top_address:
+        advice = f"this line needs at least --mtop {need}: omit --mtop to let the array grow"
+    else:
+        advice = f"run from START with --build {' or '.join(wider)}: 16-bit addresses end at 32767"
+    return UdecError(1, f"{need} words are needed, the main array has {int(ci[g.MTOP])}", advice)
+
+
+def keep_spare(array: MainArray) -> None:
+    """Have memory to spare for the contacts and domains of the updates to come.
+
+    An array that grew in the midst of an update would make its contacts in another order, and the order of
+    sums is the last bit of a force. So the array grows before: when and how often it does changes nothing.
+    An array of fixed size, or one that has reached its limit, uses its last word instead.
+    """
+    ci = array.h.ci
+    pair = size_of(array.h, g.NVCN) + size_of(array.h, g.NVDO)
+    words = min(pair * (SPARE_CONTACTS + int(ci[g.NCON]) // 4), array.limit - int(ci[g.MFREE]) + 1)
+    if ci[g.MFREE] + words - 1 > ci[g.MTOP]:
+        ci[g.NWANT] = words
+        array.grow()
+    ci[g.NSPARE] = words if ci[g.MTOP] < array.limit else 0
+
+
+def require(array: MainArray, words: int) -> None:
+    """Make sure that `words` words of fresh memory are there before anything is changed."""
+    ci = array.h.ci
+    if ci[g.MFREE] + words - 1 > ci[g.MTOP]:
+        ci[g.NWANT] = words
+        if not array.grow():
+            raise _overflow(array)
+
+
+def refit(array: MainArray, mtop: int | None) -> None:
+    """Give the array the size that the run fixes, or let it grow; error 1 if it holds more than that."""
+    if not array.refit(mtop):
+        used = int(array.h.ci[g.MFREE]) - 1
+        detail = f"{used} words are in use, and --mtop is {mtop}"
+        advice = f"--mtop may be {used} to {array.scheme.top_address}: omit it to let the array grow"
+        raise UdecError(1, detail, advice)
+
+
+@contextmanager
+def all_or_nothing(array: MainArray) -> Iterator[None]:
+    """Let an error leave the array as it was before the block."""
+    h, used = array.h, int(array.h.ci[g.MFREE]) - 1
+    parts = h.ia[:used], h.ci, h.cr, h.cd
+    before = [part.copy() for part in parts]
+    try:
+        yield
+    except UdecError:
+        h.ia[used : int(array.h.ci[g.MFREE]) - 1] = 0  # as FIND leaves what it has not handed out
+        for part, kept in zip(parts, before, strict=True):
+            part[:] = kept
+        array.h = h
+        forget_kinds(h.ia)
+        raise

@@ -1,0 +1,86 @@
+"""Ranges: the blocks whose centroids lie in x1 < x < x2, y1 < y < y2 (RANGE), and why there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import hypot
+
+from udec_ia.heap.accessors import Memory, Offset, getr, iget
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.geometry.ranges import blocks_between
+from udec_ia.kernels.links.lists import nextcp
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.number_limits import finite
+
+Range = tuple[float, float, float, float]  # x1, x2, y1, y2
+Point = tuple[float, float]
+NO_BLOCK_YET = "there is no block yet: create one with BLOCK"
+
+
+def check_range(array: MainArray, where: Range) -> None:
+    """Error 28 unless the limits of the range are finite."""
+    finite(array, **dict(zip(("x1", "x2", "y1", "y2"), where, strict=True)))
+
+
+def blocks_in(array: MainArray, where: Range) -> list[int]:
+    """Addresses of the blocks in the range, in list order."""
+    check_range(array, where)
+    return [int(ib) for ib in blocks_between(array.h, *map(float, where))]
+
+
+def why_no_block(array: MainArray, where: Range) -> str:
+    """Why no block lies in the range."""
+    h = array.h
+    places = (
+        (f"block@{ib}", ((float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))),))
+        for ib in chain(h, int(h.ci[g.IBPNT]), g.KB)
+    )
+    return why_nothing(where, "centroid", places)
+
+
+def limits_turned(where: Range) -> str:
+    """Which limits of the range are in the wrong order, so that nothing can lie in it; "" if none are."""
+    x1, x2, y1, y2 = where
+    limits = (("x1", x1, "x2", x2), ("y1", y1, "y2", y2))
+    turned = [f"{low} = {a:g} is not below {high} = {b:g}" for low, a, high, b in limits if a >= b]
+    return " and ".join(turned) + ", where a range is x1 x2 y1 y2" if turned else ""
+
+
+def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point, ...]]]) -> str:
+    """Why nothing lies in the range: its limits, or the nearest thing, given as a name and its points."""
+    if turned := limits_turned(where):
+        return turned
+    x1, x2, y1, y2 = where
+
+    def off(points: tuple[Point, ...]) -> float:
+        return max(hypot(max(x1 - x, 0, x - x2), max(y1 - y, 0, y - y2)) for x, y in points)
+
+    nearest = min(((off(points), name, points) for name, points in things), default=None)
+    if nearest is None:
+        return NO_BLOCK_YET
+    away, name, points = nearest
+    place = " to ".join(f"({x:g}, {y:g})" for x, y in points)
+    here = f"x {x1:g} to {x2:g}, y {y1:g} to {y2:g}"
+    limit = "" if away else ", on a limit and so outside"
+    return f"no {what} in {here}, the nearest is {name} at {place}{limit}"
+
+
+# ---- Walks along the lists of a sound heap, for what happens once a command
+
+
+def items(h: Memory, ib: int) -> Iterator[int]:
+    """Corners and contacts of block `ib`, clockwise."""
+    first = item = iget(h, ib, g.KP)
+    while True:
+        yield item
+        item = nextcp(h, ib, item)
+        if item == first:
+            return
+
+
+def chain(h: Memory, first: int, link: Offset) -> Iterator[int]:
+    """Groups of a list from `first` on, linked by `link`; the one at hand may be given back."""
+    while first:
+        following = iget(h, first, link)
+        yield first
+        first = following
