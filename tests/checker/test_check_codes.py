@@ -10,7 +10,7 @@ import pytest
 from udec_ia import Model
 from udec_ia.checker import check
 from udec_ia.errors import UdecError
-from udec_ia.heap.array import MainArray
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 
