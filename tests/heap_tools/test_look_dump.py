@@ -20,7 +20,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output.dump import dump as plain_dump
 from udec_ia.output.dump import raw
-from udec_ia.reader import group_names as names
+from udec_ia.reader import atlas as names
 from udec_ia.reader.atlas import KINDS, Atlas
 
 Row = dict[str, Any]
