@@ -20,8 +20,8 @@ from udec_ia.heap.accessors import getr, iget, puti
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.history_definitions import define, named
-from udec_ia.ops.run.watch import ROWS, Watch
 from udec_ia.reader.recordable_numbers import recordable
+from udec_ia.running.history_series import ROWS, Recording
 
 KINDS = ("block", "corner", "contact", "domain")
 
@@ -129,12 +129,12 @@ def test_all_word_schemes_interpreted(tmp_path: Path) -> None:
     )
 
 
-def test_a_watch_on_a_bare_array_makes_its_own_series() -> None:
+def test_a_recording_of_a_bare_array_makes_its_own_series() -> None:
     array = two_blocks()
     define(array, named("KX"), [int(array.h.ci[g.IBPNT])], 2)
-    watch = Watch(array, [])
-    watch.begin()
-    assert watch.series[0].numbers.tolist() == [[0.0, 0.0, 0.5]]
+    recording = Recording(array, [])
+    recording.begin(0)
+    assert recording.series[0].numbers.tolist() == [[0.0, 0.0, 0.5]]
     assert iget(array.h, int(array.h.ci[g.IHPNT]), g.KHN) == 2
     assert getr(array.h, int(array.h.ci[g.IBPNT]), g.KX) == 0.5
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from udec_ia.command_line.command_options import MISUSE, given, variables, word_scheme
+from udec_ia.deck.deck_statements import read_deck
 
 VERBS = ("debug",)
 
@@ -39,8 +40,8 @@ def _debug(args: argparse.Namespace) -> int:
     except ValueError as error:
         print(f"udec debug: {error}", file=sys.stderr)
         return MISUSE
-    script = None if args.commands is None else args.commands.read_text("utf-8-sig", "replace").splitlines()
+    script = None if args.commands is None else read_deck(args.commands).splitlines()
     model = Model(build=args.build, out=args.out, constitutive=args.constitutive, name=args.deck.stem)
-    text = args.deck.read_text(encoding="utf-8-sig", errors="replace")
+    text = read_deck(args.deck)
     debug(model, text, sys.stdout, script, str(args.deck), values)
     return 0

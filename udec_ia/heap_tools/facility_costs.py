@@ -17,6 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.advice.energy_monitor import EnergyMonitor
+from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
@@ -29,22 +31,19 @@ from udec_ia.ops.commands.boundary_conditions import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
 from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import cycle, prepare
-from udec_ia.ops.run.guard import Guard
-from udec_ia.ops.run.runaway import Runaway
-from udec_ia.ops.run.watch import Watch
 from udec_ia.reader.listing import Listing
+from udec_ia.running.cycle import cycle, prepare
+from udec_ia.running.history_series import Recording
 
 NEVER = 1e30  # m, a displacement that nothing comes to
 
 
 @dataclass
 class Trial:
-    """A copy of a state that runs. recorded: with its histories; judged: under the watch of its energy."""
+    """A copy of a state that runs. judged: its energy is monitored."""
 
     array: MainArray
     laws: LawBook
-    recorded: bool = True
     judged: bool = True
 
 
@@ -107,7 +106,7 @@ def _unrecorded(trial: Trial) -> None:
     h = trial.array.h
     for ih in chain(h, int(h.ci[g.IHPNT]), g.KH):
         lose(h, ih, g.NVHI)
-    h.ci[g.IHPNT], trial.recorded = 0, False
+    h.ci[g.IHPNT] = 0
 
 
 def _unjudged(trial: Trial) -> None:
@@ -141,13 +140,6 @@ SECONDS = 20.0  # of all pieces together
 PIECE = 0.05  # seconds of a piece
 LONGEST, SHORTEST, ROUNDS = 2000, 10, 3  # cycles of a piece; pieces of each kind, at least
 COLUMNS = ("facility", "words", "bytes", "ns a cycle", "percent", "+-", "in this scene")
-
-
-class Unwatched(Runaway):
-    """Judges nothing, and suspects nothing."""
-
-    def judge(self, array: MainArray, anew: bool = False) -> None:
-        pass
 
 
 class Share(NamedTuple):
@@ -194,13 +186,12 @@ def _row(one: Facility, here: str, share: Share, each: float, size: int) -> tupl
 
 def _piece(trial: Trial, n: int) -> float:
     """Processor time of `n` cycles of a copy."""
-    array, guard = trial.array.copy(), Guard()
-    if not trial.judged:
-        guard.runaway = Unwatched()
-    guard.runaway.judge(array)
-    watch = Watch(array, []) if trial.recorded and array.h.ci[g.IHPNT] else None
+    array, monitors = trial.array.copy(), RunMonitors(trial.laws)
+    if trial.judged:
+        monitors.energy.judge(array)
+    recording = Recording(array, [], marks=monitors.chatter.marks)
     start = process_time()
-    cycle(array, n, laws=trial.laws, watch=watch, guard=guard)
+    cycle(array, n, recording=recording, observers=[monitors] if trial.judged else [], laws=trial.laws)
     return process_time() - start
 
 
@@ -264,6 +255,6 @@ def _preparing(array: MainArray) -> float:
         copy.h.ci[g.LREADY] = 0
         start = process_time()
         prepare(copy)
-        Runaway().judge(copy)
+        EnergyMonitor().judge(copy)
         found.append(process_time() - start)
     return float(np.median(found))
