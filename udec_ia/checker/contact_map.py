@@ -24,7 +24,7 @@ from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.counting import counted
 from udec_ia.errors import DISORDERED
 from udec_ia.heap.untrusted_lists import ill_linked, place_items
-from udec_ia.kernels.audit.faces import areas, cycles, passages, pieces
+from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names, told
 

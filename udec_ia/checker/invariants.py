@@ -42,7 +42,7 @@ from udec_ia.checker.pointers_and_codes import (
 )
 from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.block_outlines import Outlines
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import KIND_CODE, TABLE
 

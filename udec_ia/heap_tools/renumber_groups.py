@@ -24,7 +24,7 @@ from udec_ia.heap.accessors import HEAD, Memory, iget, integers, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.relocation import relocate
 from udec_ia.heap_tools.rewrite_heap import junk_words, movable
-from udec_ia.kernels.links.map_order import map_order
+from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
