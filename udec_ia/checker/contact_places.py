@@ -17,7 +17,15 @@ from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_map import AHEAD
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.block_outlines import Outlines
-from udec_ia.kernels.audit.contact_positions import OVERLAP, PASSED_OVER, PLACE, disordered, standing, touching, unlike
+from udec_ia.kernels.audit.contact_positions import (
+    OVERLAP,
+    PASSED_OVER,
+    PLACE,
+    disordered,
+    standing,
+    touching,
+    unlike,
+)
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, told
 
