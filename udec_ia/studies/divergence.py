@@ -34,7 +34,7 @@ from udec_ia.deck.deck_variables import Values
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g

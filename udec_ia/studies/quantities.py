@@ -22,8 +22,8 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy_account import balance
 from udec_ia.reader.atlas import Atlas, Word
 from udec_ia.reader.conditions import satisfying
+from udec_ia.reader.group_positions import choose
 from udec_ia.reader.group_tables import addresses
-from udec_ia.reader.nearest_group import choose
 from udec_ia.reader.recordable_numbers import Recordable
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution

@@ -1,9 +1,11 @@
-"""Which group a user means, who gives its address or the point that it is nearest to.
+"""Where groups lie in the rock, and which group is nearest to a point.
 
 A block is where its centroid is, a corner where it is sharp, a contact at its contact point; a zone in the
 middle of its grid-points, a domain in the middle of the contacts around it. An extension is where the group
 is that it belongs to, a boundary condition where its grid-point, edge or block is. The outer domain, virtual
 contacts, signals and their points are nowhere.
+
+In a damaged heap the corners of a block are those that name it as their host, wherever the lists lead.
 """
 
 from __future__ import annotations
@@ -15,8 +17,10 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas, Span
 from udec_ia.reader.group_tables import table
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
@@ -136,3 +140,36 @@ def _extensions(array: MainArray, address: Any) -> tuple[Any, Any]:
                 found.append(extension[host])
                 where.append(at)
     return np.array(found, np.int64), np.array(where).reshape(-1, 2)
+
+
+NEIGHBOURS = ("loop", "watched")  # roles of pointers to a group that lies where a group without a block does
+
+
+def homes(atlas: Atlas, span: Span) -> list[int]:
+    """The blocks that a group belongs to; of a domain those at one of its contacts, for instance."""
+    blocks = atlas.owners(span)
+    if not blocks and span.kind in KINDS:
+        near = [int(atlas.value(word)) for word in atlas.words(span) if word.field.role in NEIGHBOURS]
+        blocks = [block for iad in near if atlas.holds("any", iad) for block in atlas.owners(atlas.span(iad))]
+    return [block for block in dict.fromkeys(blocks) if atlas.holds("block", block)]
+
+
+def corners_of(atlas: Atlas, block: int) -> Any:
+    """Places (n, 2) in m of the corners that name a block as theirs, by rising address."""
+    at = atlas.groups["corner"]
+    at = at[integers(atlas.h, at, g.KNB) == block]
+    return np.stack([getr(atlas.h, at, g.KXP), getr(atlas.h, at, g.KYP)], axis=-1)
+
+
+def places(atlas: Atlas, span: Span) -> list[str]:
+    """A sentence for each block that a group belongs to."""
+    said = []
+    for block in homes(atlas, span):
+        x, y = (float(getr(atlas.h, block, k)) for k in (g.KX, g.KY))
+        corners = corners_of(atlas, block)
+        here = f"block@{block}: centroid ({x:.6g}, {y:.6g}) m"
+        if len(corners):
+            (x1, y1), (x2, y2) = corners.min(axis=0), corners.max(axis=0)
+            here += f", {len(corners)} corners in x {x1:.6g} to {x2:.6g} m, y {y1:.6g} to {y2:.6g} m"
+        said.append(here)
+    return said

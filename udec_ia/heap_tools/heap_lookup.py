@@ -1,18 +1,105 @@
-"""Along a list, group by group, until it ends, comes round or leads astray."""
+"""What a word is, what points to a group, and the groups along a list: `udec what`, `who` and `walk`."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
 from difflib import get_close_matches
-from typing import Any
+from itertools import repeat
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.reader.atlas import TABLE, Atlas, Word
-from udec_ia.reader.group_names import leads_to, names
+from udec_ia.heap.main_array import variable
+from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
+from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
+from udec_ia.reader.group_positions import places
 from udec_ia.reader.list_walks import Unsound, boundary, groups, loop
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
+
+
+class Pointers(NamedTuple):
+    """One pointer field of groups of a kind: their addresses (n,), and where it leads (n,).
+
+    target: kind of group it should lead to. word: None for a pointer of the common block, called `name`.
+    """
+
+    name: str
+    target: str
+    word: Word | None
+    at: Any
+    to: Any
+
+
+def pointers(atlas: Atlas) -> Iterator[Pointers]:
+    """Every pointer of the common block, and every pointer field of every kind of group."""
+    for field in TABLE.common:
+        if field.target:
+            yield Pointers(field.name, field.target, None, np.zeros(1, np.int64), variable(atlas.h, field))
+    for kind in KINDS:
+        at = atlas.groups[kind]
+        for word in atlas.shapes[kind]:
+            if word.field.target:
+                yield Pointers(word.name, word.field.target, word, at, atlas.gather(word, at))
+
+
+def pointing(atlas: Atlas, address: int) -> Iterator[Pointers]:
+    """Those whose value is `address`."""
+    for one in pointers(atlas):
+        found = one.to == address
+        yield one._replace(at=one.at[found], to=one.to[found])
+
+
+def pointer_rows(atlas: Atlas, found: Iterable[Pointers], limit: int | None = None) -> list[tuple[Any, ...]]:
+    """Address, group and field of some pointers; those of the common block have no address."""
+    rows: list[tuple[Any, ...]] = []
+    for name, _, word, at, _ in found:
+        at = at if limit is None else at[: limit - len(rows)]
+        if word is None:
+            rows += [("", COMMON, name)] * len(at)
+        else:
+            rows += zip((at + word.first).tolist(), names(atlas, at), repeat(name), strict=False)
+    return rows
+
+
+def who(atlas: Atlas, place: int | str) -> Listing:
+    """All words that point to the group at, or around, a place, by field.
+
+    place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place.
+    """
+    span = atlas.span(address_of(atlas, place))
+    rows = pointer_rows(atlas, pointing(atlas, span.first))
+    said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
+    return Listing([said], ("address", "group", "field"), rows)
+
+
+def what(atlas: Atlas, place: int | str) -> Listing:
+    """What the word at a place is, and the whole group that it is part of.
+
+    place: an address, or text such as block@88.KXD. IndexError outside IA(), ValueError for no such place.
+    """
+    address = address_of(atlas, place)
+    span, word = atlas.word_at(address)
+    size, place = span.last - span.first + 1, address - span.first + 1
+    said = [f"{address} is word {place} of {size} of {called(atlas, span)}"]
+    if span.kind == JUNK:
+        return Listing([f"{said[0]}, free to be used again"])
+    if span.kind not in KINDS:
+        return Listing([f"{address} is word {place} of {size} that are {span.kind}"])
+    if word is None:
+        said.append("no field: it fills the group up to a whole number of reals")
+    else:
+        told = meaning(atlas, span, word)
+        more = f", {told}" if told != word.field.text else ""
+        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}{more}")
+    return Listing(said + places(atlas, span), COLUMNS, span_rows(atlas, span))
+
+
+def _value(atlas: Atlas, word: Word) -> str:
+    unit = word.field.unit.strip("-")
+    return f"{atlas.value(word)}{' ' if unit else ''}{unit}"
+
 
 LINKS = {  # fields that lead along a list, with the kind of group that has them
     field.name: group.name
@@ -25,19 +112,23 @@ AROUND = ("block", "domain")  # groups with a list around them
 
 
 def walk(
-    atlas: Atlas, along: str, start: int | None = None, field: str | None = None, limit: int | None = None
+    atlas: Atlas,
+    along: str,
+    start: int | str | None = None,
+    field: str | None = None,
+    limit: int | None = None,
 ) -> Listing:
     """A list, group by group, until it ends, comes round or leads astray.
 
-    along: the kind of the groups of a main list; or "block" or "domain" with the address of one, for the list
-    around it; or the name of a field that links groups, with the address at which to begin. field: what to
+    along: the kind of the groups of a main list; or "block" or "domain" with the place of one, for the list
+    around it; or the name of a field that links groups, with the place at which to begin. field: what to
     show of each group that has it, such as KXD or KZG(2). limit: groups to show. ValueError for what is no
     list, no field or no limit.
     """
     if limit is not None and limit < 1:
         raise ValueError(f"limit {limit}: give the number of groups to show, 1 or more")
     shown = _having(atlas, field) if field else {}
-    way, addresses = _way(atlas, along, start)
+    way, addresses = _way(atlas, along, None if start is None else address_of(atlas, start))
     found, broken = list[int](), ""
     try:
         for iad in addresses:
