@@ -131,6 +131,7 @@ BELOW = {  # layers that a layer imports
     "command_line": {
         "counting",
         "debug",
+        "deck",
         "errors",
         "compiling",
         "heap",
