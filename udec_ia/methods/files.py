@@ -38,7 +38,7 @@ class Files(State):
         from udec_ia.restart import save
 
         if self._touched and not force:
-            self._prove(whole=True)
+            self._prove()
         broken = [str(one) for one in check(self.array)] if force else []
         if broken:
             self.tell(f"the state is unsound, and the file is marked so: {broken[0]}")

@@ -11,7 +11,7 @@ from udec_ia.checker import check_shapes
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.tracked_arrays import Writes, lend
+from udec_ia.heap.tracked_arrays import Writes, track
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout.offsets import LREADY
 from udec_ia.ops.commands import settings
@@ -60,7 +60,7 @@ class State(Session):
         array grow: take it anew.
         """
         if self._lent is None or self._lent[0] is not self.array.h:
-            self._lent = self.array.h, lend(self.array.h, self.writes)
+            self._lent = self.array.h, track(self.array.h, self.writes)
         return self._lent[1]
 
     def parts(self) -> Iterator[object]:
@@ -118,17 +118,11 @@ class State(Session):
             return False
         return True
 
-    def _prove(self, whole: bool = False) -> None:
-        """Error 20 with the first violation of links, numbers or outlines that could mislead a routine.
-
-        whole: with the first of all; else words that are lost for good are left to SAVE.
-        """
-        broken = check_shapes(self.array)
-        for one in broken:
-            if whole or one.misleads:
-                advice = "undo the change, or RESTART from a sound file"
-                raise UdecError(20, str(one), advice)
-        self._touched, self._unproved = bool(broken), False
+    def _prove(self) -> None:
+        """Error 20 with the first violation of links, numbers, outlines, or the use of memory."""
+        for broken in check_shapes(self.array):
+            raise UdecError(20, str(broken), "undo the change, or RESTART from a sound file")
+        self._touched = self._unproved = False
 
 
 def _words(mtop: SupportsIndex) -> int:
