@@ -125,7 +125,7 @@ def test_all_commands_refuse_words_that_are_in_no_group(lose: Callable[[Model], 
         lambda m: m.cycle(1),
         lambda m: m.split(-1, 2, 5, 2),
         lambda m: m.save("never.h5"),
-        lambda m: m.print("blocks"),
+        lambda m: m.property(1, density=1.0),
     ):
         m = side_by_side()
         m.cycle(5)

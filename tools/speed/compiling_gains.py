@@ -4,8 +4,8 @@
     python tools/bench.py gains "rare garbage collection" --turns 3
 
 Each line is a command that runs with one part left out, against the same command with all of them. Cold runs
-begin with nothing compiled. Times are user CPU times of whole processes, as medians. The parts are described in
-docs/compiling.md.
+begin with nothing compiled. Times are user CPU times of whole processes, as medians. docs/compiling.md
+describes the parts.
 """
 
 from __future__ import annotations
@@ -43,8 +43,16 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "from udec_ia.compiling import linking\nlinking._Remembering = lambda knows: knows",
         {},
     ),
-    "no search for closures": (COLD, "from udec_ia.compiling import linking\nlinking.NOT_IN_KERNELS = ()", {}),
-    "rare garbage collection": (COLD, "from udec_ia.compiling import compile_time\ncompile_time.RARELY = 10", {}),
+    "no search for closures": (
+        COLD,
+        "from udec_ia.compiling import linking\nlinking.NOT_IN_KERNELS = ()",
+        {},
+    ),
+    "rare garbage collection": (
+        COLD,
+        "from udec_ia.compiling import compile_time\ncompile_time.RARELY = 10",
+        {},
+    ),
     "outlined calls": (
         COLD,
         "from udec_ia.compiling import outlined_calls as o\nfrom udec_ia.kernels.drive import passes\n"
@@ -102,13 +110,13 @@ def measure(part: str, turns: int, size: int, folder: Path) -> tuple[float, floa
     return median(times[False]), median(times[True])
 
 
-def main(argv: list[str] | None = None) -> None:
+def main() -> None:
     """Print a line for each part."""
     parser = argparse.ArgumentParser(prog="bench.py gains", description="What each part of compiling gains.")
-    parser.add_argument("parts", nargs="*", choices=[[], *PARTS], help="parts to leave out, by default all")
+    parser.add_argument("parts", nargs="*", help=f"by default all of: {', '.join(PARTS)}")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--size", type=int, default=316, help="blocks along a side of the large file")
-    args = parser.parse_args(argv)
+    args = parser.parse_args()
     print("| part | command | without it, s | with it, s | gain, s |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         for part in args.parts or PARTS:
