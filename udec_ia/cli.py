@@ -69,8 +69,8 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
         print(f"udec: --out {args.out}: files cannot be written there", file=sys.stderr)
         return MISUSE
-    from udec_ia.deck.interactive import converse, history, history_file
-    from udec_ia.deck.monitor import run_deck
+    from udec_ia.deck.command_monitor import run_deck
+    from udec_ia.deck.interactive_session import converse, history, history_file
     from udec_ia.model import Model
 
     out = args.out or Path()

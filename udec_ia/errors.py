@@ -1,6 +1,7 @@
 """The numbered errors of Appendix I-2, and the few that this program adds.
 
-Numbers 1 to 26 are those of 1980; from 27 on they are ours. An error carries the place in the deck
+Numbers 1 to 26 are those of 1980, without 21 (DELETE takes fully-deformable blocks away); from 27 on they are
+ours. An error carries the place in the deck
 where it arose, when it arose in a deck.
 """
 
@@ -88,10 +89,6 @@ ERRORS = {  # number: message, and what to do about it
     20: (
         "internal error, the main array is damaged",
         "check the last RSET, or go back to a state that was saved before it",
-    ),
-    21: (
-        "cannot delete fully-deformable block at present",
-        "delete blocks before they are made fully-deformable",
     ),
     22: (
         'fifth parameter must be "Manual" or "Automatic"',

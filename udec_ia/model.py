@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import TextIO
 
 from udec_ia.compiling.interpreting import mode
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.reference import explain, summary
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import explain, summary
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
@@ -33,8 +33,8 @@ from udec_ia.methods.blocks import Blocks
 from udec_ia.methods.files import Files
 from udec_ia.methods.looks import Looks
 from udec_ia.methods.numbers import Numbers
-from udec_ia.ops.common.limits import not_negative, whole
-from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
+from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.ops.run.aside import speed_after
 from udec_ia.ops.run.cycle import cycle, finish
 from udec_ia.ops.run.damped import UNDAMPED, damping

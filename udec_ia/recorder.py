@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.ops.commands.history import define, named
+from udec_ia.ops.commands.history_definitions import define, named
 from udec_ia.ops.run.solution import Solution
 from udec_ia.ops.run.watch import Series, Watch
 

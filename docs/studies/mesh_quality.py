@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from udec_ia.ops.mesh.triangles import mesh
+from udec_ia.ops.commands.triangulation import mesh
 
 Points = NDArray[np.float64]
 FRACTIONS = (2.0, 1.0, 0.5, 0.25)  # edges, in widths of the block

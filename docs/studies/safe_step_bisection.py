@@ -27,7 +27,7 @@ from safe_step_picture import dots  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.ops.common.lists import chain  # noqa: E402
+from udec_ia.ops.common.block_ranges import chain  # noqa: E402
 from udec_ia.ops.run.damped import damped  # noqa: E402
 from udec_ia.ops.run.timestep import bound, estimate  # noqa: E402
 from udec_ia.verify.grids import fan  # noqa: E402

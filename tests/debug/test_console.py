@@ -197,7 +197,7 @@ def test_completion(tmp_path: Path) -> None:
 
     console = Console(Model(out=tmp_path), io.StringIO())
     console.debugger.stopped = ask  # type: ignore[assignment]
-    from udec_ia.deck.reader import statements
+    from udec_ia.deck.deck_statements import statements
 
     console.debugger.run(list(statements(PILE.splitlines(), "pile")))
     assert found["names"] == ["resume", "reverse-continue", "reverse-step"]

@@ -16,7 +16,7 @@ from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
 from udec_ia.debug.stop_conditions import ContactChange, WordChange
 from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.debug.word_history import find_last_hit
-from udec_ia.deck.reader import statements
+from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas

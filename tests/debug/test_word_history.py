@@ -22,7 +22,7 @@ from udec_ia.debug.word_history import (
     explain_write,
     explain_write_within,
 )
-from udec_ia.deck.reader import statements
+from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import getr
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, Atlas

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.command_monitor import run_deck
 from udec_ia.errors import DAMAGED
 
 DECKS = sorted((Path(__file__).parents[1] / "decks").glob("err*.dat"))

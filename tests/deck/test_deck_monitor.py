@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from support.call_recorder import Recorder
 
 from udec_ia import Model
-from udec_ia.deck.interactive import converse, history, history_file
-from udec_ia.deck.language import COMMANDS
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.interactive_session import converse, history, history_file
 from udec_ia.errors import UdecError
 
 

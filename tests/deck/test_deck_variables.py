@@ -12,8 +12,8 @@ from support.call_recorder import Recorder
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.deck_variables import Values
 
 PILE = """START
 DEFAULT F=0.5 N=3

@@ -17,7 +17,7 @@ from support.mechanics_scenes import side_by_side
 from trials.interrupted_commands import SCENE, state
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.command_monitor import run_deck
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.signals import Terminated, dealt_with, hold, passing, poll, terminate
@@ -273,7 +273,7 @@ def test_ctrl_c_while_the_program_is_loaded_ends_it_quietly() -> None:
 
 
 def test_sigterm_ends_a_conversation_too(tmp_path: Path) -> None:
-    from udec_ia.deck.interactive import converse
+    from udec_ia.deck.interactive_session import converse
 
     m, lines = Model(out=tmp_path), iter(["START", "BLOCK 0 0 0 1 1 1 1 0", ""])
 
@@ -294,7 +294,7 @@ def test_a_run_that_is_ended_by_system_exit_leaves_a_rescue_file(
     def leave(*_: object) -> None:
         raise SystemExit
 
-    monkeypatch.setattr("udec_ia.ops.commands.settings.set_gravity", leave)
+    monkeypatch.setattr("udec_ia.ops.commands.model_settings.set_gravity", leave)
     with pytest.raises(SystemExit) as caught:
         m.run("CYCLE 5\nGRAVITY 0 -5\n")
     (note,) = caught.value.__notes__

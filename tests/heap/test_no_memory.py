@@ -9,7 +9,7 @@ import pytest
 from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.monitor import run_deck
+from udec_ia.deck.command_monitor import run_deck
 from udec_ia.heap.find_lose import room
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
@@ -22,7 +22,7 @@ def test_no_memory_left_is_an_error_of_the_deck(tmp_path: Path, monkeypatch: pyt
         raise MemoryError
 
     m, out = Model(out=tmp_path), io.StringIO()
-    monkeypatch.setattr("udec_ia.ops.commands.function._make_signal", none_left)
+    monkeypatch.setattr("udec_ia.ops.commands.boundary_conditions._make_signal", none_left)
     with pytest.raises(UdecError) as caught:
         run_deck(m, "START\nBLOCK 0 0 0 1 1 1 1 0\nFUNCTION 1 0 0 1 1\n", out)
     assert (caught.value.number, caught.value.line, m.deck_log[1:]) == (1, 3, ["BLOCK 0 0 0 1 1 1 1 0"])

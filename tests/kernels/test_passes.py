@@ -12,7 +12,7 @@ from udec_ia import Model
 from udec_ia.kernels.drive import passes as module
 from udec_ia.kernels.drive import recording
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
 
 ALWAYS = {"change_map"}
 

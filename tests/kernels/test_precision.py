@@ -15,7 +15,7 @@ from udec_ia.kernels.detect.search import arc_on_arc, arc_on_edge
 from udec_ia.kernels.geometry.shape import crad
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
-from udec_ia.ops.common.limits import EDGE_DIGITS, ROUNDING_DIGITS, last_digit
+from udec_ia.ops.common.number_limits import EDGE_DIGITS, ROUNDING_DIGITS, last_digit
 from udec_ia.reader.list_walks import corners, groups
 
 ROUNDING = 0.5

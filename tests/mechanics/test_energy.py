@@ -13,7 +13,7 @@ from support.mechanics_scenes import G, at, block, box, model, on_base, push, so
 
 from udec_ia import Model
 from udec_ia.layout.offsets import ALPHA, EPOT, EPUT, EREF, ESTOR, WBOUND, WFRIC
-from udec_ia.ops.commands.energy import Balance
+from udec_ia.ops.commands.energy_account import Balance
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CLOSED = 0.01  # residual against throughput that is asked for

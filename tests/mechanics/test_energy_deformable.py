@@ -15,7 +15,7 @@ from support.mechanics_scenes import box, model
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.energy import Balance
+from udec_ia.ops.commands.energy_account import Balance
 from udec_ia.verify.grids import generate, rectangle
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

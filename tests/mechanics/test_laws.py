@@ -19,7 +19,7 @@ from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.constitutive.block_laws import stress_increment
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
-from udec_ia.ops.commands import settings
+from udec_ia.ops.commands import model_settings
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import _compiled, read_laws
 from udec_ia.restart import info
@@ -34,7 +34,7 @@ REALS = ("i32r64", "i32r32")
 def array(build: str = "i32r64") -> MainArray:
     """An empty array, its material 3 elastic."""
     empty = MainArray(scheme(build))
-    settings.set_property(empty, 3, bulk=5.0, g=3.0)
+    model_settings.set_property(empty, 3, bulk=5.0, g=3.0)
     return empty
 
 
@@ -51,7 +51,7 @@ def stop(s11: Any, s12: Any, s22: Any, de11: Any, de12: Any, de22: Any, m: Any) 
 
 def test_a_material_tells_what_stands_in_the_common_block() -> None:
     assert len(ARRAYS) == len(Material._fields)
-    places = {**settings.PROPERTIES, "shear": g.SHEAR, "alam1": g.ALAM1, "alam2": g.ALAM2}
+    places = {**model_settings.PROPERTIES, "shear": g.SHEAR, "alam1": g.ALAM1, "alam2": g.ALAM2}
     del places["g"]
     assert dict(zip(Material._fields, ARRAYS, strict=True)) == places
 
@@ -59,7 +59,7 @@ def test_a_material_tells_what_stands_in_the_common_block() -> None:
 @pytest.mark.parametrize("build", REALS)
 def test_a_law_gets_state_and_material_and_its_increments_come_back(build: str) -> None:
     a = array(build)
-    settings.set_property(a, 3, p4=7.0)
+    model_settings.set_property(a, 3, p4=7.0)
     book = LawBook({"cl4": echo})
     laws = book.pack(a)
     found = stress_increment(a.h, laws, 4, 3, 1, *map(a.scheme.real_type.type, STATE))
@@ -93,14 +93,19 @@ import sys
 import numpy as np
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.kernels.body import laws as kernels
+from udec_ia.ops.commands import model_settings
 from udec_ia.kernels.constitutive import block_laws as kernels
-from udec_ia.ops.commands import settings
+from udec_ia.ops.commands import model_settings
 from udec_ia.ops.laws.law_book import LawBook
 
 states = np.random.default_rng(1).normal(size=(20, 6)) * [1e6, 1e6, 1e6, 1e-3, 1e-3, 1e-3]
 for build in ("i32r64", "i32r32"):
     a = MainArray(scheme(build))
-    settings.set_property(a, 1, bulk=2e9, g=1e9, block_friction=0.6, block_cohesion=2e5, block_tension=1e5)
+    values = {"bulk": 2e9, "g": 1e9, "block_friction": 0.6, "block_cohesion": 2e5, "block_tension": 1e5}
+    model_settings.set_property(a, 1, **values)
     book = LawBook(sys.argv[1])
     laws = book.pack(a)
     for state in states.astype(a.scheme.real_type):

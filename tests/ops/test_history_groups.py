@@ -13,7 +13,7 @@ from support.mechanics_scenes import block, push, standing, value
 from udec_ia import Model
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.history import define, definitions, named
+from udec_ia.ops.commands.history_definitions import define, definitions, named
 
 
 def test_a_group_that_has_gone_leaves_nan_and_is_told_once(tmp_path: Path) -> None:

@@ -15,9 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from udec_ia import UdecError
-from udec_ia.ops.mesh.inside import triangulate
-from udec_ia.ops.mesh.pairs import CUT, match, pair_up
-from udec_ia.ops.mesh.triangles import Mesh, mesh
+from udec_ia.ops.commands.grid_points_inside import triangulate
+from udec_ia.ops.commands.triangulation import CUT, Mesh, match, mesh, pair_up
 
 EPS = float(np.finfo(float).eps)
 SQUARE = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]

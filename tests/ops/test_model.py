@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.language import COMMANDS
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.errors import MESSAGES
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.monitor import run_deck
-from udec_ia.deck.synonyms import ALSO_CALLED
+from udec_ia.deck.command_forms import match
+from udec_ia.deck.command_monitor import run_deck
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.keyword_suggestions import ALSO_CALLED
 from udec_ia.layout.offsets import TIME
 
 U = (0, 0, 0, 3, 1, 3, 1, 1, 2, 1, 2, 3, 3, 3, 3, 0)  # a notch from above

@@ -23,7 +23,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "split",
         "drive",
     ),
-    "ops": ("common", "laws", "mesh", "commands", "run"),
+    "ops": ("common", "laws", "commands", "run"),
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
@@ -168,6 +168,7 @@ BELOW = {  # layers that a layer imports
         "heap",
         "checker",
         "heap_tools",
+        "kernels",
         "reader",
         "keywords",
         "layout",
@@ -179,7 +180,18 @@ BELOW = {  # layers that a layer imports
         "transaction",
         "view",
     },
-    "deck": {"counting", "errors", "compiling", "heap", "layout", "ops", "printable", "reader", "signals"},
+    "deck": {
+        "counting",
+        "errors",
+        "compiling",
+        "heap",
+        "kernels",
+        "layout",
+        "ops",
+        "printable",
+        "reader",
+        "signals",
+    },
 }
 
 

@@ -14,9 +14,9 @@ from support.every_group_kind import every_kind
 from udec_ia import Model
 from udec_ia.checker import check, unjudged
 from udec_ia.cli import main
-from udec_ia.deck.monitor import Monitor, run_deck
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import statements
+from udec_ia.deck.command_monitor import Monitor, run_deck
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table

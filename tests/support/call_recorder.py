@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from udec_ia import Model
-from udec_ia.deck.language import COMMANDS
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.errors import UdecError
 
 MONITORS_OWN = {"default", "help", "end"}

@@ -18,8 +18,8 @@ from udec_ia import Model
 from udec_ia.debug.debugged_run import Debugger
 from udec_ia.debug.stop_conditions import WordChange
 from udec_ia.debug.word_history import explain_write, find_last_hit
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import statements
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas

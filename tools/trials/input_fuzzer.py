@@ -25,15 +25,16 @@ import numpy as np
 from case_processes import CaseRow, print_rows, run_batch
 
 from udec_ia.checker import Violation, check, check_links
-from udec_ia.deck.language import COMMANDS, required
-from udec_ia.deck.monitor import RESTART_FILE, Monitor
-from udec_ia.deck.reader import Statement, statements
+from udec_ia.deck.command_forms import required
+from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import Statement, statements
 from udec_ia.errors import MESSAGES, UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
-from udec_ia.ops.commands.rounding import STRAINED
+from udec_ia.ops.commands.corner_rounding import STRAINED
 from udec_ia.ops.run.solution import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia import Model, UdecError, signals
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import statements
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import statements
 from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
 
 SCENE = """START
@@ -244,7 +244,7 @@ class Lines:
         if typed:
             monitor.obey(statement)
         else:
-            from udec_ia.deck.parser import parse
+            from udec_ia.deck.lines_and_calls import parse
 
             call = parse(statement)
             named = dict(call.named)

@@ -22,7 +22,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.watch import run_unwatched

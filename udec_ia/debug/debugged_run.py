@@ -16,9 +16,9 @@ from udec_ia.debug.cycle_trace import CycleTrace
 from udec_ia.debug.stop_conditions import StopCondition
 from udec_ia.debug.timeline import BUDGET, Timeline
 from udec_ia.debug.word_history import describe_event, find_last_hit, is_cycle
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Line, Statement, tokens
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Line, Statement, tokens
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g

@@ -11,9 +11,9 @@ from typing import Any, TextIO, cast
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger
 from udec_ia.debug.debugger_commands import DebuggerCommands
 from udec_ia.debug.timeline import UnreachableEvent
-from udec_ia.deck.parser import NO_DECK, RESTART_FILE
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable

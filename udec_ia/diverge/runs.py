@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 
 from udec_ia.debug.debugged_run import count_cycles, cycle_statement
 from udec_ia.debug.timeline import StateCopy, copy_state
-from udec_ia.deck.monitor import RESTART_FILE, Monitor
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Line, Statement, statements, tokens
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
+from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
+from udec_ia.deck.deck_variables import Values
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.ops.run.watch import SOLVE_LIMIT

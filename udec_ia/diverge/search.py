@@ -17,7 +17,7 @@ from udec_ia.diverge.passes import Passes
 from udec_ia.diverge.runs import Run, Step
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.ops.common.memory import keep_spare
+from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.run.cycle import prepare
 from udec_ia.ops.run.replay import Replay
 

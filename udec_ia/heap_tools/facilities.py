@@ -11,12 +11,12 @@ from typing import NamedTuple
 from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facility_scene import Scene
+from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.reader.listing import Listing
 
-RELAXATIONS = {g.LOCAL: "LOCAL", g.COMBINED: "COMBINED", g.KINETIC: "KINETIC", g.ADAPTIVE: "ADAPTIVE"}
-REMEMBER = (g.COMBINED, g.ADAPTIVE)  # relaxations that keep the forces of the cycle before
+REMEMBER = [one.code for one in MODES if one.keeps_forces]
 COLUMNS = ("facility", "words", "bytes", "percent", "in this scene")
 
 
@@ -106,14 +106,15 @@ def _coefficient(k: int, name: str, unit: str) -> Callable[[Scene], str]:
 
 
 def _adapts(s: Scene) -> bool:
-    return bool(s.h.ci[g.LREST] == g.ADAPTIVE)
+    mode = mode_of(s.h)
+    return bool(mode and mode.sets_alpha)
 
 
 def _relaxation(s: Scene) -> str:
-    how = int(s.h.ci[g.LREST])
-    if how not in RELAXATIONS:
+    mode = mode_of(s.h)
+    if mode is None:
         return ""
-    return RELAXATIONS[how] + ("" if how == g.KINETIC else f" {s.h.cr[g.RESTF]:g}")
+    return f"{mode.name} {s.h.cr[g.RESTF]:g}" if mode.fraction else mode.name
 
 
 def _remembered(s: Scene) -> int:

@@ -15,9 +15,9 @@ from udec_ia.heap_tools.facilities import REMEMBER
 from udec_ia.heap_tools.facility_scene import Scene
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary import forget_blocks
-from udec_ia.ops.commands.change import change_types
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.laws.law_book import LawBook
 
 NEVER = 1e30  # m, a displacement that nothing comes to

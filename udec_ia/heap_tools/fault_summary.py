@@ -10,7 +10,7 @@ from udec_ia.checker import Violation
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import ROUNDING_DIGITS, last_digit
+from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, last_digit
 from udec_ia.reader.group_tables import addresses
 
 SHOWN = 3  # violations that are named

@@ -22,7 +22,7 @@ from udec_ia.kernels.links.map_order import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.common.block_ranges import chain
 from udec_ia.reader.group_tables import addresses
 
 LARGE = 500  # blocks from which on it pays

@@ -14,10 +14,11 @@ from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES
 from udec_ia.heap_tools.facility_scene import Scene
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.settings import PROPERTIES
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.commands.model_settings import PROPERTIES
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.ops.run.remarks import on_laws, on_loads
 from udec_ia.reader.listing import Listing
 
@@ -49,12 +50,13 @@ def _motion(s: Scene) -> Found:
 
 def _damping(s: Scene) -> Found:
     """Damping of what is not there."""
-    adapts = s.h.ci[g.LREST] == g.ADAPTIVE
+    mode = mode_of(s.h)
+    adapts = mode and mode.sets_alpha
     if s.h.cr[g.ALPB] and not s.count("sdef") and not adapts:
         yield "DAMPING INTERNAL", "no block is simply-deformable"
     if s.h.cr[g.BETA] and s.moves and not (s.touching.any() or s.count("zone")):
         yield "DAMPING STIFFNESS", "there is no contact and no zone"
-    if s.h.ci[g.LREST] in (g.LOCAL, g.COMBINED) and not s.h.cr[g.RESTF]:
+    if mode and mode.fraction and not adapts and not s.h.cr[g.RESTF]:
         yield "DAMPING to rest", "its fraction is 0"
 
 

@@ -12,21 +12,17 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import DTOL
 from udec_ia.methods.state import State
-from udec_ia.ops.commands import boundary as bounds
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.boundary import ZERO, Triple, number_of_conditions
-from udec_ia.ops.commands.change import change
-from udec_ia.ops.commands.create import create
-from udec_ia.ops.commands.delete import delete
-from udec_ia.ops.commands.function import set_function
-from udec_ia.ops.commands.generate import NEAR, block_to_zone, generate
-from udec_ia.ops.commands.generate_automatic import generate_automatically
-from udec_ia.ops.commands.insitu import insitu
-from udec_ia.ops.commands.rounding import round_corners
-from udec_ia.ops.commands.split import split
-from udec_ia.ops.commands.uncut import why_uncut
-from udec_ia.ops.common.limits import real, reals, rows, whole
-from udec_ia.ops.common.ranges import limits_turned, why_no_block
+from udec_ia.ops.commands import boundary_conditions as bounds
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, number_of_conditions, set_function
+from udec_ia.ops.commands.change_or_delete_blocks import change, delete
+from udec_ia.ops.commands.corner_rounding import round_corners
+from udec_ia.ops.commands.create_block import create
+from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate, generate_automatically
+from udec_ia.ops.commands.initial_stress import insitu
+from udec_ia.ops.commands.split_blocks import split, why_uncut
+from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
+from udec_ia.ops.common.number_limits import real, reals, rows, whole
 from udec_ia.ops.run.remarks import on_tension
 from udec_ia.transaction import command
 
@@ -83,13 +79,13 @@ class Blocks(State):
     def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FIX: hold the blocks in the range. Returns their number."""
         self._ready()
-        return settings.set_fixity(self.array, (x1, x2, y1, y2), True)
+        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), True)
 
     @command
     def free(self, x1: float, x2: float, y1: float, y2: float) -> int:
         """FREE: let the blocks in the range move. Returns their number."""
         self._ready()
-        return settings.set_fixity(self.array, (x1, x2, y1, y2), False)
+        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), False)
 
     @command
     def change(
@@ -207,7 +203,7 @@ class Blocks(State):
     def rset(self, v: float, ia: int, ioff: int) -> None:
         """RSET: put the real value v at offset ioff of the group at address ia."""
         self._ready(sound=False)
-        settings.rset(self.array, v, ia, ioff)
+        model_settings.rset(self.array, v, ia, ioff)
         self._boxes.forget()
         self._touched = True
 

@@ -9,13 +9,13 @@ from typing import Self
 
 from udec_ia.checker import check
 from udec_ia.counting import counted
-from udec_ia.deck.monitor import RESTART_FILE
+from udec_ia.deck.command_monitor import RESTART_FILE
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.methods.state import State
-from udec_ia.ops.commands.history import definitions
-from udec_ia.ops.common.memory import refit
+from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.ops.common.array_growth import refit
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.run.guard import Guard
 from udec_ia.printable import printable

@@ -9,7 +9,7 @@ from udec_ia.checker import check, unjudged
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.methods.state import State
-from udec_ia.ops.common.limits import whole
+from udec_ia.ops.common.number_limits import whole
 from udec_ia.output.dump import dump
 from udec_ia.output.printout import printout
 from udec_ia.reader.group_tables import table

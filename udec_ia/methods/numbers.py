@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Unpack
 
 from udec_ia.errors import UdecError
+from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.keywords import takes
 from udec_ia.layout.material import Properties
 from udec_ia.methods.state import State
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.energy import Balance, balance, switch
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.energy_account import Balance, balance, switch
 from udec_ia.ops.run.remarks import on_fraction, on_properties
 from udec_ia.transaction import looking, numbers, steady
 
@@ -25,43 +26,42 @@ class Numbers(State):
         From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
         """
         self._ready()
-        settings.set_property(self.array, material, **values)
+        model_settings.set_property(self.array, material, **values)
         self.remark(on_properties(self.array, material, dict[str, float | None](**values)))
 
     @numbers
     def gravity(self, gx: float, gy: float) -> None:
         """GRAVITY: accelerations in the x and y directions."""
         self._ready(sound=False)
-        settings.set_gravity(self.array, gx, gy)
+        model_settings.set_gravity(self.array, gx, gy)
 
     @numbers
+    @takes(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
     def damping(
         self,
+        /,
         fcrit: float | None = None,
         freq: float | None = None,
         only: str | None = None,
-        *,
-        local: float | None = None,
-        combined: float | None = None,
-        kinetic: bool = False,
-        adaptive: float | None = None,
+        **modes: float | None,
     ) -> None:
         """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
 
-        Or one of what else leads to rest: local, combined, kinetic or adaptive (see set_relaxation).
+        Or one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f
+        (kernels.drive.damping_modes).
         """
         self._ready(sound=False)
-        others = {"local": local, "combined": combined, "kinetic": kinetic or None, "adaptive": adaptive}
-        given = {how: f for how, f in others.items() if f is not None}
+        asked = {one: modes.get(one.argument) for one in MODES}
+        given = {one: f for one, f in asked.items() if f is not None and f is not False}
         if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
-            advice = "fcrit and freq, or one of " + ", ".join(word.upper() for word in others)
+            advice = "fcrit and freq, or one of " + ", ".join(one.name for one in MODES)
             raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
-        for how, f in given.items():
-            settings.set_relaxation(self.array, how, float(f))
+        for mode, f in given.items():
+            model_settings.set_damping_mode(self.array, mode, float(f))
         if not given:
             if fcrit is None or freq is None:
                 raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
-            settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
+            model_settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
 
     @steady
     def energy(self, state: str = "on") -> None:
@@ -87,11 +87,11 @@ class Numbers(State):
         scaled: the same with inertial masses that make all degrees of freedom as quick as the quickest one.
         """
         self._ready(sound=False)
-        settings.set_fraction(self.array, f, safe, scaled)
+        model_settings.set_fraction(self.array, f, safe, scaled)
         self.remark(on_fraction(f))
 
     @steady
     def scale(self, s: float) -> None:
         """SCALE: plot scale."""
         self._ready(sound=False)
-        settings.set_scale(self.array, s)
+        model_settings.set_scale(self.array, s)

@@ -14,8 +14,8 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.tracked_arrays import Writes, track
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout.offsets import LREADY
-from udec_ia.ops.commands import settings
-from udec_ia.ops.commands.split import Boxes
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.run.guard import Guard
@@ -49,7 +49,7 @@ class State(Session):
         self._touched = False  # by RSET or through `h`, since links and outlines were last proved sound
         self._unproved = False  # outlines are those of a restart file, of which the links alone are proved
         self._guard = Guard(self.warn)
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     @property
     def h(self) -> Memory:
@@ -89,7 +89,7 @@ class State(Session):
     def start(self) -> None:
         """START: a cold start; whatever was there is gone."""
         self.array = MainArray(self.scheme, self.mtop)
-        settings.set_fraction(self.array, settings.DEFAULT_FRACTION)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
         self.begin()
         self._boxes.forget()

@@ -9,7 +9,7 @@ from udec_ia.compiling.compile_time import working_time
 from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive.unbalanced import unbalanced
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft_or_loaded_in
+from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.ops.run.timestep import share_of
 
 if TYPE_CHECKING:

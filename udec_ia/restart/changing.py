@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.ops.commands.history import definitions
+from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.restart.reader import Restored, opened, read_deck, read_front, read_laws, read_state
 from udec_ia.restart.recorded import are_told, recall
 from udec_ia.restart.refusal import RefusedError, refusing

@@ -15,7 +15,7 @@ import numpy as np
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.history import Definition, definitions
+from udec_ia.ops.commands.history_definitions import Definition, definitions
 from udec_ia.ops.run.watch import Series
 from udec_ia.reader.list_walks import Unsound, groups
 from udec_ia.reader.recordable_numbers import HISTORY, by_codes

@@ -18,8 +18,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TextIO
 
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Variables
 from udec_ia.errors import UdecError
 from udec_ia.ops.run.solution import in_short
 from udec_ia.study.folders import BEGUN, begun, new, publish

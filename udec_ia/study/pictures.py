@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.deck.variables import Values
+from udec_ia.deck.deck_variables import Values
 from udec_ia.output.draw import INK, drawable
 from udec_ia.output.picture import TYPES, write
 from udec_ia.study.table import Table

@@ -14,7 +14,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.kernels.drive.recording import measured
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.energy import balance
+from udec_ia.ops.commands.energy_account import balance
 from udec_ia.reader.conditions import satisfying
 from udec_ia.reader.recordable_numbers import Recordable
 from udec_ia.study.observed import NoValue, Place, State

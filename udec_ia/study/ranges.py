@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from udec_ia.deck.variables import NAME, Value, spelt
+from udec_ia.deck.deck_variables import NAME, Value, spelt
 from udec_ia.errors import UdecError
 
 DIGITS = 12  # of the values of a logarithmic range between its ends

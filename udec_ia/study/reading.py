@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
-from udec_ia.ops.commands.energy import Balance
+from udec_ia.ops.commands.energy_account import Balance
 from udec_ia.reader.atlas import KINDS, Atlas
 from udec_ia.reader.conditions import Wrong, satisfying
 from udec_ia.reader.recordable_numbers import recordable

@@ -16,10 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import command_of, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.ops.run.watch import Watch
@@ -141,7 +140,7 @@ def _restart_files(run: Run) -> list[str]:
     found: list[str] = []
     with suppress(UdecError):  # which the run will end in
         for statement in Variables(run.values).filled(statements(run.deck.splitlines(), run.file)):
-            command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+            command = command_of(statement)
             if command is not None and command.name == "restart":
                 path = Path(parse(statement).named.get("path", ""))
                 found += [_digest(path.read_bytes())] if path.is_absolute() and path.is_file() else []

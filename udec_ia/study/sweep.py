@@ -10,8 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from udec_ia.deck.monitor import names_a_file
-from udec_ia.deck.variables import Value, Variables
+from udec_ia.deck.command_monitor import names_a_file
+from udec_ia.deck.deck_variables import Value, Variables
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.study import standing
 from udec_ia.study.holding import let_go

@@ -9,9 +9,9 @@ import math
 from collections.abc import Callable
 from typing import Any, TextIO
 
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.reader import Statement
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Statement
+from udec_ia.deck.lines_and_calls import command_of
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
@@ -20,8 +20,6 @@ from udec_ia.study.clock import Clock
 from udec_ia.study.observed import NoValue, Start, State
 from udec_ia.study.reading import read, read_rule
 from udec_ia.study.runs import DECK, LATE, STOPPED, Run
-
-SHOWING = ("dump", "end", "help", "plot", "print", "save", "stop")  # commands that change nothing
 
 
 class Observer:
@@ -160,8 +158,8 @@ class _Monitor(Monitor):
 
     def obey(self, statement: Statement) -> None:
         """As Monitor.obey, but nothing that takes long is begun when the time is up."""
-        command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
-        if statement.tokens and (command is None or command.name not in SHOWING):
+        command = command_of(statement)
+        if statement.tokens and (command is None or command.is_work):
             self.ended = self._observer.is_over()
         if self.ended:
             return

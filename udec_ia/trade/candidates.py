@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from udec_ia.deck.language import COMMANDS
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.trade.deck import Deck
 from udec_ia.trade.levers import Setting
 from udec_ia.trade.steps import longest, share_of_bound

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from udec_ia.deck.reader import CONTINUATION, Statement, obeyed
+from udec_ia.deck.deck_statements import CONTINUATION, Statement, obeyed
 from udec_ia.trade.judge import Row
 from udec_ia.trade.levers import Setting
 from udec_ia.trade.trade import Price

@@ -9,18 +9,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Statement, statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.command_forms import Kind
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import Statement, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import command_of, parse
 from udec_ia.trade import writing
 from udec_ia.trade.levers import Fraction, Numbers, Setting
 from udec_ia.trade.writing import Piece
 
-SHOWS = ("plot", "print", "dump", "scale", "help")  # left out
+SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # left out
 FILLED = "default"  # its values are in the lines
-RUNS = ("cycle", "solve")
-WRITES = ("patch", "rset", "iset", "start", "restart")  # may set the words that make a time-step
+RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
+WRITES = {one.name for one in COMMANDS if one.writes_words or one.begins}  # may set what makes a time-step
+ENDS = {one.name for one in COMMANDS if one.ends}
 
 
 class Deck:
@@ -37,7 +39,7 @@ class Deck:
         variables.check(text.splitlines(), name)
         self.statements = [*variables.filled(statements(text.splitlines(), name))]
         self.commands = [_command(one) for one in self.statements]
-        ends = [k for k, command in enumerate(self.commands) if command in ("stop", "end")]
+        ends = [k for k, command in enumerate(self.commands) if command in ENDS]
         self.obeyed = ends[0] if ends else len(self.commands)  # statements before STOP
         for k in range(self.obeyed):
             if self.commands[k]:
@@ -148,7 +150,7 @@ class Deck:
 
 def _command(statement: Statement) -> str:
     """Name of the command of a statement, "" for comments."""
-    command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+    command = command_of(statement)
     if statement.tokens and command is None:
         parse(statement)  # raises error 2
     return command.name if command else ""

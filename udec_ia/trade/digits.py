@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.deck.variables import Values
+from udec_ia.deck.deck_variables import Values
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.study.many import run_all
 from udec_ia.study.progress import Told

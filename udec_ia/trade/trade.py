@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from udec_ia.counting import counted
-from udec_ia.deck.variables import Values
+from udec_ia.deck.deck_variables import Values
 from udec_ia.study.many import RUNS
 from udec_ia.study.runs import ENDED
 from udec_ia.trade import candidates

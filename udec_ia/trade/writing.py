@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from udec_ia.deck.language import match
-from udec_ia.deck.parser import parse
-from udec_ia.deck.reader import Line, Statement, Token
+from udec_ia.deck.command_forms import match
+from udec_ia.deck.deck_statements import Line, Statement, Token
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.trade.levers import Fraction, Numbers, Setting
 
 LIMIT = 100_000  # of SOLVE if none is given

@@ -15,7 +15,7 @@ The argument why two blocks never overlap by more than CTOL without a contact or
 5.  Contacts part domains like walls. One that is open is no wall any more as soon as another block comes
     between the two (gaps.py); one that is closed ends the run if a tip is squeezed through it (changes.py).
 6.  Commands that change outlines flag all domains, which are updated before the next cycle; what is too
-    deep then is refused, and nothing is changed (ops/commands/rounding.py).
+    deep then is refused, and nothing is changed (ops/commands/corner_rounding.py).
 
 The way of a corner is seen from the other block: a point is carried back to where it was before the step with
 its own block, and forth again with the other one, so that however fast the two may turn, the way from there

@@ -14,8 +14,8 @@ from udec_ia.kernels.body.bounds import apply_bounds
 from udec_ia.kernels.contact.changes import NOBODY, change_map
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.openings import note_openings
-from udec_ia.kernels.drive.peaks import look_at_motion
 from udec_ia.kernels.drive.recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.relax import relax
 from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean
@@ -36,7 +36,7 @@ def passes(
     ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
     A run of slow blocks does not need TUNNELLING; one that does stops before it.
     """
-    keeps, loaded, how = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, h.ci[g.LREST]
+    keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, mode_of(h)
     asked = measures(h) if recorded else NOT_MEASURED
     none = h.cr.dtype.type(0)
     pair = none, none
@@ -44,8 +44,8 @@ def passes(
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
         entry(apply_bounds, h) if loaded else 0,
-        entry(look_at_motion, h) if how in (g.KINETIC, g.ADAPTIVE) else 0,
-        entry(relax, h) if how in (g.LOCAL, g.COMBINED, g.KINETIC) or h.ci[g.LSCALE] else 0,
+        entry(mode.motion_pass, h) if mode and mode.motion_pass else 0,
+        entry(relax, h) if (mode and mode.changes_forces) or h.ci[g.LSCALE] else 0,
         entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
         entry(note_loads, h) if keeps and loaded else 0,
         entry(note_stresses, h) if keeps and soft is not None else 0,

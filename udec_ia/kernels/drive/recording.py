@@ -51,7 +51,7 @@ def measure_potential(h: Memory, row: Any, i: int) -> bool:
     return True
 
 
-# Of the whole model, in the order of ops.commands.recordable.QUANTITIES.
+# Of the whole model, in the order of reader.recordable_numbers.QUANTITIES.
 MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
 NOT_MEASURED = (0,) * len(MEASURED)
 
@@ -95,7 +95,8 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
 def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool:
     """Add a row with what is due after this cycle: cycle, time, and NaN for what is not due.
 
-    Returns True if anything was. places: see ops.commands.history.places. count: number of rows, in an array.
+    Returns True if anything was. places: see ops.commands.history_definitions.places.
+    count: number of rows, in an array.
     measures: addresses of what measures the whole model, as `measures` gives them.
     """
     row = rows[count[0]]

@@ -29,12 +29,12 @@ from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, m
 from udec_ia.kernels.drive.finite import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands import energy
-from udec_ia.ops.commands.rounding import check_strained_edges, crowded, settle_default
-from udec_ia.ops.common.limits import last_digit
-from udec_ia.ops.common.lists import chain
-from udec_ia.ops.common.memory import find_room, keep_spare
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.commands import energy_account
+from udec_ia.ops.commands.corner_rounding import check_strained_edges, crowded, settle_default
+from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.ops.laws.law_book import Bound, LawBook
 from udec_ia.ops.run.guard import Guard
 from udec_ia.ops.run.remarks import sinks_too_far
@@ -120,7 +120,7 @@ def cycle(
     array.h.ci[g.NCYC] = n
     # a run that was interrupted may have left an error behind, or a wish for memory
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
-    energy.begin(array)
+    energy_account.begin(array)
     guard = guard or Guard()
     guard.runaway.begin(array, bound.own_blocks)
     try:
@@ -139,7 +139,7 @@ def cycle(
 
 def finish(array: MainArray, watch: Watch | None) -> None:
     """What a run that ends leaves, why ever it ends. To do it twice does no harm."""
-    energy.end(array)
+    energy_account.end(array)
     if watch is not None:
         watch.hand_on()
 

@@ -7,15 +7,9 @@ import math
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-
-WORDS = {
-    g.LOCAL: "LOCAL damping takes {f:g} of every unbalanced force",
-    g.COMBINED: "COMBINED damping takes {f:g} of every unbalanced force that swings",
-    g.KINETIC: "KINETIC damping stops all when the kinetic energy has passed a peak",
-    g.ADAPTIVE: "ADAPTIVE damping is {f:g} of critical for what still moves",
-}
 
 
 def has_dashpots(h: Memory) -> bool:
@@ -33,9 +27,9 @@ def has_simply_deformable(h: Memory) -> bool:
 
 def what_damps(h: Memory) -> list[str]:
     """Each kind of damping that acts, with its numbers and on what."""
-    found = []
-    if h.ci[g.LREST]:
-        found.append(WORDS[int(h.ci[g.LREST])].format(f=float(h.cr[g.RESTF])))
+    found, mode = [], mode_of(h)
+    if mode:
+        found.append(f"{mode.name} damping {mode.report.format(f=float(h.cr[g.RESTF]))}")
     elif h.cr[g.ALPHA]:
         found.append(f"MASS damping takes ALPHA = {h.cr[g.ALPHA]:.3g} 1/s of every velocity")
     if h.cr[g.BETA]:
@@ -87,5 +81,6 @@ def undamped(h: Memory, step: float) -> float:
 
 
 def _stiffened(h: Memory) -> float:
-    """By how much LOCAL and COMBINED damping raise the frequency of what turns about in every cycle."""
-    return math.sqrt(1 + float(h.cr[g.RESTF])) if h.ci[g.LREST] in (g.LOCAL, g.COMBINED) else 1.0
+    """By how much LOCAL and its kind of damping raise the frequency of what turns about in every cycle."""
+    mode = mode_of(h)
+    return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and mode.stiffens else 1.0

@@ -17,7 +17,7 @@ from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import last_digit
+from udec_ia.ops.common.number_limits import last_digit
 
 ENOUGH = 200  # cycles, before which nothing is said
 LOST = 0.004  # of the farthest way, from which on it is said. What is more than the way has not moved at all

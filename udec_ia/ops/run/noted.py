@@ -25,7 +25,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.stored import liveliest
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.run.runaway import stock
 
 FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept

@@ -20,7 +20,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.limits import NMAT, last_digit
+from udec_ia.ops.common.number_limits import NMAT, last_digit
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}

@@ -10,7 +10,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.passes import TUNNELLING, passes
 from udec_ia.kernels.drive.watch import run_watched
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.run.cycle import raise_error
 from udec_ia.ops.run.renewal import ahead, renew

@@ -37,8 +37,8 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.energy.inertial import energy_of_motion
 from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import last_digit
-from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.ops.run.chatter import JUDGE
 from udec_ia.ops.run.damped import damped
 from udec_ia.ops.run.rows import Limit

@@ -21,12 +21,13 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.peaks import halt_block
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import NMAT
-from udec_ia.ops.common.memory import require
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.ops.run.damped import undamped
 from udec_ia.ops.run.rows import OVERFLOWS, Array, Rows
 
@@ -44,7 +45,8 @@ def relaxations_due(array: MainArray) -> bool:
 
 
 def _needed(array: MainArray) -> bool:
-    return bool(array.h.ci[g.LREST] in (g.COMBINED, g.ADAPTIVE) or array.h.ci[g.LSCALE])
+    mode = mode_of(array.h)
+    return bool((mode and mode.keeps_forces) or array.h.ci[g.LSCALE])
 
 
 def renew_relaxations(array: MainArray) -> None:

@@ -12,10 +12,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.kernels.drive.peaks import halt_all
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.settings import set_fraction, set_relaxation
+from udec_ia.ops.commands.model_settings import set_damping_mode, set_fraction
 
 DAMPED = 0.8  # of critical
 SHARE = 0.9  # of the safe time-step
@@ -33,7 +34,7 @@ def statically(array: MainArray) -> Iterator[None]:
     ci, cr = array.h.ci, array.h.cr
     kept = [int(ci[k]) for k in INTEGERS], [cr[k] for k in REALS], float(array.h.cd[g.EMOVES])
     set_fraction(array, SHARE, scaled=True)
-    set_relaxation(array, "adaptive", DAMPED)
+    set_damping_mode(array, BY_CODE[g.ADAPTIVE], DAMPED)
     cr[g.BETA] = 0
     ci[g.LREADY] = 0
     try:

@@ -17,6 +17,7 @@ from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
+from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
 from udec_ia.kernels.drive.timestep import addresses, soft_step
 from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
@@ -172,8 +173,10 @@ def _damping(h: Memory) -> tuple[str, str]:
     if h.cr[g.BETA]:
         beta = float(h.cr[g.BETA])
         return f"stiffness damping BETA = {beta:.3g} s", "a smaller fcrit, or MASS damping alone"
-    how = "LOCAL" if h.ci[g.LREST] == g.LOCAL else "COMBINED"
-    return f"{how} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
+    return (
+        f"{BY_CODE[int(h.ci[g.LREST])].name} damping {float(h.cr[g.RESTF]):g}",
+        "a smaller fraction of it, or ADAPTIVE damping",
+    )
 
 
 def shortened(array: MainArray, before: float, safe: Limit) -> str:

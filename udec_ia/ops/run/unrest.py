@@ -20,7 +20,7 @@ from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.kernels.drive.unbalanced import carried
 from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.run.bearing import at_strength, borne, overlap, own_laws, slipped_farthest
 from udec_ia.ops.run.chatter import SHARE, Chatter, place_of
 from udec_ia.ops.run.damped import damped, what_damps

@@ -17,7 +17,7 @@ from udec_ia.kernels.drive.cycle import has_to_judge
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.kernels.drive.recording import measures, record
 from udec_ia.kernels.drive.watch import run_watched
-from udec_ia.ops.commands.history import Definition, definitions, places
+from udec_ia.ops.commands.history_definitions import Definition, definitions, places
 from udec_ia.ops.run.unrest import Unrest
 
 ROWS = 1024  # rows that a compiled piece can fill

@@ -19,8 +19,8 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import held
-from udec_ia.ops.common.soft import soft_in
+from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.number_limits import held
 
 SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 

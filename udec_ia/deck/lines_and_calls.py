@@ -6,15 +6,22 @@ reported where it should stand: just after the last parameter that was read.
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import cycle
 from typing import Any
 
-from udec_ia.deck.advice import at, hint, quoted
-from udec_ia.deck.language import COMMANDS, SEVERAL, Command, Word, match
-from udec_ia.deck.reader import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token
+import numpy as np
+
+from udec_ia.deck.command_forms import SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token, at, quoted
+from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, UdecError
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
@@ -47,6 +54,11 @@ class Call:
         return self.places.get(error.parameter or self.command.text, self.head)
 
 
+def command_of(statement: Statement) -> Command | None:
+    """The command that `statement` begins with; None for comments and for what is no command."""
+    return match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+
+
 def parse(statement: Statement) -> Call:
     """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
     head = statement.tokens[0]
@@ -58,9 +70,32 @@ def parse(statement: Statement) -> Call:
     if command is None and [token.text for token in statement.tokens] == RESTART_FILE:
         raise at(UdecError(2, quoted(head.text), NO_DECK), head)
     if command is None:
-        advice = hint(head.text, (c.keyword for c in COMMANDS), ADVICE[2])
-        raise at(UdecError(2, quoted(head.text), advice), head)
+        raise at(UdecError(2, quoted(head.text), _which_command(statement.tokens)), head)
     return _Parser(command, statement.tokens).parse()
+
+
+def _which_command(tokens: list[Token]) -> str:
+    """Advice on an unknown command: one that is spelt alike, or stands after the first word.
+
+    The whole line must be readable as that command.
+    """
+    if len(tokens) > 1 and (command := match(COMMANDS, tokens[1].text)) and _reads_as(command, tokens[1:]):
+        return f"did you mean {command.name.upper()}? {ADVICE[2]}"
+    by_name = {command.name.upper(): command for command in COMMANDS}
+    return with_suggestion(tokens[0].text, by_name, ADVICE[2], lambda name: _reads_as(by_name[name], tokens))
+
+
+def _reads_as(command: Command, tokens: list[Token]) -> bool:
+    """True if `tokens` have the form of `command`, whatever their first word is."""
+    try:
+        text = str(_Parser(command, tokens).parse().named.get(command.text, ""))
+    except UdecError:
+        return False
+    if command.text == "assignments":
+        return "=" in text
+    if command.text == "command":
+        return not text or match(COMMANDS, text) is not None
+    return not text or "." in text  # the name of a file
 
 
 def number(token: Token, name: str, advice: str) -> int | float:
@@ -225,7 +260,12 @@ class _Parser:
         raise self._unrecognised(token, self.command.first_error, allowed)
 
     def _unrecognised(self, token: Token, error: int, allowed: list[Word] | tuple[Word, ...]) -> UdecError:
-        advice = hint(token.text, (word.keyword for word in allowed), self._advice())
+        by_name = {word.keyword.upper(): word for word in allowed}
+        following = self.tokens[self.read + 1 : self.read + 2]
+        has_number = bool(following) and NUMBER.fullmatch(following[0].text) is not None
+        advice = with_suggestion(
+            token.text, by_name, self._advice(), lambda name: bool(by_name[name].values) == has_number
+        )
         return at(UdecError(error, quoted(token.text), advice), token)
 
     def _word(self, token: Token) -> None:
@@ -252,3 +292,88 @@ class _Parser:
         if names:
             return self._number(word.values)
         return word.keyword.lower() if word.sets else True
+
+
+# ---- What was done in Python, said as a deck says it: the way back from a call to its lines
+
+WIDTH = 79  # of a line
+WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+# Commands of the session are no part of what has made a state.
+BY_NAME = {one.name: one for one in COMMANDS if one.kind is not SESSION}
+
+
+def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]) -> list[str]:
+    """The lines of a deck that have done what method(model, *args, **named) does; none if no deck can.
+
+    method: of Model, by its name a command.
+    """
+    command = BY_NAME.get(method.__name__)
+    if command is None:
+        return []
+    given = _signature(method).bind(None, *args, **named).arguments
+    if command.text:
+        return [
+            " ".join([command.keyword.upper(), *given[command.text].split()])
+        ]  # which no line may be cut in
+    parts = [command.keyword.upper(), *_parts(command, _signature(method), given)]
+    return textwrap.wrap(" ".join(parts), WIDTH, subsequent_indent=f"{CONTINUATION} ", **WHOLE_WORDS)
+
+
+@cache
+def _signature(method: Callable[..., Any]) -> inspect.Signature:
+    return inspect.signature(method)
+
+
+def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]) -> Iterator[str]:
+    """The parameters of `command` in the order of a deck: numbers, words, and the list that ends it."""
+    _, *parameters = signature.parameters.values()
+    numbers = len(command.numbers.split() + command.optional.split())
+    for parameter in parameters[:numbers]:
+        if given.get(parameter.name) is not None:
+            yield _number(given[parameter.name])
+    several: tuple[Any, ...] = ()
+    for parameter in sorted(parameters[numbers:], key=lambda one: one.name != command.first):
+        value = given.get(parameter.name, parameter.default)
+        if parameter.kind is parameter.VAR_POSITIONAL:
+            several = given.get(parameter.name, ())
+        elif parameter.name == command.first or not _by_itself(value, parameter.default):
+            yield from _word(command, parameter.name, value)
+    if any(word.argument == SEVERAL for word in command.words):
+        yield from (str(one).upper() for one in several)
+    else:
+        yield from _tuples(several, command.list)
+
+
+def _by_itself(value: Any, default: Any) -> bool:
+    """True if a parameter has this value, or one that says as little, when it is left off."""
+    return value is None or value is False or np.array_equal(value, default)
+
+
+def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
+    """The word that sets `argument` to `value`, and what follows it."""
+    word = next(word for word in command.words if word.argument == argument and _says(word, value))
+    yield word.keyword.upper()
+    if word.repeated:
+        yield from _tuples(value, word.values)
+    elif len(word.values.split()) > 1:
+        yield from map(_number, value)
+    elif word.values:
+        yield _number(value)
+
+
+def _tuples(values: Any, names: str) -> Iterator[str]:
+    """Numbers in tuples, each of which stays on one line."""
+    for row in np.reshape(np.asarray(values), (-1, len(names.split()) or 1)).tolist():
+        yield ",".join(map(_number, row))
+
+
+def _says(word: Word, value: Any) -> bool:
+    return bool(word.values) or not word.sets or word.keyword.lower() == str(value).lower()
+
+
+def _number(value: Any) -> str:
+    """A number, as short as it is read as the same."""
+    if isinstance(value, int | np.integer):
+        return str(int(value))
+    short = f"{float(value):g}"
+    return short if float(short) == float(value) else repr(float(value))

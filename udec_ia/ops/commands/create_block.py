@@ -16,8 +16,9 @@ from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.rounding import check_rounding
-from udec_ia.ops.common.limits import (
+from udec_ia.ops.commands.corner_rounding import check_rounding
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.number_limits import (
     EDGE_DIGITS,
     NMAT,
     ROUNDING_DIGITS,
@@ -27,7 +28,6 @@ from udec_ia.ops.common.limits import (
     finite,
     material_number,
 )
-from udec_ia.ops.common.memory import require
 
 Point = tuple[float, float]
 PART = 0.01  # length of the smallest parts that are cut, as a part of the block's

@@ -19,7 +19,7 @@ from udec_ia.kernels.links.flag import flag
 from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
 from udec_ia.kernels.map.segments import on_arc
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.lists import items
+from udec_ia.ops.common.block_ranges import items
 
 
 def corners_of(h: Memory, ib: int) -> list[int]:

@@ -21,15 +21,16 @@ from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.shape import geo
 from udec_ia.kernels.links.lists import is_corner
+from udec_ia.kernels.map.remove import delb
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary import forget_blocks
-from udec_ia.ops.commands.rounding import bring_up, check_overlaps
-from udec_ia.ops.commands.straighten import check_straight, edge_points, renew_reach, straighten
-from udec_ia.ops.common.forces import renew_forces
-from udec_ia.ops.common.limits import constitutive_number, held, material_number
-from udec_ia.ops.common.lists import chain, items
-from udec_ia.ops.common.memory import all_or_nothing, require
-from udec_ia.ops.common.ranges import Range, blocks_in
+from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
+from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
+from udec_ia.ops.common.array_growth import all_or_nothing, require
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items
+from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.hosted_groups import lose_hosted
+from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
 
 STAYS = "leave the block fully-deformable"
 TYPES = {"rigid": g.MRIG, "sdef": g.MSDEF, "fdef": g.MFDEF}
@@ -171,3 +172,30 @@ def mean_stress(h: Memory, ib: int) -> Stress:
         return float(getr(h, ie, g.KFS11)), float(getr(h, ie, g.KFS12)), float(getr(h, ie, g.KFS22))
     area, s11, s12, s22 = zone_means(h, ie)
     return float(s11 / area), float(s12 / area), float(s22 / area)
+
+
+# ---- DELETE: blocks are taken away; what is left stays one connected map
+
+
+def delete(array: MainArray, where: Range) -> int:
+    """Delete the blocks whose centroids lie in the range. Returns their number.
+
+    Error 19, and nothing is deleted, if no contact would be left.
+    """
+    h = array.h
+    blocks = blocks_in(array, where)
+    if not blocks:
+        return 0
+    if h.ci[g.NBLK] - len(blocks) < 2:
+        raise UdecError(
+            19, f"only {int(h.ci[g.NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
+        )
+    forget_blocks(h, blocks)
+    lose_hosted(h, blocks)
+    for ib in blocks:
+        become(h, ib, g.MRIG)  # gives back what only a deformable block has
+        delb(h, ib)
+    update_flagged(array)
+    if h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    return len(blocks)

@@ -12,8 +12,8 @@ from udec_ia.kernels.geometry.shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
 from udec_ia.kernels.links.flag import flag_all
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import ROUNDING_DIGITS, check_resolution, positive
-from udec_ia.ops.common.memory import all_or_nothing, find_room, keep_spare
+from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spare
+from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, check_resolution, positive
 
 STIFFER = "use a larger rounding length, or stiffer joints"
 Point = tuple[float, float]

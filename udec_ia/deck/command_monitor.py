@@ -11,35 +11,24 @@ import errno
 import io
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TextIO
+from typing import Any, Protocol, TextIO, TypeVar
 
 from udec_ia.counting import counted
-from udec_ia.deck.advice import at
-from udec_ia.deck.language import COMMANDS, match
-from udec_ia.deck.obeying import Obeying
-from udec_ia.deck.parser import NUMBER, Call, parse
-from udec_ia.deck.reader import WORD, Statement, statements
-from udec_ia.deck.variables import Values, Variables
+from udec_ia.deck.command_forms import RUNS, Counts, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import WORD, Statement, at, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.printable import printable
 from udec_ia.signals import hold, passing, poll
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
-COUNTED = {  # what a command that returns a number has done
-    "split": "block cut off",
-    "delete": "block deleted",
-    "fix": "block fixed",
-    "free": "block set free",
-    "change": "block changed",
-    "insitu": "block stressed",
-    "boundary": "condition in the range",
-}
-NONE = {"split": "no block was cut", "boundary": "no condition in range"}
-RUNS = ("cycle", "solve")  # what they have done until something ends them stays
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
 RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
 
@@ -98,7 +87,8 @@ class Monitor:
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
         except MemoryError as error:
-            stays = "the results so far are kept" if name in RUNS else "nothing was changed"
+            runs = call.command.kind is RUNS
+            stays = "the results so far are kept" if runs else "nothing was changed"
             advice = f"use a smaller model, or a machine with more memory;  {stays}"
             raise at(UdecError(1, "this machine is out of memory", advice), call.head) from error
         except UdecError as error:
@@ -108,8 +98,8 @@ class Monitor:
         except OSError as error:
             refused = UdecError(31, f"{error.strerror or error}: {error.filename or name}")
             raise at(refused, call.place_of(refused)) from error
-        if name in COUNTED and isinstance(result, int):
-            self._write(outcome(call, result, self.model))
+        if call.command.counts is not None and isinstance(result, int):
+            self._write(outcome(call, call.command.counts, result, self.model))
         self._show(result)
 
     def stop(self) -> None:
@@ -140,7 +130,7 @@ class Monitor:
         name = call.command.name
         if name == "default":  # obeyed when its line was read
             return None
-        if name in ("stop", "end"):
+        if call.command.ends:
             self.ended = True
             if name == "stop":
                 self.stop()
@@ -283,12 +273,54 @@ def names_a_file(text: str) -> bool:
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def outcome(call: Call, n: int, model: Obeying) -> str:
+def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
-        reason = model.why_none(name, *call.positional)
-        return f" {name.upper()}: {NONE.get(name, 'no block in range')}: {reason}"
-    now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if name in ("split", "delete") else ""
-    what, _, done = COUNTED[name].partition(" ")
-    return f" {name.upper()}: {counted(n, what)} {done}{now}"
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
+    now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
+    return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
+
+
+# ---- What the monitor needs of a model, beside a method for every command of the table
+
+R = TypeVar("R")
+
+
+class Obeying(Protocol):
+    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+
+    started: bool
+    tell: Callable[[str], None]
+    inform: Callable[[str], None]
+    explain_step: bool
+    logs_calls: bool
+
+    @property
+    def out(self) -> Path:
+        """The folder for files."""
+
+    @property
+    def h(self) -> Memory:
+        """The array."""
+
+    def whole(self, action: Callable[[], R]) -> R:
+        """Have all that `action` does done, or nothing of it."""
+
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
+        """Why a command has found nothing."""
+
+    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
+        """SAVE."""
+
+    def check_file(self, path: str | Path) -> list[Any]:
+        """All violations in a restart file."""
+
+    def stop(self) -> str:
+        """STOP."""
+
+    def summary(self) -> str:
+        """The line that sums up the run."""

@@ -14,11 +14,11 @@ from typing import TextIO
 
 from platformdirs import user_state_dir
 
-from udec_ia.deck.language import COMMANDS, Command, match
-from udec_ia.deck.monitor import Monitor
-from udec_ia.deck.obeying import Obeying
-from udec_ia.deck.reader import CONTINUATION, WORD, Reader, Statement, obeyed
-from udec_ia.deck.variables import Values
+from udec_ia.deck.command_forms import Command, match
+from udec_ia.deck.command_monitor import Monitor, Obeying
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, obeyed
+from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.signals import Terminated
 

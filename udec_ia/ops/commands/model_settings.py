@@ -10,21 +10,15 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.masses import greatest_block
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.boundary import given_velocities
-from udec_ia.ops.common.forces import renew_forces
-from udec_ia.ops.common.limits import bearable, finite, material_number, not_negative, positive, whole
-from udec_ia.ops.common.lists import chain
-from udec_ia.ops.common.ranges import Range, blocks_in
+from udec_ia.ops.commands.boundary_conditions import given_velocities
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain
+from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.number_limits import bearable, finite, material_number, not_negative, positive, whole
 
 DEFAULT_FRACTION = 0.1
-RELAXATIONS = {  # argument of DAMPING: LREST
-    "local": g.LOCAL,
-    "combined": g.COMBINED,
-    "kinetic": g.KINETIC,
-    "adaptive": g.ADAPTIVE,
-}
 PROPERTIES = {  # argument of PROPERTY: array of the common block
     one.argument: getattr(g, one.array) for one in read_table().properties if one.keyword
 }
@@ -62,45 +56,48 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     ALPHA = fcrit 2 pi freq, BETA = fcrit/(2 pi freq). "mass" or "stiffness" drops the other half without
     rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
     internal degrees of freedom of simply-deformable blocks instead. What has mass damping has no other way
-    to rest (set_relaxation).
+    to rest (set_damping_mode).
     """
     not_negative(array, fcrit=fcrit)
+    if fcrit == 0 == freq:
+        raise UdecError(28, "freq is 0", "DAMPING 0 1 switches damping off", parameter="freq")
     positive(array, freq=freq)
     if only not in (None, "mass", "stiffness", "internal"):
         raise UdecError(10, f"{only}", "mass, stiffness or internal", parameter="only")
     omega = 2 * math.pi * freq
     alpha, beta = fcrit * omega, fcrit / omega
     finite(array, alpha=alpha, beta=beta)
-    cr = array.h.cr
+    cr, mode = array.h.cr, mode_of(array.h)
     if only == "internal":
         cr[g.ALPB] = alpha
         return
     if only != "stiffness":
-        _end_relaxation(array.h)
+        _end_damping_mode(array.h)
         cr[g.ALPHA] = alpha
-    elif array.h.ci[g.LREST] != g.ADAPTIVE:
+    elif not (mode and mode.sets_alpha):
         cr[g.ALPHA] = 0
     cr[g.BETA] = 0 if only == "mass" else beta
 
 
-def set_relaxation(array: MainArray, how: str, f: float = 1.0) -> None:
-    """DAMPING LOCAL f, COMBINED f, KINETIC and ADAPTIVE f: what leads to rest instead of mass damping.
+def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> None:
+    """DAMPING LOCAL f and the other modes of the table: what leads to rest instead of mass damping.
 
     f: fraction of the unbalanced force, or of critical damping (kernels.drive.relax), up to 1.
     All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
     """
-    code = RELAXATIONS[how]
-    not_negative(array, **{how: f})
+    not_negative(array, **{mode.argument: f})
     if f > 1:
-        raise UdecError(28, f"{f:g} is more than there is", f"{how.upper()} takes 0 to 1", parameter=how)
+        advice = f"{mode.name} takes 0 to 1"
+        raise UdecError(28, f"{f:g} is more than there is", advice, parameter=mode.argument)
     h = array.h
-    _end_relaxation(h)
+    _end_damping_mode(h)
     h.cr[g.ALPHA] = h.cr[g.ALPB] = 0
-    h.ci[g.LREST], h.cr[g.RESTF] = code, f
+    h.ci[g.LREST], h.cr[g.RESTF] = mode.code, f
 
 
-def _end_relaxation(h: Memory) -> None:
-    if h.ci[g.LREST] == g.ADAPTIVE:
+def _end_damping_mode(h: Memory) -> None:
+    mode = mode_of(h)
+    if mode and mode.sets_alpha:
         h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # the program's own
     h.ci[g.LREST], h.cr[g.RESTF], h.cd[g.EMOVES] = g.UNDAMPED, 0, 0
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from math import hypot
 
-from udec_ia.heap.accessors import getr
+from udec_ia.heap.accessors import Memory, Offset, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.ranges import blocks_between
+from udec_ia.kernels.links.lists import nextcp
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import finite
-from udec_ia.ops.common.lists import chain
+from udec_ia.ops.common.number_limits import finite
 
 Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 Point = tuple[float, float]
@@ -63,3 +63,24 @@ def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point
     here = f"x {x1:g} to {x2:g}, y {y1:g} to {y2:g}"
     limit = "" if away else ", on a limit and so outside"
     return f"no {what} in {here}, the nearest is {name} at {place}{limit}"
+
+
+# ---- Walks along the lists of a sound heap, for what happens once a command
+
+
+def items(h: Memory, ib: int) -> Iterator[int]:
+    """Corners and contacts of block `ib`, clockwise."""
+    first = item = iget(h, ib, g.KP)
+    while True:
+        yield item
+        item = nextcp(h, ib, item)
+        if item == first:
+            return
+
+
+def chain(h: Memory, first: int, link: Offset) -> Iterator[int]:
+    """Groups of a list from `first` on, linked by `link`; the one at hand may be given back."""
+    while first:
+        following = iget(h, first, link)
+        yield first
+        first = following

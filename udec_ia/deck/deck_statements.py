@@ -12,11 +12,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from udec_ia.errors import UdecError
+
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment
 REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, being of 1980
 CONTINUATION = "+"
+SHOWN = 40  # characters of a word that are worth repeating
+WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
 
 
 class Put(NamedTuple):
@@ -80,6 +84,22 @@ class Statement:
 
     lines: list[Line]
     tokens: list[Token] = field(default_factory=list)
+
+
+def at(error: UdecError, place: Token) -> UdecError:
+    """`error`, with its place: file, line and column as the line was written."""
+    line, column = place.line.as_written(place.column)
+    error.file, error.line, error.column = line.file, line.number, column
+    error.token = place.text
+    if column <= WIDTH:
+        error.source = line.shown if len(line.shown) <= WIDTH else line.shown[: column + SHOWN] + " ..."
+    return error
+
+
+def quoted(text: str) -> str:
+    """`text` in quotes, cut off when it is very long, harmless to print."""
+    shown = "".join(c if c.isprintable() else "?" for c in text[:SHOWN])
+    return f'"{shown}{"..." if len(text) > SHOWN else ""}"'
 
 
 def obeyed(text: str) -> str:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -27,13 +28,13 @@ from udec_ia.kernels.geometry.shape import crad
 from udec_ia.kernels.links.lists import is_corner
 from udec_ia.kernels.split.spli import corner_on_edge
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.change import change_types
-from udec_ia.ops.commands.rounding import update_flagged
-from udec_ia.ops.commands.straighten import flag_around
-from udec_ia.ops.common.forces import renew_forces
-from udec_ia.ops.common.lists import chain, items
-from udec_ia.ops.common.memory import all_or_nothing, require
-from udec_ia.ops.common.ranges import Range, blocks_in, why_no_block
+from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.commands.corner_rounding import update_flagged
+from udec_ia.ops.commands.remove_edge_points import flag_around
+from udec_ia.ops.commands.triangulation import Mesh, mesh
+from udec_ia.ops.common.array_growth import all_or_nothing, require
+from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items, why_no_block
+from udec_ia.ops.common.deformable_scene import renew_forces
 
 Point = tuple[float, float]
 Triple = tuple[int, int, int]
@@ -339,3 +340,57 @@ def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple
             putr(h, iz, here, getr(h, ie, first))
     puti(h, ie, g.KFNZ, len(zones))
     puti(h, ie, g.KFMIX, int(paired))
+
+
+# ---- GENERATE ... AUTOMATIC: a block is divided into zones with sides of about a given length
+
+SLACK = 1e-6  # part of a rounding length that a part of an edge may be too short
+
+
+def generate_automatically(array: MainArray, ib: int, edge: float, paired: bool = False) -> str:
+    """Divide block `ib` into zones with sides of about `edge` (m). Returns one line on the mesh.
+
+    paired: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation. Errors 1, 14, 23 and 28; nothing
+    is changed then.
+    """
+    outline = Outline(array.h, ib)
+    found = mesh(outline.end, edge, paired, array.h.cr.dtype.type)
+    _check_room(found, len(outline.corners), edge, float(array.h.cr[g.DTOL]))
+    divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+    return (
+        f"block@{ib} has {len(found.zones)} zones and {len(found.points)} grid-points, "
+        f"the least angle is {found.smallest_angle:.1f} degrees"
+    )
+
+
+def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
+    """Error 14 if a grid-point on an edge stands in the rounding of a corner."""
+    ends = np.append(found.ring, found.ring[0])
+    for i, j in pairwise(ends.tolist()):
+        distance = float(np.hypot(*(found.points[i] - found.points[j])))
+        if (i < corners) != (j < corners) and distance < d * (1 - SLACK):
+            x, y = found.points[min(i, j)]
+            detail = f"an edge of {edge:g} sets a grid-point {distance:g} from the corner ({x:g}, {y:g})"
+            raise UdecError(
+                14,
+                f"{detail}, which is rounded by {d:g}",
+                f"use a longer edge, or first ROUND {0.9 * distance:.2g} before",
+                parameter="edge",
+            )
+
+
+def _places(outline: Outline, found: Mesh) -> list[Place]:
+    """Where the points of the mesh, whose first points are the corners, go in the block."""
+    places = [Place(float(x), float(y)) for x, y in found.points]
+    for place, ip in zip(places, outline.corners, strict=False):
+        place.corner = ip
+    edge = 1  # the ring begins at corner 0, with the edge that ends at corner 1
+    for i in found.ring[1:].tolist():
+        k = edge % len(outline.corners)
+        if i < len(outline.corners):
+            edge += 1
+            continue
+        place = places[i]
+        place.corner, place.on_edge = outline.corners[k], True
+        place.along = float(np.hypot(*(found.points[i] - outline.start[k])))
+    return places

@@ -17,8 +17,8 @@ from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.limits import whole
-from udec_ia.ops.common.memory import require
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.number_limits import whole
 from udec_ia.reader.recordable_numbers import Recordable, by_codes, recordable
 
 CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}

@@ -15,10 +15,20 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from udec_ia.deck.advice import at, hint, quoted
-from udec_ia.deck.language import COMMANDS, Command, match
-from udec_ia.deck.parser import APART, NUMBER, QUOTED
-from udec_ia.deck.reader import Line, Put, Statement, Token, obeyed, statements, tokens_of
+from udec_ia.deck.command_forms import Command
+from udec_ia.deck.deck_statements import (
+    Line,
+    Put,
+    Statement,
+    Token,
+    at,
+    obeyed,
+    quoted,
+    statements,
+    tokens_of,
+)
+from udec_ia.deck.keyword_suggestions import with_suggestion
+from udec_ia.deck.lines_and_calls import APART, NUMBER, QUOTED, command_of
 from udec_ia.errors import UdecError
 
 Value = int | float | str
@@ -26,10 +36,9 @@ Values = Mapping[str, Value]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
-FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
+FORM = "the form is: DEFAult name value ..., as in DEFAULT F=0.5"
 IS_NAME = "a name is a letter, then letters, digits and _"
 IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
-LAST = ("stop", "end")  # commands after which a deck is not read any more
 
 
 def spelt(name: str, value: object) -> str:
@@ -63,7 +72,7 @@ class Variables:
 
         Raises UdecError 7 for a variable without a value, 10 for a DEFAULT that cannot be understood.
         """
-        command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+        command = command_of(statement)
         if command is not None and command.name == "default":
             self._note(statement)
             return statement
@@ -81,16 +90,16 @@ class Variables:
         """
         ahead = Variables(self.given)
         for statement in ahead.filled(statements(lines, file)):
-            command = match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
+            command = command_of(statement)
             if command is None and statement.tokens:
                 return  # with which the run will end
-            if command is not None and command.name in LAST:
+            if command is not None and command.ends:
                 break
         for name in self.given:
             if name not in ahead.used:
                 known = ", ".join(f"${one}" for one in ahead.used)
                 advice = f"the variables of the deck are {known}" if known else "the deck has no variables"
-                raise UdecError(10, f"{file} has no ${name}", hint(name, ahead.used, advice))
+                raise UdecError(10, f"{file} has no ${name}", with_suggestion(name, ahead.used, advice))
 
     def _note(self, statement: Statement) -> None:
         """Note the defaults that a statement gives."""
@@ -139,7 +148,7 @@ class Variables:
             return self.defaults[name][0]
         cure = f"give it with --set {name}=..., or by DEFAULT {name}=... before this line"
         known = [one for one in self.given | self.defaults if one != name]
-        raise at(UdecError(7, f"the variable {name} has no value", hint(name, known, cure)), place)
+        raise at(UdecError(7, f"the variable {name} has no value", with_suggestion(name, known, cure)), place)
 
 
 def _end_of(text: str, command: Command | None) -> int:

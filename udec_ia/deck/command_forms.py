@@ -1,0 +1,164 @@
+"""The form of a command: its kind, numbers, words and list, and how typed words match keywords (MATCH).
+
+A keyword is printed as in the report: its upper-case letters must be typed, the others may be left off
+from the end. `PROperty` is matched by PRO, PROP and property, not by PR or PROPS. Where two keywords
+match, the one that stands first in the table is taken: R is Restart, FR is FRaction.
+
+A number is named as in the report: names that begin with i to n take an integer, all others a real. After
+its numbers a command takes words, in any order, and after its words a list. Each parameter reaches the
+method of Model that has the command's full keyword as its name: numbers and the list as positional
+arguments, words by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum, auto
+from typing import Protocol, TypeVar
+
+MANY = 20  # choices that are told by the name of their argument, not one by one
+SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
+
+
+class Named(Protocol):
+    """Anything that is called by a keyword."""
+
+    @property
+    def keyword(self) -> str: ...
+
+
+N = TypeVar("N", bound=Named)
+
+
+@dataclass(frozen=True)
+class Word:
+    """A keyword among the parameters of a command.
+
+    values: names of the numbers that follow the word. repeated: a list of such tuples follows.
+    sets: the argument that the word sets; by default the keyword itself, in lower case.
+    Several values without a list are one tuple.
+    Without values the word sets True, or its own name if it shares an argument with others.
+    """
+
+    keyword: str
+    values: str = ""
+    sets: str = ""
+    repeated: bool = False
+
+    @property
+    def argument(self) -> str:
+        return self.sets or self.keyword.lower()
+
+    @property
+    def form(self) -> str:
+        """The word as the report prints it: `Material n`."""
+        return f"{self.keyword} {self.values}".strip() + (" ..." if self.repeated else "")
+
+
+class Kind(Enum):
+    """What a command does: change the model, run cycles, show something, or direct the session."""
+
+    CHANGES = auto()
+    RUNS = auto()
+    SHOWS = auto()
+    SESSION = auto()
+
+
+CHANGES, RUNS, SHOWS, SESSION = Kind
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What the number counts that a command returns, as a run reports it: `3 blocks deleted, 9 blocks now`.
+
+    thing: what is counted. done: what was done with it. none: what is reported instead of 0. of_all: the
+    number of all such things follows.
+    """
+
+    thing: str
+    done: str
+    none: str = "no block in range"
+    of_all: bool = False
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of the language.
+
+    kind: what it does, on which the log, studies and the rescue of a run depend. counts: what the number
+    counts that its method returns; None if that number is for Python only.
+    numbers: names of the numbers that must be given. optional: of those that may be left off.
+    words: its keywords. first: the argument that its first word must set, and the error if it does not.
+    list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
+    it stands, to the end of the line or to the word that stands last in it; needs_text: it must be given.
+    opens: may come before START. begins: another model takes the place of this one. ends: ends the run.
+    writes_words: writes any word of the array, by name or by address.
+    ours: what of the command is not in Appendix I-1.
+    """
+
+    keyword: str
+    kind: Kind
+    help: str
+    example: str
+    numbers: str = ""
+    optional: str = ""
+    words: tuple[Word, ...] = ()
+    first: str = ""
+    first_error: int = 10
+    list: str = ""
+    text: str = ""
+    needs_text: bool = False
+    opens: bool = False
+    begins: bool = False
+    ends: bool = False
+    writes_words: bool = False
+    counts: Counts | None = None
+    ours: str = ""
+
+    @property
+    def name(self) -> str:
+        """The full keyword in lower case: the name of the method of Model."""
+        return self.keyword.lower()
+
+    @property
+    def is_work(self) -> bool:
+        """True if the command changes the model, runs it, or puts another in its place."""
+        return self.kind in (CHANGES, RUNS) or self.begins
+
+    @property
+    def extends(self) -> bool:
+        """True if the command takes a list, for which one line is often too short."""
+        return bool(self.list) or any(word.repeated for word in self.words)
+
+    @property
+    def form(self) -> str:
+        """The command as the report prints it, brackets around what may be left off."""
+        parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
+        parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
+        for argument in dict.fromkeys(word.argument for word in self.words):
+            forms = [word.form for word in self.words if word.argument == argument]
+            if argument == SEVERAL:
+                parts += forms
+            else:
+                choice = " | ".join(forms) if len(forms) < MANY else argument
+                parts.append(choice if argument == self.first else f"[{choice}]")
+        parts += [f"{self.list} ..."] if self.list else []
+        return " ".join(part for part in parts if part)
+
+
+def required(keyword: str) -> str:
+    """The letters of `keyword` that must be typed: those up to its last upper-case one."""
+    return keyword.rstrip("abcdefghijklmnopqrstuvwxyz")
+
+
+def matches(keyword: str, typed: str) -> bool:
+    """True if `typed` has all required letters of `keyword`, and nothing that does not belong to it."""
+    return (
+        typed.isascii() and len(typed) >= len(required(keyword)) and keyword.upper().startswith(typed.upper())
+    )
+
+
+def match(table: Iterable[N], typed: str) -> N | None:
+    """The first entry of `table` whose keyword matches `typed` (MATCH, Appendix III-3), or None."""
+    return next((entry for entry in table if matches(entry.keyword, typed)), None)

@@ -1,1 +1,0 @@
-"""How GENERATE ... AUTOMATIC divides an outline into zones: plain geometry, no heap."""
