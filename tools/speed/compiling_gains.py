@@ -23,18 +23,17 @@ from statistics import median
 ROOT = Path(__file__).parents[2]
 BALL = ["run", str(ROOT / "examples" / "ball-rolling.dat"), "--out", "out"]
 COLD, WARM, CHECK = "cold run of the ball", "warm run of the ball", "check of a small file"
-LARGE = "check of a large file"
 START = "import sys\nfrom udec_ia.cli import main\n{change}\nsys.exit(main(sys.argv[1:]))\n"
 SLAB = """
 from udec_ia import Model
-m, n = Model(), {n}
+m, n = Model(), 4
 m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5)
 m.block(0, 0, 0, n, n, n, n, 0)
 for i in range(1, n):
     m.split(-1, i, n + 1, i)
 for i in range(1, n):
     m.split(i, -1, i, n + 1)
-m.save("slab{n}.h5")
+m.save("slab.h5")
 """
 PARTS = {  # of each: the command, what leaves it out, and the environment that does
     "linking": (COLD, "", {"UDEC_LINK": "plain"}),
@@ -73,7 +72,6 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         {},
     ),
     "numba loaded when needed": (CHECK, "from udec_ia.compiling.numba_loading import load\nload()", {}),
-    "no huge pages": (LARGE, "", {"NUMPY_MADVISE_HUGEPAGE": "1"}),
 }
 
 
@@ -90,13 +88,12 @@ def seconds(command: list[str], change: str, env: dict[str, str], folder: Path) 
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
-def measure(part: str, turns: int, size: int, folder: Path) -> tuple[float, float]:
+def measure(part: str, turns: int, folder: Path) -> tuple[float, float]:
     """Median times without `part` and with it, by turns."""
     name, change, env = PARTS[part]
-    file = f"slab{size if name == LARGE else 4}.h5"
-    command = BALL if name in (COLD, WARM) else ["check", file]
-    if name in (CHECK, LARGE):
-        seconds([], f"exec({SLAB.format(n=size if name == LARGE else 4)!r})", {}, folder)
+    command = BALL if name in (COLD, WARM) else ["check", "slab.h5"]
+    if name == CHECK:
+        seconds([], f"exec({SLAB!r})", {}, folder)
     times: dict[bool, list[float]] = {False: [], True: []}
     for turn in range(turns + (name != COLD)):  # the first turn of a warm command compiles
         for whole in (False, True):
@@ -115,12 +112,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="bench.py gains", description="What each part of compiling gains.")
     parser.add_argument("parts", nargs="*", help=f"by default all of: {', '.join(PARTS)}")
     parser.add_argument("--turns", type=int, default=3)
-    parser.add_argument("--size", type=int, default=316, help="blocks along a side of the large file")
     args = parser.parse_args()
     print("| part | command | without it, s | with it, s | gain, s |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         for part in args.parts or PARTS:
-            without, whole = measure(part, args.turns, args.size, Path(folder))
+            without, whole = measure(part, args.turns, Path(folder))
             gain = without - whole
             print(f"| {part} | {PARTS[part][0]} | {without:.2f} | {whole:.2f} | {gain:.2f} |", flush=True)
 
