@@ -24,7 +24,7 @@ from udec_ia import Model, UdecError
 LIMIT = 20_000
 CRITICAL, FREQUENCIES = (0.2, 0.5, 1.0), (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 STEPS = 10  # of slow loading
-TOLD = {"moves on": "moves on", "slipped on the way": "slip"}  # words of Solution.why, and what they mean
+REMARKS = {"blocks-fallen": "fallen", "joints-slipped": "slip"}  # keys of Solution.remarks, and a word
 
 
 class Scene(NamedTuple):
@@ -201,7 +201,7 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=list(SCENES), metavar="SCENE")
     parser.add_argument("--ratio", type=float, default=1e-4)
     given = parser.parse_args()
-    print("| scene | blocks | best Rayleigh, FRAC 0.1 | 0.8 SAFE | STATIC | gain | forces off | said |")
+    print("| scene | blocks | best Rayleigh, FRAC 0.1 | 0.8 SAFE | STATIC | gain | forces off | remark |")
     print("|---|---|---|---|---|---|---|---|")
     gains = []
     for name in given.scenes:
@@ -221,8 +221,8 @@ def main() -> None:
         ]
         gains.append((tenth[0] / static.cycles, safe[0] / static.cycles))
         gain = ", ".join(f"{one:.1f}" for one in gains[-1])
-        said = next((told for told in TOLD if told in static.why), "-")
-        print("|", " | ".join([*cells, gain, f"{off:.2g} %", TOLD.get(said, "-")]), "|", flush=True)
+        remark = next((REMARKS[key] for key in REMARKS if key in static.keys), "-")
+        print("|", " | ".join([*cells, gain, f"{off:.2g} %", remark]), "|", flush=True)
     print("in the median", ", ".join(f"{median(one):.1f}" for one in zip(*gains, strict=True)))
 
 

@@ -145,7 +145,7 @@ def rest(seed: int, steps: int) -> tuple[float, float, bool] | None:
             return None
     contacts = m.table("contact")
     forces = float(np.sqrt((contacts["KCFN"] ** 2 + contacts["KCFS"] ** 2).sum()))
-    return forces, float(np.abs(contacts["KCFS"]).sum() / contacts["KCFN"].sum()), bool(solution.state)
+    return forces, float(np.abs(contacts["KCFS"]).sum() / contacts["KCFN"].sum()), "joints-slipped" in solution.keys
 
 
 def study(seed: int) -> Result | None:

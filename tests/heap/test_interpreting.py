@@ -20,8 +20,8 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.drive.passes import passes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import prepare
-from udec_ia.ops.run.watch import run_unwatched
+from udec_ia.running.cycle import prepare
+from udec_ia.running.history_series import run_unwatched
 
 LONG, SHORT = 30, 3  # cycles compiled, and cycles interpreted
 

@@ -14,7 +14,7 @@ from udec_ia.heap.find_lose import room
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.layout.offsets import JPHASE, MCTOT, NERR, NWANT
-from udec_ia.ops.run import cycle as running
+from udec_ia.running import history_series
 
 
 def test_no_memory_left_is_an_error_of_the_deck(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -25,7 +25,11 @@ def test_no_memory_left_is_an_error_of_the_deck(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr("udec_ia.ops.commands.boundary_conditions._make_signal", none_left)
     with pytest.raises(UdecError) as caught:
         run_deck(m, "START\nBLOCK 0 0 0 1 1 1 1 0\nFUNCTION 1 0 0 1 1\n", out)
-    assert (caught.value.number, caught.value.line, m.deck_log[1:]) == (1, 3, ["BLOCK 0 0 0 1 1 1 1 0"])
+    assert (caught.value.number, caught.value.line, m.session.deck_log[1:]) == (
+        1,
+        3,
+        ["BLOCK 0 0 0 1 1 1 1 0"],
+    )
     assert Model.check_file(caught.value.saved or "") == []
 
 
@@ -37,7 +41,7 @@ def test_no_memory_left_in_a_run_does_not_say_that_nothing_was_done(
     def none_left(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("udec_ia.ops.run.cycle.run_unwatched", none_left)
+    monkeypatch.setattr("udec_ia.running.history_series.run_watched", none_left)
     with pytest.raises(UdecError, match="the results so far are kept") as caught:
         m.run("CYCLE 5\n")
     assert caught.value.number == 1
@@ -59,17 +63,17 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
     """After the cycle was completed with more memory, or at once if there is none."""
     m = side_by_side(mtop=mtop)
     m.cycle(3)
-    run, calls = running.run_unwatched, []
+    run, calls = history_series.run_watched, []
 
-    def run_short(h: object, n: int, *given: object) -> int:
+    def run_short(h: object, n: int, *given: object) -> tuple[int, bool]:
         calls.append(n)
         if len(calls) > 1:
-            return run(h, n, *given)  # type: ignore[arg-type]
+            return run(h, n, *given)  # type: ignore[arg-type, no-any-return]
         m.array.h.ci[NERR], m.array.h.ci[JPHASE] = 15, 3
         room(m.array.h, len(m.array.h.ia) + 1)
-        return 0
+        return 0, False
 
-    monkeypatch.setattr(running, "run_unwatched", run_short)
+    monkeypatch.setattr(history_series, "run_watched", run_short)
     with pytest.raises(UdecError) as caught:
         m.cycle(5)
     assert caught.value.number == 15

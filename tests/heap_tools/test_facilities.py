@@ -25,8 +25,8 @@ from udec_ia.heap_tools.memory_use import junk
 from udec_ia.heap_tools.unused_facilities import idle
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.run.cycle import prepare
 from udec_ia.reader.atlas import Atlas
+from udec_ia.running.cycle import prepare
 
 BARE = {"blocks and contacts", "domain pass", "watch of the energy"}
 KINDS = {
@@ -240,7 +240,7 @@ def test_the_price_is_what_a_cycle_takes_more(monkeypatch: pytest.MonkeyPatch) -
     clock = [0.0]
 
     def cycle(array: Any, n: int, **given: Any) -> None:
-        account, recorded = array.h.ci[g.LENER] != 0, given["watch"] is not None
+        account, recorded = array.h.ci[g.LENER] != 0, array.h.ci[g.IHPNT] != 0
         clock[0] += n * 1e-6 * (7 + 2 * account + recorded)
 
     m = scene()
@@ -262,7 +262,7 @@ def test_the_price_is_what_a_cycle_takes_more(monkeypatch: pytest.MonkeyPatch) -
 def test_words_are_those_that_running_without_sets_free() -> None:
     """As run; what cannot be run without says why: here the block would have no zones left to hold it."""
     m = every_kind()
-    rows = {row[0]: row for row in costs(m.array, m.laws, seconds=0.0).rows}
+    rows = {row[0]: row for row in costs(m.array, m.session.laws, seconds=0.0).rows}
     words = used(m)
     assert {name: rows[name][1] for name in words if name != "FDEF"} == {
         name: words[name] for name in words if name != "FDEF"

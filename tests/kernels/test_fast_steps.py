@@ -11,7 +11,7 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.detect.tunnelling import gone_through
 from udec_ia.kernels.drive import passes
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run import watch
+from udec_ia.running import history_series
 
 BUILDS = list(ALL_SCHEMES)
 
@@ -44,7 +44,7 @@ def runs_of(monkeypatch: pytest.MonkeyPatch, found: bool) -> list[int]:
         these[passes.TUNNELLING] = entry(gone_through, h) if wanted else 0
         return tuple(these)
 
-    monkeypatch.setattr(watch, "passes", told)
+    monkeypatch.setattr(history_series, "passes", told)
     return phases
 
 

@@ -16,7 +16,7 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.timestep import Limit, bound, estimate, instability
+from udec_ia.running.critical_step import Limit, bound, estimate, instability
 from udec_ia.verify.grids import fan
 
 D = 0.05

@@ -12,7 +12,7 @@ from support.safe_step_scenes import draw
 from support.safe_step_search import LIMITS, ROUNDING, look
 
 from udec_ia import Model
-from udec_ia.ops.run.timestep import bound
+from udec_ia.running.critical_step import bound
 
 JOINTS = (1e8, 1e8)
 

@@ -15,10 +15,10 @@ import pytest
 from support.mechanics_scenes import box, model
 
 from udec_ia import Model
+from udec_ia.advice.damping_report import damped
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.scaling import scale_anew
-from udec_ia.ops.run.timestep import bound
+from udec_ia.running.critical_step import bound
+from udec_ia.running.mass_scaling import scale_anew
 
 DAMPINGS: dict[str, dict[str, Any]] = {
     "local": {"local": 0.8},

@@ -18,9 +18,10 @@ from support.every_group_kind import every_kind
 from support.mechanics_scenes import block, on_base, push
 
 from udec_ia import Model, UdecError
+from udec_ia.advice import energy_monitor
 from udec_ia.cli import main
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run import runaway
+from udec_ia.remark import Remark
 
 STACK = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
@@ -167,7 +168,7 @@ def strengthen(m: Model) -> None:
 def test_no_run_at_a_sound_step_is_blamed(
     play: Callable[[Model], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runaway, "SUSPECT", 0.0)
+    monkeypatch.setattr(energy_monitor, "SUSPECT", 0.0)
     looks = watched(monkeypatch)
     m = on_base(1.0, 1.0, 0.1, 4.0, friction=0.5, density=2000)
     m.out = tmp_path
@@ -178,7 +179,7 @@ def test_no_run_at_a_sound_step_is_blamed(
 def test_blocks_of_all_kinds_under_all_conditions_are_not_blamed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runaway, "SUSPECT", 0.0)
+    monkeypatch.setattr(energy_monitor, "SUSPECT", 0.0)
     looks = watched(monkeypatch)
     m = every_kind()
     m.out = tmp_path
@@ -191,14 +192,14 @@ def test_blocks_of_all_kinds_under_all_conditions_are_not_blamed(
 def watched(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The cycles at which the energy of a suspected run is looked at."""
     looks: list[int] = []
-    look = runaway.Runaway.look
+    look = energy_monitor.EnergyMonitor.look
 
-    def counted(self: runaway.Runaway, array: runaway.MainArray) -> None:
-        if self._account is not None and array.h.ci[g.MCTOT] % runaway.LOOK == 0:
+    def counted(self: energy_monitor.EnergyMonitor, array: energy_monitor.MainArray) -> None:
+        if self._account is not None and array.h.ci[g.MCTOT] % energy_monitor.LOOK == 0:
             looks.append(int(array.h.ci[g.MCTOT]))
         look(self, array)
 
-    monkeypatch.setattr(runaway.Runaway, "look", counted)
+    monkeypatch.setattr(energy_monitor.EnergyMonitor, "look", counted)
     return looks
 
 
@@ -249,12 +250,11 @@ def test_contacts_that_chatter_are_told(tmp_path: Path) -> None:
     m.tell = said.append
     m.cycle(2500)
     (text,) = said
-    assert text.startswith("contacts chatter: ")
-    assert "DAMPING LOCAL 0.8" in text
+    assert isinstance(text, Remark)
+    assert text.key == "contacts-chatter"
     where = int(text.partition("contact@")[2].split()[0])
     assert where in m.table("contact")["address"]
-    solution = m.solve(1e-4, 1500)
-    assert (bool(solution), solution.state, len(said)) == (False, "chatter", 1)
+    assert (bool(m.solve(1e-4, 1500)), len(said)) == (False, 1)
     held = bricks(tmp_path, local=0.8)
     held.tell = said.append
     held.cycle(3000)

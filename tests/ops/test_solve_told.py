@@ -1,4 +1,4 @@
-"""What SOLVE says of its end is true: of what settles, falls or is driven, with scaled masses, too."""
+"""What SOLVE reports at its end is true: of what flies off, slips or opens, with scaled masses, too."""
 
 from __future__ import annotations
 
@@ -32,72 +32,12 @@ def test_what_flies_off_gets_its_mass_back_and_no_energy(tmp_path: Path) -> None
     m.change(0, 2, 0, 4, material=2)
     solution = m.solve(1e-4, limit=4000, static=True)
     assert not solution
-    assert solution.state == "collapse"
-
-
-def test_a_soft_stack_with_stiff_joints_settles_and_is_not_said_to_creep(tmp_path: Path) -> None:
-    m = stack(tmp_path, 3, 1.0, 1.0, kn=1e9, d=0.1)
-    m.property(2, density=50, kn=1e14, ks=1e14, friction=1.5, bulk=1e9, g=6e8)
-    m.change(0, 1, 1, 2, material=2)
-    m.change(0, 1, 0, 3, type="fdef")
-    for y in range(3):
-        m.generate(0, 1, y, y + 1, "automatic", edge=0.8)
-    first = m.solve(1e-5, limit=3000, static=True)
-    assert not first
-    assert first.state == "settles"
-    assert "no joint slips; take more cycles" in first.why
-    assert "STATIC" not in first.why
-    assert m.solve(1e-5, limit=60000, static=True)
-
-
-def test_a_block_that_falls_by_itself_does_not_settle(tmp_path: Path) -> None:
-    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
-    m.delete(0, 1, 0, 1)
-    m.fraction(0.01)
-    m.damping(1.0, 1.0, "mass")
-    solution = m.solve(1e-5, limit=400)
-    assert solution.state == "collapse"
-    assert "nothing holds what moves most" in solution.why
-
-
-def test_rest_under_a_velocity_that_is_given_is_told_at_once(tmp_path: Path) -> None:
-    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
-    m.boundary(-0.1, 1.1, 1.4, 2.1, yvel=-0.001)
-    solution = m.solve(5e-3, static=True)
-    assert solution
-    assert solution.cycles < 160
-    assert solution.state == "still moves"
-    assert "BOUNDARY moves block@" in solution.why
-    m.boundary(-0.1, 1.1, 1.4, 2.1, yvel=0.0)
-    assert m.solve(5e-3, static=True).why == ""
-
-
-def test_a_velocity_of_grid_points_is_told_too(tmp_path: Path) -> None:
-    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
-    m.change(0, 1, 1, 2, type="fdef")
-    m.generate(0, 1, 1, 2, "automatic", edge=0.8)
-    m.boundary(-0.1, 1.1, 1.9, 2.1, yvel=-0.0001)
-    solution = m.solve(5e-2, static=True)
-    assert solution
-    assert "BOUNDARY moves grid-point@" in solution.why
-
-
-def test_who_runs_statically_in_long_reals_is_not_told_to(tmp_path: Path) -> None:
-    m = stack(tmp_path, 3, 1.0, 1.0, kn=1e8, d=0.1)
-    why = m.solve(0.0, limit=400, static=True).why
-    assert "STATIC" not in why
-    assert "64 bits" not in why
+    assert len(solution.fallen) >= 1
 
 
 def test_a_criterion_is_a_word(tmp_path: Path) -> None:
     with pytest.raises(UdecError, match="MEAN or MAX"):
         stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1).solve(1e-3, criterion=None)  # type: ignore[arg-type]
-
-
-def test_where_all_is_fixed_rest_is_no_news(tmp_path: Path) -> None:
-    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.1)
-    m.fix(0, 1, -1, 2)
-    assert "all blocks are fixed" in m.solve(1e-3).why
 
 
 def test_the_word_that_was_typed_is_the_one_in_the_error(tmp_path: Path) -> None:
@@ -127,7 +67,7 @@ def opening(out: Path) -> Model:
 
 def test_shear_that_is_lost_as_contacts_open_is_told(tmp_path: Path) -> None:
     """Nothing slips, but gravity at once leaves other forces than gravity in ten steps."""
-    forces, told, why = [], [], []
+    forces, told = [], []
     for steps in (1, 10):
         m = opening(tmp_path)
         for k in range(1, steps + 1):
@@ -136,11 +76,9 @@ def test_shear_that_is_lost_as_contacts_open_is_told(tmp_path: Path) -> None:
             assert solution
         contacts = m.table("contact")
         forces.append(float(np.sqrt((contacts["KCFN"] ** 2 + contacts["KCFS"] ** 2).sum())))
-        told.append(solution.state)
-        why.append(solution.why)
+        told.append(solution.keys)
     assert abs(forces[0] / forces[1] - 1) > 0.01
-    assert told == ["joints slipped", ""]
-    assert "or opened and lost their shear: that took" in why[0]
+    assert told == [("joints-slipped",), ()]
 
 
 def test_what_slipped_in_a_cycle_before_is_not_forgotten(tmp_path: Path) -> None:
@@ -153,6 +91,6 @@ def test_what_slipped_in_a_cycle_before_is_not_forgotten(tmp_path: Path) -> None
         m.fraction(0.3, safe=True)
         m.damping(local=0.8)
         m.cycle(before)
-        states.append(m.solve(1e-4).state)
-        states.append(m.solve(1e-4).state)
-    assert states == ["joints slipped", "", "joints slipped", ""]
+        states.append(m.solve(1e-4).keys)
+        states.append(m.solve(1e-4).keys)
+    assert states == [("joints-slipped",), (), ("joints-slipped",), ()]

@@ -23,7 +23,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "split",
         "drive",
     ),
-    "ops": ("common", "laws", "commands", "run"),
+    "ops": ("common", "laws", "commands"),
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),
@@ -34,7 +34,21 @@ BELOW = {  # layers that a layer imports
     "reader": {"counting", "errors", "compiling", "heap", "kernels", "layout"},
     "ops": {"counting", "errors", "compiling", "heap", "kernels", "layout", "printable", "reader", "signals"},
     "checker": {"counting", "errors", "compiling", "heap", "kernels", "layout", "reader"},
+    "running": {
+        "compiling",
+        "counting",
+        "errors",
+        "heap",
+        "kernels",
+        "layout",
+        "ops",
+        "reader",
+        "remark",
+        "signals",
+    },
+    "advice": {"counting", "errors", "heap", "kernels", "layout", "ops", "reader", "remark", "running"},
     "heap_tools": {
+        "advice",
         "checker",
         "counting",
         "errors",
@@ -44,6 +58,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "reader",
+        "running",
     },
     "restart": {
         "counting",
@@ -57,6 +72,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "version",
     },
     "output": {
@@ -72,6 +88,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "restart",
     },
     "view": {"files", "compiling", "heap", "checker", "heap_tools", "reader", "layout", "printable"},
@@ -88,6 +105,7 @@ BELOW = {  # layers that a layer imports
         "layout",
         "ops",
         "printable",
+        "running",
         "signals",
     },
     "diverge": {
@@ -103,6 +121,7 @@ BELOW = {  # layers that a layer imports
         "kernels",
         "layout",
         "ops",
+        "running",
     },
     "study": {
         "counting",
@@ -120,6 +139,7 @@ BELOW = {  # layers that a layer imports
         "ops",
         "output",
         "printable",
+        "running",
         "version",
     },
     "trade": {
@@ -137,6 +157,7 @@ BELOW = {  # layers that a layer imports
         "ops",
         "output",
         "printable",
+        "running",
         "study",
     },
     "command_line": {
@@ -160,24 +181,27 @@ BELOW = {  # layers that a layer imports
         "view",
     },
     "verify": {"errors", "files", "compiling", "heap", "layout", "model", "output", "printable"},
-    "methods": {
+    "model": {
+        "advice",
+        "remark",
+        "running",
         "counting",
+        "debug",
         "deck",
         "errors",
+        "files",
         "compiling",
         "heap",
         "checker",
         "heap_tools",
         "kernels",
         "reader",
-        "keywords",
         "layout",
         "ops",
         "output",
         "printable",
         "restart",
-        "session",
-        "transaction",
+        "signals",
         "view",
     },
     "deck": {

@@ -20,11 +20,11 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.heap_map import heap_map
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.timestep import bound, describe
 from udec_ia.output import histories
 from udec_ia.output.outline import snapshot
 from udec_ia.output.plot import Frame, What
 from udec_ia.reader.atlas import Atlas
+from udec_ia.running.critical_step import bound, describe
 
 ALL = (-1.0, 1e6, -1.0, 1e6)
 WORSE = 9  # times the time for four times the size: 4 in proportion, 16 for the square

@@ -19,7 +19,7 @@ from naive.stiffness import Scene
 
 from support.safe_step_scenes import draw
 from udec_ia import UdecError
-from udec_ia.ops.run.timestep import bound, estimate
+from udec_ia.running.critical_step import bound, estimate
 
 LIMITS = {"rigid": 1 / 2, "deformable": 1 / 3}  # of the true limit, which the bound is never to be below
 ROUNDING = 1e-6  # of the oracle's eigenvalues, whose masses and stiffnesses may differ by 1e12

@@ -19,7 +19,7 @@ needs_browser = pytest.mark.skipif(
 HOSTILE = "</script><script>pwned=1</script><img src=x onerror=pwned=2>"
 
 
-class Told:
+class ViewCase:
     """The states of the page: one model, before and after it ran, and a damaged copy; and the page."""
 
     def __init__(self, folder: Path) -> None:
@@ -30,10 +30,10 @@ class Told:
             kind: self.model.table(kind) for kind in ("block", "corner", "contact", "domain", "zone")
         }
         pages = Page()
-        pages.add(self.model.array, "before", self.model.deck_log)
+        pages.add(self.model.array, "before", self.model.session.deck_log)
         self.model.cycle(20)
         self.now = {kind: self.model.table(kind) for kind in self.before}
-        pages.add(self.model.array, "after", self.model.deck_log)
+        pages.add(self.model.array, "after", self.model.session.deck_log)
         self.damaged = self.damage()
         pages.add(self.damaged, f"damaged{HOSTILE}", [HOSTILE])
         self.path = pages.write(folder / "page.html")
@@ -47,7 +47,7 @@ class Told:
         return array
 
 
-def addresses(told: Told, kind: str) -> list[int]:
+def addresses(told: ViewCase, kind: str) -> list[int]:
     return [int(address) for address in told.now[kind]["address"]]
 
 

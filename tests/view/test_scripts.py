@@ -157,9 +157,9 @@ def compare(array: MainArray, spans: Any, every: int) -> None:
         if span.kind not in KINDS:
             continue
         for said, word in zip(one["words"], atlas.words(span), strict=True):
-            told = meaning(atlas, span, word)
-            assert said["text"] == told
-            broken = ASTRAY in told or told.startswith(NOT_ALLOWED) or told == "no head code of its kind"
+            text = meaning(atlas, span, word)
+            assert said["text"] == text
+            broken = ASTRAY in text or text.startswith(NOT_ALLOWED) or text == "no head code of its kind"
             assert said["sound"] is not broken
         if k % every == 0:
             rows = who(atlas, span.first).rows

@@ -40,9 +40,9 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets
 from udec_ia.layout.table import Field
-from udec_ia.ops.run.watch import Series
 from udec_ia.reader.field_reading import TABLE
 from udec_ia.restart import load, save
+from udec_ia.running.history_series import Series
 
 TAKEN, REFUSED = 5, 100  # one in so many of the changes that are taken or refused goes through a file
 PARTS = {"pointer": 0.5, "code": 0.2, "count": 0.08, "head": 0.08, "junk": 0.06, "real": 0.03, "spare": 0.03}

@@ -35,9 +35,9 @@ from udec_ia.heap_tools.convert_word_scheme import convert
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
-from udec_ia.ops.run.watch import run_unwatched
 from udec_ia.reader.group_tables import table
 from udec_ia.restart import load_to_change, save_changed
+from udec_ia.running.history_series import run_unwatched
 
 ROOT = Path(__file__).parents[2]
 TURNS = 15

@@ -35,10 +35,10 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.corner_rounding import STRAINED
-from udec_ia.ops.run.solution import Solution
 from udec_ia.output.plot import Plots
 from udec_ia.restart import save
 from udec_ia.restart.seal import SIZE, seal
+from udec_ia.running.solve_result import Solution
 
 TOOL = Path(__file__).parents[1] / "robustness.py"
 BATCH = 250  # cases to a process
@@ -379,7 +379,7 @@ def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
         model.split(-1, 3, 7, 3.1)
     except UdecError as error:
         end = numbered(error)
-    return end, unsound(model, check_links) if model.started else ""
+    return end, unsound(model, check_links) if model.session.started else ""
 
 
 # ---- processes

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, variables
 from udec_ia.counting import counted
+from udec_ia.deck.deck_statements import read_deck
 from udec_ia.errors import UdecError
 from udec_ia.printable import printable
 
@@ -118,7 +119,7 @@ def _run(
 
 
 def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8-sig", errors="replace")
+    return read_deck(path)
 
 
 def _diverge(args: argparse.Namespace) -> Listing:
@@ -158,7 +159,7 @@ def _keep(args: argparse.Namespace, runs: list[Run], found: Divergence) -> list[
     """Write both states; into the current folder, as `udec run` does."""
     paths = args.keep or [Path(f"{args.file.stem}-{which}.h5") for which in ("first", "second")]
     for path, run, state in zip(paths, runs, found.states, strict=True):
-        run.model.take_up(state.array(), run.model.deck_log)
+        run.model.session.return_to(state.array(), run.model.session.deck_log)
         run.model.save(path.absolute(), force=True)
     return [Path(path) for path in paths]
 

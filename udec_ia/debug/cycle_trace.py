@@ -24,8 +24,8 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import raise_error
-from udec_ia.ops.run.watch import run_unwatched
+from udec_ia.running.cycle_errors import raise_error
+from udec_ia.running.history_series import run_unwatched
 
 UNDER = "udec_ia.compiling.", "udec_ia.checked_build.", "udec_ia.heap.accessors"  # no routines of the program
 MEMORY_LIMIT = 1_000  # times that a cycle may stop for memory

@@ -22,8 +22,8 @@ from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
 from udec_ia.reader.atlas import Atlas
+from udec_ia.running.observer import Observer
 from udec_ia.signals import poll
 
 PIECE_SECONDS = 0.02
@@ -54,7 +54,7 @@ class Debugger:
         self.model = model
         self.monitor = Monitor(model, out)
         self.stopped = stopped
-        self.timeline = Timeline(model.array, model.laws, budget)
+        self.timeline = Timeline(model.array, model.session.laws, budget)
         self.conditions: dict[int, StopCondition] = {}
         self.goal: int | None = None  # event to stop at, the next one where it can
         self.goal_cycle: int | None = None
@@ -72,10 +72,10 @@ class Debugger:
 
     def run(self, statements: Sequence[Statement]) -> None:
         """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
-        around, self.model.around = self.model.around, self._around
+        observers, self.model.session.observers = self.model.session.observers, [_CycleWatcher(self)]
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
-        self._before = list(self.model.deck_log)
+        self._before = list(self.model.session.deck_log)
         number = 0
         try:
             while True:
@@ -85,7 +85,7 @@ class Debugger:
                 except ResumeRun as back:
                     number = self._resume(back.event, back.command)
         finally:
-            self.model.around = around
+            self.model.session.observers = observers
 
     def _obey_all(self, number: int) -> None:
         """The commands from `number` on."""
@@ -106,7 +106,7 @@ class Debugger:
         inserted = [(place, self._worded(command))] if command else []
         self._commands = [*done, *inserted, *rest]
         lines = [line.shown for _, statement in done for line in statement.lines]
-        self.model.take_up(array, [*self._before, *lines])
+        self.model.session.return_to(array, [*self._before, *lines])
         self.monitor.ended = False
         self.goal, self.goal_cycle, self.goal_line = event + len(inserted), None, None
         self._atlas = self._array = None  # an event of the discarded timeline may have the same number
@@ -158,10 +158,6 @@ class Debugger:
             raise
         timeline.end(self.model.array)
         self._look()
-
-    def _around(self, watch: Watch | None) -> Watch:
-        """What watches the run that begins."""
-        return _Pieces(self, watch or Watch(self.model.array, []))
 
     def piece(self, n: int) -> int:
         """Cycles until the next look, of `n` to come."""
@@ -354,30 +350,25 @@ class Debugger:
         return self._numbered
 
 
-class _Pieces(Around):
-    """Runs a CYCLE or SOLVE in the pieces that the debugger asks for."""
+class _CycleWatcher(Observer):
+    """Shows the debugger a CYCLE or SOLVE in the pieces that it asks for."""
 
-    def __init__(self, debugger: Debugger, inner: Watch) -> None:
-        super().__init__(inner)
+    def __init__(self, debugger: Debugger) -> None:
         self.debugger = debugger
+        self._start = 0.0
 
-    def begin(self) -> None:
-        """The run is prepared."""
-        super().begin()
-        self.debugger.timeline.prepared(self.debugger.model.array)
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See Observer."""
+        self.debugger.timeline.prepared(array)
 
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-        """As Watch.run."""
-        done = 0
-        while done < n and not self.inner.reached:
-            piece, start = self.debugger.piece(n - done), perf_counter()
-            completed = self.inner.run(piece, laws, marks)
-            done += completed
-            if completed:
-                self.debugger.ran(completed, perf_counter() - start)
-            if completed < piece or self.debugger.model.array.h.ci[g.NERR] != 0:
-                break
-        return done
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See Observer."""
+        self._start = perf_counter()
+        return self.debugger.piece(n)
+
+    def look(self, array: MainArray, cycles: int) -> None:
+        """See Observer."""
+        self.debugger.ran(cycles, perf_counter() - self._start)
 
 
 def count_cycles(statement: Statement) -> int:

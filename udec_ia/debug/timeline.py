@@ -22,7 +22,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.replay import Replay
+from udec_ia.running.cycle_replay import Replay
 
 BUDGET = 200 * 2**20  # bytes of all copies
 GAP = 0.1  # seconds of a run from one copy to the next

@@ -50,7 +50,7 @@ PROPERTIES = [
     if one.keyword
 ]
 CONSTITUTIVE = Word("Constitutive", "m")
-BY_FORCE = Word("FORCE")
+BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -72,7 +72,8 @@ COMMANDS = (
         " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
         "non-reflecting, with the present properties. A sine (frequency, duration) begins now; a FUNCTION "
         "depends on the time of the model. Either multiplies loads and velocities. Loads add to existing "
-        "loads. A velocity replaces the previous one. Free removes all conditions.",
+        "loads. A velocity replaces the previous one; a fixed block takes none but 0. "
+        "Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -288,7 +289,8 @@ COMMANDS = (
         CHANGES,
         "Change words of the main array by name: a field of a group, a variable of the common block, or an "
         "integer word by its address. Separate several with commas. The state is first proved sound with "
-        "the new values; otherwise nothing is changed.",
+        "the new values; otherwise nothing is changed. A fixed block that gets a velocity stays where it is "
+        "and drags what touches it, like a conveyor belt.",
         "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
         text="assignments",
         needs_text=True,
@@ -370,13 +372,14 @@ COMMANDS = (
         "Restart",
         SESSION,
         "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
-        "files (--out). FORCE also accepts an unsound state, for inspection and repair. Commands that "
-        "follow links, such as CYCLE, are then refused until the links are sound.",
+        "files (--out). The whole state is checked first, as by udec check. UNCHECKED checks the links only. "
+        "FORCE also accepts an unsound state, for inspection and repair. Commands that follow links, such as "
+        "CYCLE, are then refused until the state is sound.",
         "RESTART slope.h5",
-        words=(BY_FORCE,),
+        words=(BY_FORCE, UNCHECKED),
         text="path",
         opens=True,
-        ours="the name of the file; FORCE",
+        ours="the name of the file; FORCE; UNCHECKED",
         begins=True,
     ),
     Command(
@@ -400,8 +403,9 @@ COMMANDS = (
         "SAve",
         SESSION,
         "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
-        "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
-        "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
+        "for files (--out), outside of which no folder is created. The file may replace a restart file and "
+        "nothing else. FORCE also saves an unsound state, and marks the file. Put the name of a file "
+        "called FORCE in quotes.",
         "SAVE slope.h5",
         words=(BY_FORCE,),
         text="path",

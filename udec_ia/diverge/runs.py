@@ -19,7 +19,7 @@ from udec_ia.deck.deck_variables import Values
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.kernels.drive.unbalanced import at_rest
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.watch import SOLVE_LIMIT
+from udec_ia.running.history_series import SOLVE_LIMIT
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 
@@ -63,7 +63,7 @@ class _Monitor(Monitor):
 
     def place(self, command: str, name: str | None) -> Path | None:
         """As Monitor.place; a restart file that is not there is looked for in the other folders."""
-        if command == "restart" and not (self.model.out / (name or RESTART_FILE)).exists():
+        if command == "restart" and not (self.model.session.out / (name or RESTART_FILE)).exists():
             for folder in self._beside:
                 if (folder / (name or RESTART_FILE)).exists():
                     return folder / (name or RESTART_FILE)

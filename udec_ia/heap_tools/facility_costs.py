@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from udec_ia.advice.energy_monitor import EnergyMonitor
+from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.facilities import FACILITIES, Facility
@@ -22,23 +24,14 @@ from udec_ia.heap_tools.facility_trials import WITHOUT, Trial
 from udec_ia.heap_tools.memory_order import arrange
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.ops.run.cycle import cycle, prepare
-from udec_ia.ops.run.guard import Guard
-from udec_ia.ops.run.runaway import Runaway
-from udec_ia.ops.run.watch import Watch
 from udec_ia.reader.listing import Listing
+from udec_ia.running.cycle import cycle, prepare
+from udec_ia.running.history_series import Recording
 
 SECONDS = 20.0  # of all pieces together
 PIECE = 0.05  # seconds of a piece
 LONGEST, SHORTEST, ROUNDS = 2000, 10, 3  # cycles of a piece; pieces of each kind, at least
 COLUMNS = ("facility", "words", "bytes", "ns a cycle", "percent", "+-", "in this scene")
-
-
-class Unwatched(Runaway):
-    """Judges nothing, and suspects nothing."""
-
-    def judge(self, array: MainArray, anew: bool = False) -> None:
-        pass
 
 
 class Share(NamedTuple):
@@ -85,13 +78,12 @@ def _row(one: Facility, here: str, share: Share, each: float, size: int) -> tupl
 
 def _piece(trial: Trial, n: int) -> float:
     """Processor time of `n` cycles of a copy."""
-    array, guard = trial.array.copy(), Guard()
-    if not trial.judged:
-        guard.runaway = Unwatched()
-    guard.runaway.judge(array)
-    watch = Watch(array, []) if trial.recorded and array.h.ci[g.IHPNT] else None
+    array, monitors = trial.array.copy(), RunMonitors(trial.laws)
+    if trial.judged:
+        monitors.energy.judge(array)
+    recording = Recording(array, [], marks=monitors.chatter.marks)
     start = process_time()
-    cycle(array, n, laws=trial.laws, watch=watch, guard=guard)
+    cycle(array, n, recording=recording, observers=[monitors] if trial.judged else [], laws=trial.laws)
     return process_time() - start
 
 
@@ -155,6 +147,6 @@ def _preparing(array: MainArray) -> float:
         copy.h.ci[g.LREADY] = 0
         start = process_time()
         prepare(copy)
-        Runaway().judge(copy)
+        EnergyMonitor().judge(copy)
         found.append(process_time() - start)
     return float(np.median(found))

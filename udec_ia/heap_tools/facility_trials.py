@@ -25,11 +25,10 @@ NEVER = 1e30  # m, a displacement that nothing comes to
 
 @dataclass
 class Trial:
-    """A copy of a state that runs. recorded: with its histories; judged: under the watch of its energy."""
+    """A copy of a state that runs. judged: its energy is monitored."""
 
     array: MainArray
     laws: LawBook
-    recorded: bool = True
     judged: bool = True
 
 
@@ -92,7 +91,7 @@ def _unrecorded(trial: Trial) -> None:
     h = trial.array.h
     for ih in chain(h, int(h.ci[g.IHPNT]), g.KH):
         lose(h, ih, g.NVHI)
-    h.ci[g.IHPNT], trial.recorded = 0, False
+    h.ci[g.IHPNT] = 0
 
 
 def _unjudged(trial: Trial) -> None:

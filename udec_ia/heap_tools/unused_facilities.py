@@ -1,6 +1,6 @@
 """What was asked for and has no effect in a state, and why.
 
-Some of it CYCLE remarks before it runs (ops/run/remarks.py); here is all of it that a state shows.
+Some of it CYCLE remarks before it runs (advice/input_warnings.py); here is all of it that a state shows.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from udec_ia.advice.input_warnings import check_laws, check_loads
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
@@ -19,7 +20,6 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.model_settings import PROPERTIES
 from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.common.number_limits import NMAT
-from udec_ia.ops.run.remarks import on_laws, on_loads
 from udec_ia.reader.listing import Listing
 
 Found = Iterator[tuple[str, str]]
@@ -72,7 +72,7 @@ def _fixed(s: Scene) -> Found:
 
 def _conditions(s: Scene) -> Found:
     """Conditions that load nothing, and functions that nothing follows."""
-    yield from (("BOUNDARY", text) for text in on_loads(s.array, s.found))
+    yield from (("BOUNDARY", text) for text in check_loads(s.array, s.found))
     empty = np.all([s.column("bound", k) == 0 for k in LOADS], axis=0) & (s.column("bound", "KUFIX") == 0)
     if many := int(empty.sum()):
         yield "BOUNDARY", f"without a load or a velocity: {counted(many, 'condition')}"
@@ -106,7 +106,7 @@ def _materials(s: Scene) -> Found:
     stiff = np.setdiff1d(np.concatenate([given[name] for name in MODULI]), soft)
     for m in np.intersect1d(stiff, used).astype(int).tolist():
         yield f"PROPERTY MATERIAL={m}", "BULK and G have no effect: no block of this material is deformable"
-    yield from (("PROPERTY", text) for text in on_laws(s.array, s.found))
+    yield from (("PROPERTY", text) for text in check_laws(s.array, s.found))
 
 
 def _pressures(s: Scene) -> Found:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.ops.run.watch import Series
 from udec_ia.output.draw import INK, drawable
 from udec_ia.output.picture import write
+from udec_ia.running.history_series import Series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.ops.run.watch import Series
 from udec_ia.output.turns import Turns
+from udec_ia.running.history_series import Series
 
 Counts = tuple[int, ...]  # numbers of each history
 

@@ -24,7 +24,6 @@ from udec_ia.kernels.body.fdef import strain_rates
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
-from udec_ia.ops.run.watch import Series
 from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,
@@ -37,6 +36,7 @@ from udec_ia.reader.list_walks import (
     members,
     point,
 )
+from udec_ia.running.history_series import Series
 
 T = TypeVar("T")
 LINE = 120

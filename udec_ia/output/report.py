@@ -10,7 +10,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive.unbalanced import unbalanced
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
-from udec_ia.ops.run.timestep import share_of
+from udec_ia.running.critical_step import fraction_in_words
 
 if TYPE_CHECKING:
     from udec_ia.output.animate import Animation
@@ -48,7 +48,7 @@ class Report:
             from udec_ia.output.progress import Progress
 
             tdel = float(h.cr[g.TDEL])
-            self.progress = Progress(stream, self.total, tdel, share_of(h), self.started)
+            self.progress = Progress(stream, self.total, tdel, fraction_in_words(h), self.started)
         self.shown = done
         made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
         self.progress.update(

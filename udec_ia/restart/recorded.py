@@ -16,12 +16,12 @@ from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions
-from udec_ia.ops.run.watch import Series
 from udec_ia.reader.list_walks import Unsound, groups
 from udec_ia.reader.recordable_numbers import HISTORY, by_codes
 from udec_ia.restart.contents import Contents
 from udec_ia.restart.layout import text
 from udec_ia.restart.refusal import RefusedError
+from udec_ia.running.history_series import Series
 
 TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in the order of Series.numbers
 CHUNK = 512  # numbers that stand together in a dataset that grows

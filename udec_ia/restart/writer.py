@@ -25,12 +25,12 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
-from udec_ia.ops.run.watch import Series
 from udec_ia.restart.contents import CHUNK
 from udec_ia.restart.layout import MARK, MARKED, common_places, field_rows, shorten, text
 from udec_ia.restart.recorded import RECORDED, of_all, store
 from udec_ia.restart.refusal import RefusedError
 from udec_ia.restart.seal import SIZE, VERSION, read_front, seal
+from udec_ia.running.history_series import Series
 from udec_ia.version import __version__
 
 COMMON = "common"

@@ -21,7 +21,7 @@ from typing import TextIO
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Variables
 from udec_ia.errors import UdecError
-from udec_ia.ops.run.solution import in_short
+from udec_ia.running.solve_result import in_short
 from udec_ia.study.folders import BEGUN, begun, new, publish
 from udec_ia.study.keeping import write
 from udec_ia.study.memory import peak_memory, restart_peak

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from functools import cache
@@ -21,7 +21,7 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import command_of, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
-from udec_ia.ops.run.watch import Watch
+from udec_ia.running.observer import Observer
 from udec_ia.study.reading import DEFAULTS, read, read_rule
 from udec_ia.version import __version__
 
@@ -67,9 +67,9 @@ class Run:
         laws = tuple(str(Path(law).absolute()) if Path(law).is_file() else law for law in self.constitutive)
         object.__setattr__(self, "constitutive", laws)
 
-    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
-        """Gives another one for the watch of each CYCLE or SOLVE of its model: other studies see more."""
-        return lambda watch: watch
+    def observers(self, model: Any) -> Sequence[Observer]:
+        """What looks on at each CYCLE or SOLVE of its model, besides: other studies see more."""
+        return ()
 
     @property
     def made_of(self) -> dict[str, str]:

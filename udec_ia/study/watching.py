@@ -13,9 +13,10 @@ from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.deck_statements import Statement
 from udec_ia.deck.lines_and_calls import command_of
 from udec_ia.errors import UdecError
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
-from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.running import observer as running
 from udec_ia.study.clock import Clock
 from udec_ia.study.observed import NoValue, Start, State
 from udec_ia.study.reading import read, read_rule
@@ -35,7 +36,7 @@ class Observer:
         self._named, self._rules = read(run.quantities), [read_rule(text) for text in run.stop]
         asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
         self._start = Start(frozenset(one.place for one in asked if one.place is not None))
-        self._watched = run.watcher(model)
+        self._observers = () if rehearsal else run.observers(model)
         self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
         self._clock = Clock()
 
@@ -44,14 +45,9 @@ class Observer:
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.around = self._around
+        self.model.session.observers = (*self._observers, _Eye(self))
         monitor.run(text.splitlines(), name)
         monitor.stop()
-
-    def _around(self, watch: Watch | None) -> Watch:
-        """What watches a CYCLE or SOLVE that begins, around what does so anyway."""
-        inner = watch or Watch(self.model.array, [])
-        return _Eye(self, inner if self.rehearsal else self._watched(inner))
 
     @property
     def seconds(self) -> float:
@@ -169,38 +165,26 @@ class _Monitor(Monitor):
             self.ended = True
 
 
-class _Eye(Watch):
-    """Runs a CYCLE or SOLVE in the pieces that the observer asks for. inner: what watches the run else."""
+class _Eye(running.Observer):
+    """Ends a CYCLE or SOLVE when the observer of the study says so."""
 
-    def __init__(self, observer: Observer, inner: Watch) -> None:
-        self.observer, self.inner, self.done = observer, inner, 0
+    def __init__(self, observer: Observer) -> None:
+        self.observer, self.done = observer, 0
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
-
-    @property
-    def reached(self) -> bool:  # type: ignore[override]
-        """True when there are to be no more cycles."""
-        rehearsed = self.observer.rehearsal and self.done > 0
-        return rehearsed or self.inner.reached or self.observer.is_over()
-
-    def begin(self) -> None:
-        """The run is prepared."""
-        self.inner.begin()
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See running.Observer."""
+        self.done = 0
         self.observer.begin()
 
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-        """One piece of at most `n` cycles."""
-        completed = self.inner.run(self.observer.piece(n), laws, marks)
-        self.done += completed
-        if completed:
-            self.observer.ran()
-        return completed
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See running.Observer."""
+        return self.observer.piece(n)
 
-    def look(self) -> None:
-        """As Watch.look."""
-        self.inner.look()
+    def look(self, array: MainArray, cycles: int) -> None:
+        """See running.Observer."""
+        self.done += cycles
+        self.observer.ran()
 
-    def hand_on(self) -> int:
-        """As Watch.hand_on."""
-        return self.inner.hand_on()
+    def is_over(self) -> bool:
+        """See running.Observer."""
+        return (self.observer.rehearsal and self.done > 0) or self.observer.is_over()

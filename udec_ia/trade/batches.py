@@ -13,7 +13,8 @@ from udec_ia.trade.judge import Row
 
 SLICE = 0.05  # of the budget: what a batch is predicted to take, unless that is less than one run a process
 WRONG = 2.0  # times what was predicted, from which on the others of a word scheme are predicted anew
-HOPELESS = "last digits"  # how SOLVE ends where the words allow no smaller ratio (ops.run.unrest.STATES)
+COARSE = "the last digit of coordinates"  # how the warning of reals that allow no small ratio begins
+UNREST = "NOT REACHED"
 
 
 def turn(row: Row) -> tuple[bool, float]:
@@ -53,7 +54,8 @@ def hopeless(ahead: Sequence[Row], done: Sequence[Row], own: str) -> tuple[list[
     """
     for row in done:
         said = row.result.message if row.result else ""
-        if HOPELESS in said and HOPELESS not in own:
+        coarse = row.result and any(one.startswith(COARSE) for one in row.result.warnings)
+        if coarse and UNREST in said and UNREST not in own:
             setting = row.setting
             alike = [
                 one

@@ -14,17 +14,18 @@ steps, each as likely up as down, add up so.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
-from udec_ia.ops.run.watch import NO_MARKS, Around, Watch
 from udec_ia.reader.group_tables import addresses as listed
+from udec_ia.running.observer import Observer, between_cycles
 from udec_ia.study.runs import Run
 
 KICKS = 1000
@@ -49,10 +50,9 @@ class Noisy(Run):
         """See Run."""
         return super().made_of | {"noise": f"{self.seed} {self.fields} {self.cycles}"}
 
-    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
+    def observers(self, model: Any) -> Sequence[Observer]:
         """See Run."""
-        noise = Noise(model, self)
-        return lambda watch: _Kicked(noise, watch) if self.seed else watch
+        return (_Kicks(Noise(model, self)),) if self.seed else ()
 
 
 class Noise:
@@ -108,29 +108,23 @@ class Noise:
         return (first[:, None] + self._fields[kind]).ravel()
 
 
-class _Kicked(Around):
+class _Kicks(Observer):
     """Runs a CYCLE or SOLVE in pieces, with a kick after each."""
 
-    def __init__(self, noise: Noise, inner: Watch) -> None:
-        super().__init__(inner)
+    def __init__(self, noise: Noise) -> None:
         self.noise = noise
+        self._before: Any = None
 
-    def begin(self) -> None:
-        """As Watch.begin."""
-        super().begin()
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See Observer."""
         self.noise.begin()
 
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-        """As Watch.run."""
-        done, every = 0, self.noise.every
-        h = self.noise.model.array.h
-        while done < n and not self.inner.reached:
-            before = self.noise.reals()
-            ahead = min(n - done, every - int(h.ci[g.MCTOT]) % every)
-            completed = self.inner.run(ahead, laws, marks)
-            done += completed
-            if completed < ahead or h.ci[g.NERR] != 0 or h.ci[g.JPHASE] != g.AT_BLOCKS:
-                break
-            if h.ci[g.MCTOT] % every == 0:
-                self.noise.kick(before)
-        return done
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See Observer."""
+        self._before = self.noise.reals()
+        return min(n, self.noise.every - int(array.h.ci[g.MCTOT]) % self.noise.every)
+
+    def look(self, array: MainArray, cycles: int) -> None:
+        """See Observer."""
+        if between_cycles(array.h) and array.h.ci[g.MCTOT] % self.noise.every == 0:
+            self.noise.kick(self._before)

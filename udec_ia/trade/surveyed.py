@@ -7,7 +7,7 @@ it.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import thread_time
@@ -17,11 +17,12 @@ import numpy as np
 
 from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.heap.accessors import getr
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.timestep import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.ops.run.damped import damped
-from udec_ia.ops.run.timestep import bound, estimate
-from udec_ia.ops.run.watch import NO_MARKS, Watch
+from udec_ia.running.critical_step import bound, estimate
+from udec_ia.running.observer import Observer
+from udec_ia.running.stiffness_bound import damped_step
 from udec_ia.study.runs import Run
 
 SURVEY, TRACKS = "survey.json", "tracks.npz"
@@ -69,10 +70,9 @@ class Surveyed(Run):
         """See Run."""
         return super().made_of | {"survey": f"{self.rehearsed} {self.limits}"}
 
-    def watcher(self, model: Any) -> Callable[[Watch], Watch]:
+    def observers(self, model: Any) -> Sequence[Observer]:
         """See Run."""
-        found = Found(model)
-        return lambda watch: Survey(self, found, watch)
+        return (Survey(self, Found(model)),)
 
 
 class Found:
@@ -100,72 +100,59 @@ class Found:
             np.savez(self.model.out / TRACKS, times=np.array([time for time, _ in self.tracks]), **arrays)
 
 
-class Survey(Watch):
-    """Watches one CYCLE or SOLVE for `run`. inner: what watches it else."""
+class Survey(Observer):
+    """Observes the CYCLEs and SOLVEs of `run`."""
 
-    def __init__(self, run: Surveyed, found: Found, inner: Watch) -> None:
-        self.asked_for, self.found, self.inner = run, found, inner
-        self._made = not found.model.array.h.ci[g.LREADY]  # the time-step is made anew
-        self._segment: Segment | None = None
+    def __init__(self, run: Surveyed, found: Found) -> None:
+        self.asked_for, self.found = run, found
         self._marks: list[int] = []
+        self._clock = self._compiled = 0.0
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)
-
-    @property
-    def reached(self) -> bool:  # type: ignore[override]
-        """True when there are to be no more cycles."""
-        one, limit = self._segment, self.asked_for.rehearsed
-        return self.inner.reached or (one is not None and one.done > 1 and 0 < limit < one.seconds)
-
-    def begin(self) -> None:
-        """As Watch.begin."""
-        self.inner.begin()
-        array, found = self.found.model.array, self.found.segments
-        h = array.h
-        limits = (found[-1].estimate, found[-1].bound) if found else (0.0, 0.0)
-        if self.asked_for.limits and (self._made or not found):
-            safe = damped(h, bound(array).step)
-            limits = estimate(array).step, safe
-        asked, step = int(h.ci[g.NCYC]), float(h.cr[g.TDEL])
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See Observer."""
+        h, found = array.h, self.found.segments
+        asked = int(h.ci[g.NCYC])
         one = Segment(
             asked,
-            self.inner.ratio >= 0,
+            solves,
             float(h.cd[g.TIME]),
-            step,
+            float(h.cr[g.TDEL]),
             float(h.cr[g.FRAC]),
             bool(h.ci[g.LSAFE]),
-            *limits,
+            *((found[-1].estimate, found[-1].bound) if found else (0.0, 0.0)),
             scaled=bool(h.ci[g.LSCALE]),
         )
+        if self.asked_for.limits and (not found or found[-1].step != one.step):
+            one.estimate, one.bound = estimate(array).step, damped_step(h, bound(array).step)
         found.append(one)
-        self._segment = one
-        self._marks = [] if one.solve else sorted({round(asked * k / MARKS) for k in range(1, MARKS + 1)})
+        self._marks = [] if solves else sorted({round(asked * k / MARKS) for k in range(1, MARKS + 1)})
         self.found.look()
 
-    def run(self, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-        """As Watch.run: up to the next mark."""
-        one = self._segment
-        assert one is not None
-        ahead = [mark - one.done for mark in self._marks if mark > one.done]
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See Observer: up to the next mark."""
+        done = self.found.segments[-1].done
+        ahead = [mark - done for mark in self._marks if mark > done]
         if self.asked_for.rehearsed:
             n = min(n, REHEARSED)
-        clock, compiled = thread_time(), compile_seconds()
-        completed = self.inner.run(min([n, *ahead[:1]]), laws, marks)
-        one.seconds += max(thread_time() - clock - (compile_seconds() - compiled), 0.0)
-        one.done += completed
+        self._clock, self._compiled = thread_time(), compile_seconds()
+        return min([n, *ahead[:1]])
+
+    def look(self, array: MainArray, cycles: int) -> None:
+        """See Observer."""
+        one = self.found.segments[-1]
+        one.seconds += max(thread_time() - self._clock - (compile_seconds() - self._compiled), 0.0)
+        one.done += cycles
         if one.done in self._marks:
             self.found.look()
-        return completed
 
-    def look(self) -> None:
-        """As Watch.look."""
-        self.inner.look()
+    def is_over(self) -> bool:
+        """True if there are to be no more cycles."""
+        one, limit = self.found.segments[-1], self.asked_for.rehearsed
+        return one.done > 1 and 0 < limit < one.seconds
 
-    def hand_on(self) -> int:
-        """As Watch.hand_on, at the end of the CYCLE."""
+    def end(self, array: MainArray) -> None:
+        """See Observer."""
         self.found.write()
-        return self.inner.hand_on()
 
 
 def segments(folder: Path) -> list[Segment]:

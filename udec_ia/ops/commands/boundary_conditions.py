@@ -98,6 +98,7 @@ def boundary(
     fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
     pressure = (stress, xgrad, ygrad) if presses else None
     loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
+    _check_free(array.h, [target[0] for target in loads if target[2] == 0], xvel=xvel, yvel=yvel)
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     signal = find_function(array.h, function) if function is not None else 0
     require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
@@ -140,6 +141,16 @@ def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> Non
         raise UdecError(10, "FUNCTION beside SINE", advice, parameter="function")
     if not (condition or free):
         raise UdecError(26, "no velocity, and no force or stress other than 0", "BOUNDARY 0 9 0 1 YVEL=0")
+
+
+def _check_free(h: Memory, blocks: Iterable[int], **velocity: float | None) -> None:
+    """Error 28 if a fixed block or its grid-points are to move."""
+    moving = next((name for name, v in velocity.items() if v), None)
+    fixed = next((ib for ib in blocks if moving and iget(h, ib, g.KBFIX) == g.FIXED), None)
+    if fixed is not None:
+        x, y = float(getr(h, fixed, g.KX)), float(getr(h, fixed, g.KY))
+        advice = f"FREE a range with its centroid ({x:g}, {y:g}) first; the velocity then holds the block"
+        raise UdecError(28, f"block@{fixed} is fixed and would not move", advice, parameter=moving or "")
 
 
 def _inside(where: Range, x: float, y: float) -> bool:

@@ -105,7 +105,7 @@ def _end_damping_mode(h: Memory) -> None:
 def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = False) -> None:
     """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound.
 
-    scaled: inertial masses are scaled, and the fraction is of the safe bound with these (ops.run.scaling).
+    scaled: inertial masses are scaled (running.mass_scaling), and the fraction is of the bound with these.
     Error 26 while an account of the energy is kept: what scaled masses move with is no energy.
     """
     positive(array, f=f)

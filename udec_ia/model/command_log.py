@@ -1,0 +1,76 @@
+"""The log of a session: the commands that were obeyed, which can be written as the lines of a deck.
+
+A command given in Python is kept as it was called, and becomes lines on request; one of a deck is kept as its
+lines. Successive CYCLEs are one line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.deck.lines_and_calls import spell
+
+PLAIN = (bool, int, float, str, np.generic, type(None))
+
+
+class Step(NamedTuple):
+    """A call of a command, which can be repeated."""
+
+    method: Callable[..., object]
+    args: tuple[Any, ...]
+    named: dict[str, Any]
+
+    @property
+    def lines(self) -> list[str]:
+        """The command as lines of a deck."""
+        return spell(*self)
+
+    @property
+    def lasts(self) -> bool:
+        """True if nobody can change what it was given."""
+        return all(map(_is_plain, (*self.args, *self.named.values())))
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, PLAIN) or (type(value) is tuple and all(map(_is_plain, value)))
+
+
+class CommandLog:
+    """steps: commands, or lines of a deck. cycles: of the CYCLEs at the end, None if it does not end so."""
+
+    def __init__(self, lines: Sequence[str] = ()) -> None:
+        self.steps: list[str | Step] = [*lines]
+        self.cycles: int | None = None
+
+    def add(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """A command was obeyed."""
+        if method.__name__ == "cycle":
+            self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
+            return
+        step = Step(method, tuple(args), named)
+        self.add_lines([step] if step.lasts else step.lines)
+
+    def add_lines(self, lines: Sequence[str | Step]) -> None:
+        """Lines of a deck were obeyed."""
+        if self.cycles is not None:
+            self.steps.append(f"CYCLE {self.cycles}")
+        self.steps += lines
+        self.cycles = None
+
+    @property
+    def lines(self) -> list[str]:
+        """The lines of a deck that say what was done."""
+        last = [] if self.cycles is None else [f"CYCLE {self.cycles}"]
+        return [*self._step_lines(), *last]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy: commands become lines."""
+        return {"steps": self._step_lines(), "cycles": self.cycles}
+
+    def _step_lines(self) -> list[str]:
+        steps = ([one] if isinstance(one, str) else one.lines for one in self.steps)
+        return list(chain.from_iterable(steps))

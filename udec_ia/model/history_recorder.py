@@ -1,0 +1,76 @@
+"""What a session records: the numbers of its histories, and the results of its SOLVEs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.main_array import MainArray
+from udec_ia.ops.commands.history_definitions import define, named
+from udec_ia.running.history_series import Recording, Series
+from udec_ia.running.solve_result import Solution
+
+if TYPE_CHECKING:
+    from udec_ia.output.histories import Files
+
+
+class HistoryRecorder:
+    """series: the numbers of all histories. solutions: results of all SOLVEs, in order."""
+
+    def __init__(self) -> None:
+        self.series: list[Series] = []
+        self.solutions: list[Solution] = []
+        self.pictures = 0
+        self._files: Files | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy: open files stay with the original."""
+        return vars(self) | {"_files": None}
+
+    def add(
+        self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
+    ) -> list[Series]:
+        """New histories of `field`, every `n` cycles, of the groups at an address or at points."""
+        from udec_ia.reader.nearest_group import choose
+
+        what = named(field)
+        chosen = choose(array, what.group, field, address, at)
+        define(array, what, [one.address for one in chosen], n)
+        first = len(self.series)
+        Recording(array, self.series).look()
+        for series, one in zip(self.series[first:], chosen, strict=True):
+            series.place = one.place
+        return self.series[first:]
+
+    def write(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
+        """Write what was recorded to base.csv and base.h5, and report which groups have gone."""
+        if not self.series:
+            return []
+        from udec_ia.output.histories import Files
+
+        recording.look()
+        for one in recording.lost:
+            tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
+        if self._files is None or self._files.place != base.absolute():
+            self.close()
+            self._files = Files(base)
+        return self._files.write(self.series)
+
+    def close(self) -> None:
+        """The files of the histories are done."""
+        if self._files is not None:
+            self._files.close()
+
+    def plot(self, name: str, folder: Path, after: int = 0) -> list[Path]:
+        """Draw all histories, with a number greater than `after`; returns the files.
+
+        Error 26 if nothing was recorded yet.
+        """
+        from udec_ia.output.graph import draw
+
+        if not any(one.last_cycle >= 0 for one in self.series):
+            raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")
+        self.pictures = max(self.pictures, after) + 1
+        return draw(self.series, name, folder / f"{name}-history-{self.pictures}")

@@ -1,1 +1,0 @@
-"""What CYCLE and SOLVE do around the compiled cycle: order, time-step, watching, stopping."""

@@ -1,0 +1,105 @@
+"""The critical time-step: the 1980 estimate, and a bound that no mode exceeds (report 4.6).
+
+Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stiffness), the internal modes of
+simply-deformable blocks and the grid-points (kernels.drive.timestep). It is only approximate: a mass on
+several springs has a shorter period than on one.
+
+Bound: 2 min sqrt(m_i d_i / sum_j |K_ij| d_j), by the rows of the stiffness matrix (running.stiffness_bound).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from udec_ia.errors import ADVICE, UdecError
+from udec_ia.heap.accessors import Memory, getr, iget, integers
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
+from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
+from udec_ia.kernels.drive.timestep import addresses, soft_step
+from udec_ia.layout import offsets as g
+from udec_ia.running.mass_scaling import scale, scaled
+from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Limit, Rows, damped_step, rate_of, reals
+
+
+@OVERFLOWS
+def bound(array: MainArray) -> Limit:
+    """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
+    rows = Rows(array.h, even=bool(array.h.ci[g.LSCALE]))
+    return (scaled(array, rows) if array.h.ci[g.LSCALE] else rows).limit()
+
+
+@OVERFLOWS
+def estimate(array: MainArray) -> Limit:
+    """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
+    h = array.h
+    mass, at, massless = smallest_mass(h)
+    if massless:
+        m = iget(h, massless, g.KMAT)
+        detail = f"block@{massless} has material {m}, whose density is not set"
+        advice = f"PROPERTY MATERIAL={m} DENSITY=..."
+        if h.cr[g.DENS + m - 1] > 0:
+            detail, advice = f"block@{massless} has the mass {getr(h, massless, g.KBM):g}", ADVICE[20]
+        raise UdecError(12, detail, advice, group=int(massless))
+    stiffness = np.zeros(int(h.ci[g.MFREE]) + 1, h.cr.dtype)
+    joints = _stiffness(h)
+    ratio = float(mass) / joints
+    if h.ci[g.NSOFT]:
+        smallest, soft = soft_step(h, stiffness)
+        if float(smallest) < ratio:
+            ratio, at = float(smallest), soft
+    limit = Limit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
+    return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
+
+
+def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
+    """The least step of what viscous boundaries hold; stiffness: of the grid-points, by address."""
+    bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
+    if not len(bounds):
+        return Limit(math.inf, 0)
+    blocks, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
+    at = np.where(points > 0, points, blocks)
+    drag = np.zeros_like(stiffness, dtype=float)
+    cxx, cxy, cyy = (np.abs(reals(h, bounds, k)) for k in (g.KUCXX, g.KUCXY, g.KUCYY))
+    np.add.at(drag, at, np.maximum(cxx, cyy) + cxy)
+    mass = np.where(points > 0, reals(h, points, g.KGPM), reals(h, blocks, g.KBM))
+    rate = np.where(drag[at] > 0, rate_of(np.where(points > 0, stiffness[at], joints), drag[at], mass), 0.0)
+    fastest = int(rate.argmax())
+    return Limit(2 / float(rate[fastest]) if rate[fastest] else math.inf, int(at[fastest]))
+
+
+def _stiffness(h: Memory) -> float:
+    """Greatest joint stiffness of any contact; of a lone block the one that its contacts would have."""
+    if h.ci[g.NCON] == 0:
+        m = iget(h, int(h.ci[g.IBPNT]), g.KMAT)
+        joint = joints_of_materials(h, m)
+        stiffness = float(max(joint.kn, joint.ks))
+        if not stiffness > 0 and not h.ci[g.NSOFT]:
+            raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
+        return max(stiffness, 1e-300)
+    stiffness, undefined = greatest_stiffness(h)
+    if undefined:
+        m = material_of(h, undefined)
+        detail = f"contact@{undefined} has material {m}"
+        raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
+    return float(stiffness)
+
+
+def time_step(array: MainArray) -> float:
+    """FRAC times the estimate, or times the safe bound if asked for; error 28 if reals cannot hold it."""
+    critical = estimate(array).step
+    if array.h.ci[g.LSAFE]:
+        safe = scale(array) if array.h.ci[g.LSCALE] else bound(array).step
+        critical = damped_step(array.h, safe) if math.isfinite(safe) else critical
+    step = float(array.h.cr[g.FRAC]) * critical
+    reals = np.finfo(array.scheme.real_type)
+    if not reals.smallest_normal < step < reals.max:
+        raise UdecError(28, f"the time-step is {step:g} s", "look at DENSITY, KN, KS and FRACTION")
+    return step
+
+
+def fraction_in_words(h: Memory) -> str:
+    """The share of the critical time-step that is taken, and of which one."""
+    return f"{h.cr[g.FRAC]:.3g} of the {'safe bound' if h.ci[g.LSAFE] else 'estimate'}"

@@ -1,0 +1,167 @@
+"""CYCLE: prepare (INI), then run the calculation cycle in pieces (report 2.6).
+
+Between two pieces the observers of the run look on, its progress is reported, and a safe time-step is
+updated. The pieces are as long as fits a few reports a second. They have no influence on the results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from udec_ia.compiling.compile_time import working_time
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, getr, iget
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.masses import make_masses
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands import energy_account
+from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
+from udec_ia.ops.common.array_growth import keep_spare
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.laws.law_book import Bound, LawBook
+from udec_ia.running.critical_step import time_step
+from udec_ia.running.cycle_errors import SPOILING, check_finite, raise_error
+from udec_ia.running.history_series import Recording
+from udec_ia.running.mass_scaling import renew_relaxations
+from udec_ia.running.observer import Observer
+from udec_ia.running.safe_step_update import cycles_to_update, put_step, update_step
+from udec_ia.signals import poll
+
+REPORT_SECONDS = 0.2
+FIRST_PIECE = 10
+Report = Callable[[int], None]
+Action = Callable[[], None]
+
+
+def prepare(array: MainArray) -> None:
+    """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
+
+    Nothing is found anew unless a command has come since the last CYCLE: how many cycles a CYCLE has does not
+    change the digits of any.
+    Errors 11, 12, 13, 14, 16, 26 and 28.
+    """
+    h = array.h
+    if h.ci[g.NBLK] == 0:
+        raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
+    if h.ci[g.LREADY]:
+        check_strained_edges(array)
+        return
+    if h.ci[g.MCTOT] == 0:
+        make_masses(h, soft(array))
+    settle_default(array)
+    check_strained_edges(array)
+    _check_deformable(array)
+    renew_relaxations(array)
+    put_step(array, time_step(array))
+    h.ci[g.MSCALE] = h.ci[g.NMADE]
+    h.ci[g.LREADY] = 1
+
+
+def _check_deformable(array: MainArray) -> None:
+    """Error 26 for a fully-deformable block without zones, or a deformable one without stiffness."""
+    h = array.h
+    for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if h.ci[g.NSOFT] else ():
+        if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFZ) == 0:
+            place = f"({getr(h, ib, g.KX):g}, {getr(h, ib, g.KY):g})"
+            raise UdecError(26, f"block@{ib} at {place} has no zones", "GENERATE divides it", group=ib)
+        m = iget(h, ib, g.KMAT)
+        if iget(h, ib, HEAD) != g.MRIG and not h.cr[g.ALAM1 + m - 1] > 0:
+            detail = f"block@{ib} is deformable, and its material {m} has neither BULK nor G"
+            raise UdecError(26, detail, f"PROPERTY MATERIAL={m} BULK=... G=...", group=ib)
+
+
+def cycle(
+    array: MainArray,
+    n: int,
+    *,
+    recording: Recording | None = None,
+    observers: Sequence[Observer] = (),
+    laws: LawBook | None = None,
+    report: Report | None = None,
+    every: int | None = None,
+    prepared: Action | None = None,
+    settled: Action | None = None,
+) -> int:
+    """Run `n` cycles. Returns how many were completed.
+
+    recording: of `array`; it may end the run at its force ratio. observers: look on after each piece.
+    laws: the user's laws; error 9 if a constitutive number without a law is in use.
+    report: called with the number of cycles done so far, every `every` cycles or a few times a second.
+    prepared: called before the first cycle, when the time-step is known.
+    settled: called after every piece of the run, before its errors are raised: what was computed is to stay.
+    Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
+    too coarse for contacts, or a force has grown beyond them: the cycle in which it did is completed.
+    """
+    prepare(array)
+    if prepared is not None:
+        prepared()
+    bound = (laws or LawBook()).bind(array)
+    keep_spare(array)
+    array.h.ci[g.NCYC] = n
+    # a run that was interrupted may have left an error behind, or a wish for memory
+    array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
+    energy_account.begin(array)
+    recording = recording or Recording(array, [])
+    try:
+        try:
+            done = _run(array, n, bound, recording, observers, report, every, settled or (lambda: None))
+        finally:
+            finish(array, recording)
+            for one in observers:
+                one.end(array)
+        check_finite(array)
+    except UdecError as error:
+        if error.number in SPOILING:
+            array.h.ci[g.NSPOIL], array.h.ci[g.MCSPOI] = error.number, array.h.ci[g.MCTOT]
+        raise
+    return done
+
+
+def finish(array: MainArray, recording: Recording) -> None:
+    """Complete the sums and series of a run that ends, whatever ended it. A repetition does no harm."""
+    energy_account.end(array)
+    recording.hand_on()
+
+
+def _run(
+    array: MainArray,
+    n: int,
+    bound: Bound,
+    recording: Recording,
+    observers: Sequence[Observer],
+    report: Report | None,
+    every: int | None,
+    settled: Action,
+) -> int:
+    """`n` cycles, in pieces. Returns how many were completed."""
+    recording.begin(n)
+    for one in observers:
+        one.begin(array, recording.ratio >= 0)
+
+    def goes_on(goal: int) -> bool:
+        return done < goal and not recording.reached and not any(one.is_over() for one in observers)
+
+    done, piece = 0, FIRST_PIECE
+    settled()
+    while goes_on(n):
+        poll()
+        start = working_time()
+        before, target = done, min(done + piece, n, n if every is None else done - done % every + every)
+        while goes_on(target):
+            cycles = cycles_to_update(array, target - done)
+            for one in observers:
+                cycles = one.cycles_ahead(array, cycles)
+            completed = recording.run(cycles, (soft(array), bound.blocks, bound.joints))
+            done += completed
+            settled()
+            for one in observers if completed else ():
+                one.look(array, completed)
+            raise_error(array, bound.book)
+            if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
+                update_step(array)
+        if report is not None and (every is None or done % every == 0 or done == n):
+            report(done)
+        seconds = max(working_time() - start, 1e-6)
+        piece = max(1, min(int((done - before) * REPORT_SECONDS / seconds), 4 * piece))
+    return done

@@ -1,0 +1,42 @@
+"""The cycles of a run that was prepared, repeated cycle by cycle: the same words, bit for bit.
+
+CYCLE prepares, warns, records and reports. Nothing of that is done here. Whatever the run stopped for, its
+replay stops for as well.
+"""
+
+from __future__ import annotations
+
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.passes import TUNNELLING, passes
+from udec_ia.kernels.drive.watch import run_watched
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.running.cycle_errors import raise_error
+from udec_ia.running.history_series import NEVER, NO_MARKS, nothing_recorded
+from udec_ia.running.safe_step_update import cycles_to_update, update_step
+
+
+class Replay:
+    """Cycles of `array`, which is in the midst of a run. laws: those of that run."""
+
+    def __init__(self, array: MainArray, laws: LawBook) -> None:
+        self.array = array
+        self._bound = laws.bind(array)
+        self._given = soft(array), self._bound.blocks, self._bound.joints
+        self._recorded = nothing_recorded()
+        self._passes = passes(array.h, self._given[0], (), NEVER, False, NO_MARKS)
+
+    def step(self, n: int = 1) -> None:
+        """`n` cycles. Raises the UdecError that one of them raised in the run."""
+        done = 0
+        while done < n:
+            h = self.array.h
+            cycles = cycles_to_update(self.array, n - done)
+            completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, NO_MARKS, self._passes)
+            done += int(completed)
+            raise_error(self.array, self._bound.book)
+            if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
+                update_step(self.array)
+            if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[TUNNELLING] == 0:
+                self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

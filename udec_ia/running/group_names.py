@@ -1,0 +1,43 @@
+"""How messages name a block, a grid-point, a zone or a contact, and its place."""
+
+from __future__ import annotations
+
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget
+from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
+from udec_ia.layout import offsets as g
+
+
+def name_of(h: Memory, address: int) -> str:
+    """The name of a group: `block@163`, or `grid-point@5917 of block@163`, or one of its zones."""
+    ib, what = owner(h, address)
+    if what == NOBODY:
+        return f"@{address}"
+    if what == BLOCK:
+        return f"block@{ib}"
+    if what == STRAIN:
+        return f"the strain of block@{ib}"
+    return f"{'grid-point' if what == GRIDPOINT else 'zone'}@{address} of block@{ib}"
+
+
+def name_and_place(h: Memory, address: int) -> str:
+    """The same, with the centroid of the block."""
+    ib, what = owner(h, address)
+    at = f" at ({getr(h, ib, g.KX):.4g}, {getr(h, ib, g.KY):.4g})" if what != NOBODY else ""
+    return name_of(h, address) + at
+
+
+def strained_name(h: Memory, iz: int) -> str:
+    """Name and centroid of zone `iz` with its block, or of simply-deformable block `iz`."""
+    if iget(h, iz, HEAD) == g.MSDEF:
+        return f"block@{iz} at ({getr(h, iz, g.KX):g}, {getr(h, iz, g.KY):g})"
+    corners = [iget(h, iz, g.KZG, i) for i in range(3)]
+    x, y = (sum(float(getr(h, ig, k)) for ig in corners) / 3 for k in (g.KXG, g.KYG))
+    return f"{name_of(h, iz)} at ({x:g}, {y:g})"
+
+
+def contact_name(h: Memory, ic: int) -> str:
+    """Contact `ic`, its blocks and its place."""
+    return (
+        f"contact@{ic} of block@{iget(h, ic, g.KB1)} and block@{iget(h, ic, g.KB2)} at "
+        f"({getr(h, ic, g.KXC):.4g}, {getr(h, ic, g.KYC):.4g})"
+    )

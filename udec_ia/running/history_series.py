@@ -1,0 +1,195 @@
+"""The series of numbers that histories record, and the runs of cycles that fill them.
+
+A compiled loop fills a block of rows (kernels.drive.watch); between two pieces of a run the rows are handed
+on to the series. Rows that were handed on before are passed over, so nothing is lost or doubled when Ctrl-C
+comes between the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.cycle import has_to_judge
+from udec_ia.kernels.drive.passes import passes
+from udec_ia.kernels.drive.recording import measures, record
+from udec_ia.kernels.drive.watch import run_watched
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.history_definitions import Definition, definitions, places
+
+ROWS = 1024  # rows that a compiled piece can fill
+SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
+NEVER = -1.0  # force ratio that is never reached
+NO_MARKS = np.zeros(0, np.uint8)
+NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
+
+
+def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
+    """Up to `n` cycles of which nothing is recorded, by the same machine code; returns how many were done.
+
+    laws, marks: see kernels.drive.watch.run_watched.
+    """
+    called = passes(h, laws[0], (), NEVER, False, marks)
+    return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
+
+
+def nothing_recorded() -> tuple[Any, Any, Any]:
+    """What run_watched is given where nothing is recorded: places, rows and count."""
+    return NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
+
+
+class Series:
+    """The numbers of one history.
+
+    number: of the history. name, unit, text: of the field. group: kind and last address of its group, "" if
+    it has none. place: where the group was when it was chosen by a point, else "". lost: True once the
+    group has disappeared and the user was warned.
+    """
+
+    def __init__(self, number: int, definition: Definition, place: str = "") -> None:
+        field = definition.what.field
+        self.number = number
+        self.name, self.unit, self.text = field.name, "" if field.unit == "-" else field.unit, field.text
+        self.group = ""
+        self.place = place
+        self.every = definition.every
+        self.lost = False
+        self.count = 0  # numbers recorded
+        self._parts = [np.zeros((0, 3))]
+        self.follow(definition)
+
+    def follow(self, definition: Definition) -> None:
+        """Take the address that the group has now; one that has gone keeps its last name."""
+        if definition.address:
+            self.group = f"{definition.what.group}@{definition.address}"
+
+    @property
+    def title(self) -> str:
+        """What is recorded, in a few words."""
+        return f"{self.number}: {self.name}" + (f" of {self.group}" if self.group else "")
+
+    def __str__(self) -> str:
+        place = f" at {self.place}" if self.place else ""
+        cycles = "cycle" if self.every == 1 else f"{self.every} cycles"
+        return f"history {self.title}{place}, every {cycles}: {self.text}"
+
+    @property
+    def numbers(self) -> Any:
+        """All that was recorded, one row each: cycle, time in s, value."""
+        self._parts = [np.concatenate(self._parts)]
+        return self._parts[0]
+
+    def since(self, n: int) -> Any:
+        """What was recorded after the first `n` numbers, as rows of `numbers`."""
+        parts, missing = [np.zeros((0, 3))], self.count - n
+        for part in reversed(self._parts):
+            if missing <= 0:
+                break
+            parts.append(part[-missing:])
+            missing -= len(parts[-1])
+        return np.concatenate(parts[::-1])
+
+    @property
+    def last_cycle(self) -> int:
+        """The last cycle that was recorded; -1 before the first one."""
+        last = next((part for part in reversed(self._parts) if len(part)), None)
+        return -1 if last is None else int(last[-1, 0])
+
+    def until(self, cycle: int) -> None:
+        """Forget what was recorded after that cycle."""
+        self._parts = [self.numbers[self.numbers[:, 0] <= cycle]]
+        self.count = len(self._parts[0])
+
+    def add(self, rows: Any) -> None:
+        """Take in rows of cycle, time and value that were recorded later than all others."""
+        new = rows[rows[:, 0] > self.last_cycle]
+        if len(new):
+            self._parts.append(new)
+            self.count += len(new)
+
+
+Marks = Callable[[Memory, int], Any]  # bytes for the marks of contacts, of a run of so many cycles to come
+
+
+class Recording:
+    """Runs cycles of `array` and adds what is recorded to `series`.
+
+    ratio: to within which the model must be at rest to stop. mean: the mean unbalanced force counts, not the
+    greatest. marks: of contacts that open and close (kernels.drive.openings).
+    reached: True when the model was at rest after a cycle of this run: forces are those of the present
+    properties, loads and laws only when the contacts have been passed through with them.
+    lost: those of `series` whose groups have disappeared since they were last looked at.
+    """
+
+    def __init__(
+        self,
+        array: MainArray,
+        series: list[Series],
+        ratio: float = NEVER,
+        mean: bool = False,
+        marks: Marks = lambda h, n: NO_MARKS,
+    ) -> None:
+        self.array = array
+        self.series = series
+        self.ratio = float(ratio)  # a kernel is compiled for one type
+        self.mean = mean
+        self.reached = False
+        self.lost: list[Series] = []
+        self._marks = marks
+        self._last = 0  # cycle that the run ends with
+        self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
+
+    def begin(self, n: int) -> None:
+        """Record the state before the first of `n` cycles, groups being where they will stay."""
+        self._last = int(self.array.h.ci[g.MCTOT]) + n
+        self.look()
+        self._places = places(self.array)
+        self._rows = np.empty((ROWS, 2 + len(self.series)))
+        if len(self._places):
+            record(self.array.h, self._places, self._rows, self._count, measures(self.array.h))
+        self.hand_on()
+
+    def run(self, n: int, laws: Any) -> int:
+        """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
+
+        laws: see kernels.drive.watch.run_watched.
+        """
+        h, done, full = self.array.h, 0, True
+        recorded = self._places, self._rows, self._count
+        marks = self._marks(h, self._last - int(h.ci[g.MCTOT]))
+        called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio, self.mean, marks)
+        while done < n and full:
+            try:
+                completed, self.reached = run_watched(h, n - done, laws, self.ratio, *recorded, marks, called)
+            finally:
+                full = self.hand_on() == ROWS
+            done += int(completed)
+            if full and has_to_judge(h):
+                break
+        return done
+
+    def look(self) -> None:
+        """Find where the groups are now, and which have disappeared."""
+        for number, definition in enumerate(definitions(self.array), 1):
+            if number > len(self.series):
+                self.series.append(Series(number, definition))
+            series = self.series[number - 1]
+            series.follow(definition)
+            if definition.lost and not series.lost:
+                series.lost = True
+                self.lost.append(series)
+
+    def hand_on(self) -> int:
+        """Add the rows that are filled to the series; returns the number of rows."""
+        if self._count[0] == 0:
+            return 0
+        rows = self._rows[: self._count[0]].copy()
+        for i, series in enumerate(self.series):
+            due = rows[:, 0] % series.every == 0
+            series.add(rows[due][:, [0, 1, 2 + i]])
+        self._count[0] = 0
+        return len(rows)

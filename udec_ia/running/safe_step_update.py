@@ -1,0 +1,63 @@
+"""A safe time-step in a run: it is updated when contacts have been made, and shortened if need be.
+
+FRACTION f SAFE takes f of a bound that holds for the present contacts. The bound is found anew in the very
+cycle in which more contacts have been made, still open (in large models a few cycles later:
+kernels.drive.cycle), and every 1000 cycles, as blocks turn, slide and strain. A step that is longer than f of
+it becomes f of it, for the rest of the run: a step that only ever shrinks does not go to and fro as contacts
+come and go. When an update is due depends on the number of the cycle and the state alone, so that it does not
+matter how cycles are cut into CYCLEs.
+
+Masses that are scaled are scaled anew instead, every hundred cycles (running.mass_scaling).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.drive.cycle import has_to_judge
+from udec_ia.layout import offsets as g
+from udec_ia.running.critical_step import bound
+from udec_ia.running.mass_scaling import RESCALE, scale_anew
+from udec_ia.running.stiffness_bound import damped_step
+
+JUDGE = 1000  # cycles
+
+
+def cycles_to_update(array: MainArray, n: int) -> int:
+    """Cycles, at most `n`, until the step or the masses may be due for an update."""
+    ci = array.h.ci
+    every = RESCALE if ci[g.LSCALE] else JUDGE if ci[g.LSAFE] else n
+    return min(n, every - int(ci[g.MCTOT]) % every)
+
+
+def update_step(array: MainArray) -> None:
+    """Shorten a safe time-step, or scale masses anew, if that is due between two cycles."""
+    h = array.h
+    if h.ci[g.LSCALE]:
+        if h.ci[g.MCTOT] % RESCALE == 0:
+            scale_anew(array)
+    elif h.ci[g.LSAFE] and (has_to_judge(h) or h.ci[g.MCTOT] % JUDGE == 0):
+        h.ci[g.MSCALE] = h.ci[g.NMADE]
+        step = float(h.cr[g.FRAC]) * damped_step(h, bound(array).step)
+        if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
+            put_step(array, step)
+
+
+def put_step(array: MainArray, step: float) -> None:
+    """Set the time-step to `step`, and the factors of damping that follow from it.
+
+    Errors 13 and 16 if damping is too strong for it.
+    """
+    h = array.h
+    h.cr[g.TDEL] = step
+    for alpha, con1, con2, number in ((g.ALPHA, g.CON1, g.CON2, 13), (g.ALPB, g.C1B, g.C2B, 16)):
+        half = h.cr[alpha] * h.cr[g.TDEL] / 2
+        if half >= 1:
+            detail = (
+                f"the damping coefficient {h.cr[alpha]:g} times the time-step {h.cr[g.TDEL]:g} is not below 2"
+            )
+            raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
+        h.cr[con1] = 1 - half
+        h.cr[con2] = 1 / (1 + half)
