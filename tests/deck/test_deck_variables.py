@@ -27,7 +27,9 @@ CYCLE $N
 SLIP = "PROP MAT=1 F=$F\n"
 
 
-def told(deck: str, values: Values | None = None) -> list[tuple[str, tuple[object, ...], dict[str, object]]]:
+def obeyed_calls(
+    deck: str, values: Values | None = None
+) -> list[tuple[str, tuple[object, ...], dict[str, object]]]:
     """The calls that a deck makes, behind START."""
     model = Recorder()
     run_deck(model, "START\n" + deck, io.StringIO(), values)
@@ -55,7 +57,7 @@ def refused(deck: str, values: Values | None = None) -> UdecError:
     ],
 )
 def test_values_are_put_in(deck: str, values: Values, friction: float) -> None:
-    assert told(deck, values) == [("property", (), {"material": 1, "friction": friction})]
+    assert obeyed_calls(deck, values) == [("property", (), {"material": 1, "friction": friction})]
 
 
 @pytest.mark.parametrize(
@@ -69,7 +71,7 @@ def test_values_are_put_in(deck: str, values: Values, friction: float) -> None:
     ],
 )
 def test_values_are_put_into_names_of_files(line: str, path: str) -> None:
-    assert told(f"{line}\nFRAC $F\n", {"F": 7})[0] == ("save", (), {"path": Path("results") / path})
+    assert obeyed_calls(f"{line}\nFRAC $F\n", {"F": 7})[0] == ("save", (), {"path": Path("results") / path})
 
 
 @pytest.mark.parametrize(
@@ -168,7 +170,7 @@ def test_a_deck_with_variables_is_the_deck_with_their_values(
     names = [f"${'XY'[k]}" if variable else text for k, (text, variable) in enumerate(numbers)]
     values = {"XY"[k]: text for k, (text, variable) in enumerate(numbers) if variable}
     line, plain = between.join(["GRAVITY", *names]), between.join(["GRAVITY", *(one for one, _ in numbers)])
-    assert told(line, values) == told(plain)
+    assert obeyed_calls(line, values) == obeyed_calls(plain)
     one, two = refused(line + " BAD", values), refused(plain + " BAD")
     assert one.column - len(line) == two.column - len(plain)
 

@@ -16,9 +16,9 @@ from udec_ia.advice.damping_report import what_damps
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
 from udec_ia.kernels.geometry.tolerances import edges
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.generate_zones import inertia_ratio
@@ -171,8 +171,8 @@ def check_laws(array: MainArray, groups: Groups = listed) -> Iterator[Remark]:
         return
     blocks, contacts = groups(array, "block"), groups(array, "contact")
     followers = [
-        integers(h, groups, material)[integers(h, groups, number) > 1]
-        for groups, material, number in ((blocks, g.KMAT, g.KCONS), (contacts, g.KCM, g.KCC))
+        integers(h, blocks, g.KMAT)[integers(h, blocks, g.KCONS) > 1],
+        materials_of(h, contacts)[integers(h, contacts, g.KCC) > 1],
     ]
     for m in np.setdiff1d(integers(h, blocks, g.KMAT), np.concatenate(followers)):
         if m in given:

@@ -548,8 +548,8 @@ class Model:
         (running/static_relaxation.py).
         criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
-        The ratio: that force over the mean of those that are carried (drive.unbalanced); it is looked at
-        every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
+        The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
+        at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
         strain energy is not greater than `ratio` either. What is returned is true if that was reached.
         """
         session = self.session

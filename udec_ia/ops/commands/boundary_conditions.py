@@ -1,4 +1,4 @@
-"""BOUNDARY: boundary conditions (kernels.body.bounds).
+"""BOUNDARY: boundary conditions (kernels.body.boundary_conditions).
 
 Velocities and forces act on the grid-points of fully-deformable blocks that lie in the range, and on rigid
 and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges that have both
@@ -21,8 +21,8 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.timestep import addresses
-from udec_ia.kernels.geometry.ranges import edges_between, points_between
+from udec_ia.kernels.geometry.range_selection import edges_between, points_between
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, chain, check_range, why_nothing

@@ -22,10 +22,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.masses import share_mass
+from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import carry_corners
-from udec_ia.kernels.geometry.shape import crad, geo
-from udec_ia.kernels.links.lists import is_corner
+from udec_ia.kernels.geometry.block_shape import crad, geo
+from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.split.spli import corner_on_edge
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
