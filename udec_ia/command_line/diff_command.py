@@ -64,7 +64,6 @@ def _called(args: argparse.Namespace) -> tuple[str, str]:
 
 
 def _diff(args: argparse.Namespace) -> Listing | Tables:
-    from udec_ia.heap.freed_memory import keep_freed
     from udec_ia.heap_tools.comparison_report import diff, raw
     from udec_ia.restart import see
 
