@@ -18,7 +18,7 @@ import pytest
 from udec_ia import Model
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.memory_use import heap_map
 from udec_ia.layout import offsets as g
 from udec_ia.output import history_files as histories
 from udec_ia.output.drawn_outlines import snapshot

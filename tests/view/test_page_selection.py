@@ -6,7 +6,7 @@ import pytest
 from support.headless_browser import Browser
 from support.view_page import ViewCase, addresses, arrived, inked, needs_browser, on_map, on_picture, selected
 
-from udec_ia.heap_tools.all_pointers import who
+from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 

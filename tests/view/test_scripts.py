@@ -24,12 +24,11 @@ from support.replayable_steps import blocks, outline
 from udec_ia import Model
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.heap_tools.all_pointers import who
+from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import domain_polygons
-from udec_ia.reader.atlas import JUNK, KINDS, Atlas
+from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, Atlas, called
 from udec_ia.reader.field_rows import NOT_ALLOWED, meaning
-from udec_ia.reader.group_names import ASTRAY, called
 from udec_ia.view.view_page import LIMIT, script
 from udec_ia.view.view_states import state
 from udec_ia.view.view_tables import tables

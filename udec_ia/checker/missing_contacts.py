@@ -24,12 +24,11 @@ from math import hypot, isqrt
 import numpy as np
 
 from udec_ia.checker.checked_state import State
-from udec_ia.checker.contact_overlaps import Touches
+from udec_ia.checker.contact_places import Touches
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.block_outlines import Outlines, in_rounded
 from udec_ia.kernels.audit.outline_intersections import EDGE, crossing, lonely_meetings
-from udec_ia.reader.field_reading import HOSTS, Numbers
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import HOSTS, Numbers, told
 
 CHUNK = 100_000  # pairs of blocks looked at together
 AROUND = 8  # directions in which it is looked whether a block holds a point

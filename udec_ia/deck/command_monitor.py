@@ -267,7 +267,7 @@ def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
-        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
 
