@@ -25,7 +25,7 @@ from naive.stiffness import Scene  # noqa: E402
 
 from safe_step_picture import dots  # noqa: E402
 from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.advice.damping_report import damped  # noqa: E402
+from udec_ia.running.stiffness_bound import damped_step  # noqa: E402
 from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 from udec_ia.ops.common.block_ranges import chain  # noqa: E402
@@ -209,7 +209,7 @@ def look(name: str) -> list[str | float]:
     while high - low > FINE:
         middle = (low + high) / 2
         low, high = (low, middle) if grows(middle * limit, state) else (middle, high)
-    safe = damped(m.h, bound(m.array).step)
+    safe = damped_step(m.h, bound(m.array).step)
     return [name, limit, low, safe / limit, estimate(m.array).step / limit]
 
 

@@ -118,10 +118,10 @@ def test_why_there_is_no_value(quantity: str, reason: str, tmp_path: Path) -> No
 
 
 def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
-    texts = ("solve.reached", "solve.ratio", "solve.cycles")
+    texts = ("solve.reached", "solve.ratio", "solve.cycles", "solve.fallen")
     deck = FALL.replace("CYCLE 100", "SOLVE 1E-3 LIMIT 3")
-    (reached, ratio, cycles), _ = worth(tmp_path, *texts, deck=deck)
-    assert (reached, cycles) == (0, 3)
+    (reached, ratio, cycles, fallen), _ = worth(tmp_path, *texts, deck=deck)
+    assert (reached, cycles, fallen) == (0, 3, 0)
     assert ratio > 1e-3
 
 

@@ -148,7 +148,8 @@ class OfSolve(Quantity):
         """See Quantity."""
         if not state.solutions:
             raise NoValue("there was no SOLVE")
-        return float(getattr(state.solutions[-1], self.name))
+        found = getattr(state.solutions[-1], self.name)
+        return float(len(found) if self.name == "fallen" else found)
 
 
 def _groups(state: State, kind: str, where: str) -> Any:

@@ -7,7 +7,7 @@
     count block where KXD > 0.1
     last history 1                            or max, min, mean
     energy.friction                           a line of the account of the energy
-    solve.reached, solve.ratio, solve.cycles, solve.motion      of the last SOLVE
+    solve.reached, solve.ratio, solve.cycles, solve.motion, solve.fallen      of the last SOLVE
 
 NAME = QUANTITY gives it a name of its own. A rule is a quantity, a comparison and a number.
 """
@@ -48,7 +48,7 @@ COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "!=": operator.ne,
 }
 OTHER_NAMES = {"time": "TIME", "cycles": "MCTOT"}
-SOLUTION = ("reached", "ratio", "cycles", "motion")
+SOLUTION = ("reached", "ratio", "cycles", "motion", "fallen")
 ENERGIES = (*Balance._fields, "strain", "residual", "throughput")
 FORMS = (
     "write time, block(5, 5).KY, max contact.KCFN where ..., count block where ..., last history 1, "
