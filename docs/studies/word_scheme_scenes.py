@@ -178,7 +178,7 @@ def times(models: dict[str, Model]) -> dict[str, float]:
     found: dict[str, list[float]] = {name: [] for name in models}
     for _ in range(TURNS):
         for name, m in models.items():
-            m.take_up(begin[name].copy(), [])
+            m.session.return_to(begin[name].copy(), [])
             m.cycle(20)
             start = process_time()
             m.cycle(slices[name])

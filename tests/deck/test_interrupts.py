@@ -20,8 +20,8 @@ from udec_ia import Model, UdecError
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MCTOT
+from udec_ia.model.undo import Undo
 from udec_ia.signals import Terminated, dealt_with, hold, passing, poll, terminate
-from udec_ia.transaction import Undo
 
 ROOT = Path(__file__).parents[2]
 
@@ -196,9 +196,9 @@ def test_ctrl_c_in_a_short_command_ends_the_run_after_it(
     with pytest.raises(KeyboardInterrupt, match=r"rescue\.h5") as caught:
         run_deck(m, f"{line}\nCYCLE 10\n", io.StringIO())
     monkeypatch.undo()
-    assert m.deck_log[-1] == line
+    assert m.session.deck_log[-1] == line
     other = Model.restore(str(caught.value))
-    assert other.deck_log == m.deck_log
+    assert other.session.deck_log == m.session.deck_log
     assert state(other)["words"] == state(m)["words"]
     assert m.array.h.ci[MCTOT] == 0
 

@@ -12,6 +12,7 @@ from support.mechanics_scenes import side_by_side
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.layout.offsets import JPHASE, KX, MTOP, TDEL
+from udec_ia.model.model_session import Session
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_what_is_written_soundly_stays_and_reading_costs_no_proof(monkeypatch: p
     m = side_by_side()
     m.cycle(5)
     proofs = []
-    monkeypatch.setattr(Model, "_prove", lambda self: proofs.append(1) or setattr(self, "_touched", False))
+    monkeypatch.setattr(Session, "prove", lambda self: proofs.append(1) or setattr(self, "written", False))
     for _ in range(3):
         m.cycle(int(1 + 0 * m.h.cr[TDEL] + m.h.ia[:5].sum() * 0))
     assert proofs == []

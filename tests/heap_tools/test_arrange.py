@@ -116,9 +116,9 @@ def test_an_open_frame_follows(monkeypatch: pytest.MonkeyPatch) -> None:
     m.plot(0, contacts=True, domains=True, displacements=True)
     large(monkeypatch)
     m.cycle(0)
-    assert m._plots is not None
-    assert m._plots.frame is not None
-    (state,) = m._plots.frame.states
+    assert m.session.plots is not None
+    assert m.session.plots.frame is not None
+    (state,) = m.session.plots.frame.states
     now = snapshot(m.h, contacts=True, domains=True, inside=True)
     assert state.contacts is not None
     assert state.field is not None

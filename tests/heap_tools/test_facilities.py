@@ -262,7 +262,7 @@ def test_the_price_is_what_a_cycle_takes_more(monkeypatch: pytest.MonkeyPatch) -
 def test_words_are_those_that_running_without_sets_free() -> None:
     """As run; what cannot be run without says why: here the block would have no zones left to hold it."""
     m = every_kind()
-    rows = {row[0]: row for row in costs(m.array, m.laws, seconds=0.0).rows}
+    rows = {row[0]: row for row in costs(m.array, m.session.laws, seconds=0.0).rows}
     words = used(m)
     assert {name: rows[name][1] for name in words if name != "FDEF"} == {
         name: words[name] for name in words if name != "FDEF"

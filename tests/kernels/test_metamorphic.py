@@ -51,7 +51,7 @@ def play(build: str, between: Between, folder: Any) -> tuple[dict[str, Any], lis
     for step in STEPS:
         between(m)
         m.forget_boxes()  # which SPLIT keeps by address
-        m.undo.release()
+        m.session.undo.release()
         step(m)
     assert int(m.h.ci[g.NBROKE]) > 0
     assert [len(one.numbers) for one in m.histories()] == [7, 7, 7, 22]

@@ -154,7 +154,10 @@ def test_a_cut_leaves_what_the_reals_resolve_of_the_longest_edge(build: str) -> 
             if width < 1:
                 error = too_fine(model, "split", x - inwards, -6, x - inwards, 6)
                 assert error.number == 27
-                assert f"shorter than {least:g}, the finest for {model.scheme.real_bits}-bit" in error.detail
+                assert (
+                    f"shorter than {least:g}, the finest for {model.array.scheme.real_bits}-bit"
+                    in error.detail
+                )
             assert model.split(x, -6, x, 6) == 1
         assert model.check() == []
         model.fix(-540, 540, -5, 5)

@@ -384,15 +384,15 @@ def test_a_restart_file_knows_its_laws(tmp_path: Path, caplog: pytest.LogCapture
     model = Model(constitutive=law, out=tmp_path)
     model.start()
     assert "law       clj2 of law.py, sha256 " in info(model.save(tmp_path / "one.h5"))
-    assert Model.restore(tmp_path / "one.h5").laws.record() == model.laws.record()
+    assert Model.restore(tmp_path / "one.h5").session.laws.record() == model.session.laws.record()
     law.write_text(JOINT + "    return 0.0, 0.0\n")
     Model.restore(tmp_path / "one.h5", constitutive=law)
     assert "clj2 of law.py differs from" in caplog.text
     model.start()
     model.restart(tmp_path / "one.h5")
-    assert model.laws.recorded == model.laws.record()
+    assert model.session.laws.recorded == model.session.laws.record()
     model.start()
-    assert model.laws.recorded == {}
+    assert model.session.laws.recorded == {}
 
 
 def test_a_law_of_a_restart_file_is_asked_for_first(tmp_path: Path) -> None:

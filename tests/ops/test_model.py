@@ -127,6 +127,17 @@ def test_every_command_has_its_method() -> None:
     assert {command.name for command in COMMANDS} - {"default"} <= methods  # which is for decks alone
 
 
+def test_every_public_name_is_documented() -> None:
+    """In docs/python.md, which names nothing else; a user may call what it names."""
+    page = (ROOT / "docs/python.md").read_text()
+    tables = page[page.index("## Commands") : page.index("## Copies")]
+    named = {
+        name for row in tables.splitlines() if row.startswith("| `") for name in re.findall(r"`(\w+)`", row)
+    }
+    public = {name for name in {*dir(Model), *vars(Model())} if not name.startswith("_")}
+    assert named - {"None", "udec_ia"} == public
+
+
 def test_help_and_end_are_those_of_a_deck(tmp_path: Path) -> None:
     m = Model(out=tmp_path)
     shown = m.run("HELP\nHELP prop\nSTART\n")
@@ -170,7 +181,7 @@ def test_a_number_that_32_bits_cannot_hold_is_refused(build: str, line: str, tmp
 def test_a_size_that_is_no_integer_is_refused(mtop: object) -> None:
     with pytest.raises(TypeError, match="mtop is a number of words, an integer, not "):
         Model(mtop=mtop)  # type: ignore[arg-type]
-    assert Model(mtop=np.int64(1000)).mtop == 1000  # type: ignore[arg-type]
+    assert Model(mtop=np.int64(1000)).session.mtop == 1000  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["nothere.dat", "no where/nothere.dat", "P.dat", "run-2.d"])
@@ -206,6 +217,20 @@ def test_paths_start_from_the_working_directory_and_in_a_deck_from_out(
     written = sorted(path.as_posix() for path in Path().rglob("*.h5"))
     assert written == ["here.h5", "o/restart.h5", "o/x.h5", "o/y.h5"]
     assert len(Model.restore("o/x.h5").table("block")) == 1
+
+
+@pytest.mark.parametrize("name", ["../elsewhere/x.h5", "{}/elsewhere/x.h5"])
+def test_save_creates_folders_within_out_only(name: str, tmp_path: Path) -> None:
+    m = Model(out=tmp_path / "out")
+    m.block(*SQUARE)
+    with pytest.raises(UdecError) as caught:
+        m.run(f"SAVE {name.format(tmp_path)}\n")
+    assert caught.value.number == 31
+    assert not (tmp_path / "elsewhere").exists()
+    (tmp_path / "elsewhere").mkdir()
+    m.run(f"SAVE {name.format(tmp_path)}\nSAVE in/x.h5\n")
+    assert (tmp_path / "elsewhere/x.h5").exists()
+    assert (tmp_path / "out/in/x.h5").exists()
 
 
 def test_the_folder_for_files_may_be_set_later_and_as_text(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from support.mechanics_scenes import side_by_side
 from trials.interrupted_commands import interrupt_lines, state
 
 from udec_ia import Model, UdecError
-from udec_ia.transaction import Undo
+from udec_ia.model.undo import Undo
 
 ROOT = Path(__file__).parents[2]
 
@@ -31,18 +31,18 @@ def test_a_command_is_taken_back_also_by_repeating_others(
     repeated: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """After an array has grown, too, and with a copy that is many commands old."""
-    monkeypatch.setattr("udec_ia.transaction.REPEATED", repeated)
+    monkeypatch.setattr("udec_ia.model.undo.REPEATED", repeated)
     m = Model()
     m.block(0, 0, 0, 30, 40, 30, 40, 0)
     for x in range(1, 40):
         m.split(x, -1, x, 31)
-    assert len(m.undo.since) == (0 if repeated == 0 else 39)
+    assert len(m.session.undo.since) == (0 if repeated == 0 else 39)
     before, size = state(m), len(m.array.h.ia)
 
     def fail(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("udec_ia.session.log.warning", fail)
+    monkeypatch.setattr("udec_ia.model.model_session.log.warning", fail)
 
     def split_and_fail() -> None:
         for y in range(1, 30):
@@ -218,10 +218,10 @@ def test_split_finds_the_blocks_that_were_taken_back() -> None:
 
 def test_many_commands_that_change_numbers_only_leave_no_long_list() -> None:
     m = side_by_side()
-    m.undo.cost = 0.0
+    m.session.undo.cost = 0.0
     for n in range(50):
         m.gravity(0, -n)
-    assert len(m.undo.since) < 3
+    assert len(m.session.undo.since) < 3
 
 
 def test_numbers_that_were_changed_before_words_are_taken_back_with_them() -> None:

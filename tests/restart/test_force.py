@@ -199,7 +199,7 @@ def test_whatever_is_damaged_can_be_looked_at(saved: Path, tmp_path: Path) -> No
                 m.array.h.ci[place] = value
             else:
                 m.array.h.ia[int(rng.integers(last))] = value
-        m._touched = True
+        m.session.written = True
         path = m.save(tmp_path / "bad.h5", force=True)
         forced = Model.restore(path, force=True, out=tmp_path)
         found = forced.check()
@@ -272,4 +272,4 @@ def test_the_list_of_relaxations_is_followed_only_when_it_is_sound(model: Model,
             change()
     model.rset(1.0, int(table(model.array, "block")["address"][0]), 7)
     model.h.ci[g.IRXPNT] = 0
-    assert model.is_sound()
+    assert model.session.is_sound()

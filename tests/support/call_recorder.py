@@ -19,6 +19,7 @@ class Recorder:
     """
 
     def __init__(self) -> None:
+        self.session = self
         self.out = Path("results")
         self.started = False
         self.tell = self.inform = print

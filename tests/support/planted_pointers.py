@@ -127,7 +127,7 @@ def plant(m: Model, every: int) -> None:
     print(bits(m))
     print(m.check() == [] and (same_kinds(m) or not CHECKED))
     for name, word, what, iad in planted[::every] if CHECKED else []:
-        m.take_up(before.copy(), [])
+        m.session.return_to(before.copy(), [])
         m.array.h.ia[word - 1] = iad
         print(f"{name} {what}: {said(m)}")
 

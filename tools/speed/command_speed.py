@@ -272,7 +272,7 @@ def prepared(scene: MainArray, folder: Path) -> Model:
     """A model of its own in the state of the scene."""
     model = Model(out=folder)
     model.array = scene.copy()
-    model.started = True
+    model.session.started = True
     return model
 
 

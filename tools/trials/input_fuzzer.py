@@ -379,7 +379,7 @@ def run_file(rng: Rng, folder: Path, base: bytes) -> tuple[int, str]:
         model.split(-1, 3, 7, 3.1)
     except UdecError as error:
         end = numbered(error)
-    return end, unsound(model, check_links) if model.started else ""
+    return end, unsound(model, check_links) if model.session.started else ""
 
 
 # ---- processes

@@ -43,7 +43,7 @@ HISTORY 3 UNBALANCED"""
 
 def state(model: Model) -> dict[str, Any]:
     """All that a command may change, bit for bit."""
-    h, plots = model.array.h, model._plots
+    h, plots = model.array.h, model.session.plots
     frame = None if plots is None or plots.frame is None else plots.frame
     return {
         "words": h.ia[: int(h.ci[MFREE]) - 1].tobytes(),
@@ -51,17 +51,17 @@ def state(model: Model) -> dict[str, Any]:
         "reals": h.cr.tobytes(),
         "doubles": h.cd.tobytes(),
         "size": (len(h.ia), model.array.scheme.name, model.array.fixed),
-        "deck": tuple(model.deck_log),
-        "series": tuple((str(one), one.lost, one.numbers.tobytes()) for one in model._recorder.series),
-        "solutions": tuple(model._recorder.solutions),
-        "files": tuple(model._files),
+        "deck": tuple(model.session.deck_log),
+        "series": tuple((str(one), one.lost, one.numbers.tobytes()) for one in model.session.recorder.series),
+        "solutions": tuple(model.session.recorder.solutions),
+        "files": tuple(model.session.files),
         "frame": None if plots is None else (plots.count, len(frame.states) if frame else -1),
-        "flags": (model.started, model._touched, model._unproved, model.explain_step),
+        "flags": (model.session.started, model.session.written, model.session.unproved, model.explain_step),
         "remarks": (
-            sorted(model._said),
-            model._monitors.energy._judged,
-            model._monitors.energy._warned,
-            model._monitors.energy._account,
+            sorted(model.session._remarks),
+            model.session.monitors.energy._judged,
+            model.session.monitors.energy._warned,
+            model.session.monitors.energy._account,
         ),
     }
 
@@ -227,7 +227,7 @@ class Lines:
             other = [part for part in now if now[part] != state(after)[part]]
             if other and not between(kept, lambda: self.scene(line), line):
                 wrong = f"before: {differs}, after: {other}"
-        faults = [] if self.model._touched else self.model.check()
+        faults = [] if self.model.session.written else self.model.check()
         if now != before or faults:
             self.fresh(line)
         if faults:

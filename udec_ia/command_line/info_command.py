@@ -27,7 +27,7 @@ from udec_ia import Model
 from udec_ia.heap_tools.facility_costs import costs
 
 model = Model.restore({file!r}{laws})
-print(costs(model.array, model.laws{seconds}).as_text(), end="")"""
+print(costs(model.array, model.session.laws{seconds}).as_text(), end="")"""
 
 
 def add_commands(commands: Any) -> None:
@@ -48,7 +48,7 @@ def _look(args: argparse.Namespace) -> Listing | Tables:
         from udec_ia.model import Model
 
         model = Model.restore(args.file, args.constitutive)
-        return costs(model.array, model.laws, **_budget(args))
+        return costs(model.array, model.session.laws, **_budget(args))
     if args.budget or args.constitutive:
         raise ValueError("--budget and --constitutive go with --cost")
     return _known(args)

@@ -51,5 +51,5 @@ from udec_ia.view import Page
 
 page = Page()
 for path in map(Path, {files!r}):
-    page.add(look_into(path), path.name, deck_in(path))  # of a model: model.array, any name, model.deck_log
+    page.add(look_into(path), path.name, deck_in(path))  # of a model: its array, any name, lines of its deck
 print(f"{{page.write({str(args.out)!r})}}: open it in a browser", *page.left_out(), sep="\\n")"""

@@ -54,7 +54,7 @@ class Debugger:
         self.model = model
         self.monitor = Monitor(model, out)
         self.stopped = stopped
-        self.timeline = Timeline(model.array, model.laws, budget)
+        self.timeline = Timeline(model.array, model.session.laws, budget)
         self.conditions: dict[int, StopCondition] = {}
         self.goal: int | None = None  # event to stop at, the next one where it can
         self.goal_cycle: int | None = None
@@ -72,10 +72,10 @@ class Debugger:
 
     def run(self, statements: Sequence[Statement]) -> None:
         """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
-        observers, self.model.observers = self.model.observers, [_CycleWatcher(self)]
+        observers, self.model.session.observers = self.model.session.observers, [_CycleWatcher(self)]
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
-        self._before = list(self.model.deck_log)
+        self._before = list(self.model.session.deck_log)
         number = 0
         try:
             while True:
@@ -85,7 +85,7 @@ class Debugger:
                 except ResumeRun as back:
                     number = self._resume(back.event, back.command)
         finally:
-            self.model.observers = observers
+            self.model.session.observers = observers
 
     def _obey_all(self, number: int) -> None:
         """The commands from `number` on."""
@@ -106,7 +106,7 @@ class Debugger:
         inserted = [(place, self._worded(command))] if command else []
         self._commands = [*done, *inserted, *rest]
         lines = [line.shown for _, statement in done for line in statement.lines]
-        self.model.take_up(array, [*self._before, *lines])
+        self.model.session.return_to(array, [*self._before, *lines])
         self.monitor.ended = False
         self.goal, self.goal_cycle, self.goal_line = event + len(inserted), None, None
         self._atlas = self._array = None  # an event of the discarded timeline may have the same number

@@ -82,7 +82,7 @@ class Monitor:
             return
         call = parse(statement)
         name = call.command.name
-        if not (call.command.opens or self.model.started):
+        if not (call.command.opens or self.model.session.started):
             raise at(UdecError(3, f"this is {name.upper()}"), call.head)
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
@@ -107,7 +107,7 @@ class Monitor:
 
         What cannot be written is told, and the summary written all the same, before the error is raised.
         """
-        if not self.model.started or self._stopped:
+        if not self.model.session.started or self._stopped:
             return
         self._stopped = True
         try:
@@ -123,7 +123,7 @@ class Monitor:
         result = self._call(call)
         lines = dict.fromkeys(token.line for token in statement.tokens)
         if call.command.name != "default":  # the lines that are logged have their values
-            self.model.log_lines([line.shown for line in lines])
+            self.model.session.log_lines([line.shown for line in lines])
         return result
 
     def _call(self, call: Call) -> object:
@@ -139,18 +139,18 @@ class Monitor:
         place = self.place(name, named.get("path"))
         if place is not None:
             named["path"] = place
-        model = self.model
-        before = model.tell, model.inform, model.explain_step, model.logs_calls
-        model.explain_step, model.logs_calls = True, False
-        model.tell = model.inform = lambda text: self._write(f" {name.upper()}: {text}")
+        session = self.model.session
+        before = session.tell, session.inform, session.explain_step, session.logs_calls
+        session.explain_step, session.logs_calls = True, False
+        session.tell = session.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
-            return getattr(model, name)(*call.positional, **named)
+            return getattr(self.model, name)(*call.positional, **named)
         finally:
-            model.tell, model.inform, model.explain_step, model.logs_calls = before
+            session.tell, session.inform, session.explain_step, session.logs_calls = before
 
     def place(self, command: str, name: str | None) -> Path | None:
         """Where the file is that a command names: in the folder for files. None if it names none."""
-        return None if name is None else _in_folder(self.model.out, name)
+        return None if name is None else _in_folder(self.model.session.out, name)
 
     def _show(self, result: object) -> None:
         """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
@@ -173,7 +173,7 @@ class Monitor:
         here must not hide what has gone wrong before. However often Ctrl-C is pressed, the file is written;
         then only the pictures are left out.
         """
-        if not self.model.started:
+        if not self.model.session.started:
             return None
         saved = None
         with suppress(Exception, KeyboardInterrupt), hold():
@@ -188,7 +188,7 @@ class Monitor:
 
     def _save(self, sound: bool) -> Path:
         """Save the state for the rescue, by force if it is not sound."""
-        path = (self.model.out / RESCUE).absolute()
+        path = (self.model.session.out / RESCUE).absolute()
         if sound:
             try:
                 return self.model.save(path)
@@ -287,8 +287,8 @@ def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
 R = TypeVar("R")
 
 
-class Obeying(Protocol):
-    """Its commands are found by their names; started, out, tell and the others are those of Model."""
+class ObeyingSession(Protocol):
+    """The session of a model, with attributes of udec_ia.model.model_session.Session."""
 
     started: bool
     tell: Callable[[str], None]
@@ -300,15 +300,23 @@ class Obeying(Protocol):
     def out(self) -> Path:
         """The folder for files."""
 
+    def log_lines(self, lines: Sequence[Any]) -> None:
+        """Log what was obeyed."""
+
+
+class Obeying(Protocol):
+    """A model; its commands are found by their names."""
+
+    @property
+    def session(self) -> ObeyingSession:
+        """What belongs to the model beside the array."""
+
     @property
     def h(self) -> Memory:
         """The array."""
 
     def whole(self, action: Callable[[], R]) -> R:
         """Have all that `action` does done, or nothing of it."""
-
-    def log_lines(self, lines: Sequence[Any]) -> None:
-        """Log what was obeyed."""
 
     def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
         """Why a command has found nothing."""

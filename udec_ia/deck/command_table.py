@@ -50,7 +50,7 @@ PROPERTIES = [
     if one.keyword
 ]
 CONSTITUTIVE = Word("Constitutive", "m")
-BY_FORCE = Word("FORCE")
+BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -370,13 +370,14 @@ COMMANDS = (
         "Restart",
         SESSION,
         "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
-        "files (--out). FORCE also accepts an unsound state, for inspection and repair. Commands that "
-        "follow links, such as CYCLE, are then refused until the links are sound.",
+        "files (--out). The whole state is checked first, as by udec check. UNCHECKED checks the links only. "
+        "FORCE also accepts an unsound state, for inspection and repair. Commands that follow links, such as "
+        "CYCLE, are then refused until the state is sound.",
         "RESTART slope.h5",
-        words=(BY_FORCE,),
+        words=(BY_FORCE, UNCHECKED),
         text="path",
         opens=True,
-        ours="the name of the file; FORCE",
+        ours="the name of the file; FORCE; UNCHECKED",
         begins=True,
     ),
     Command(
@@ -400,8 +401,9 @@ COMMANDS = (
         "SAve",
         SESSION,
         "Save the state in the restart file; the default is restart.h5. Relative names start in the folder "
-        "for files (--out). The file may replace a restart file and nothing else. FORCE also saves an "
-        "unsound state, and marks the file. Put the name of a file called FORCE in quotes.",
+        "for files (--out), outside of which no folder is created. The file may replace a restart file and "
+        "nothing else. FORCE also saves an unsound state, and marks the file. Put the name of a file "
+        "called FORCE in quotes.",
         "SAVE slope.h5",
         words=(BY_FORCE,),
         text="path",

@@ -63,7 +63,7 @@ class _Monitor(Monitor):
 
     def place(self, command: str, name: str | None) -> Path | None:
         """As Monitor.place; a restart file that is not there is looked for in the other folders."""
-        if command == "restart" and not (self.model.out / (name or RESTART_FILE)).exists():
+        if command == "restart" and not (self.model.session.out / (name or RESTART_FILE)).exists():
             for folder in self._beside:
                 if (folder / (name or RESTART_FILE)).exists():
                     return folder / (name or RESTART_FILE)

@@ -95,7 +95,7 @@ def _on(runs: tuple[Run, Run], start: States, cycles: int) -> States:
     arrays = [_ready(copy) for copy in start]
     for run, array in zip(runs, arrays, strict=True):
         with suppress(UdecError):  # which the run has ended with
-            Replay(array, run.model.laws).step(cycles)
+            Replay(array, run.model.session.laws).step(cycles)
     return copy_state(arrays[0]), copy_state(arrays[1])
 
 
@@ -109,7 +109,7 @@ def _ready(copy: StateCopy) -> MainArray:
 
 def _first_pass(runs: tuple[Run, Run], start: States, judge: Judge) -> tuple[str, Off | None]:
     """The first pass of the next cycle after which the runs differ, and by what; "" if it is none alone."""
-    passes = [Passes(_ready(copy), run.model.laws) for copy, run in zip(start, runs, strict=True)]
+    passes = [Passes(_ready(copy), run.model.session.laws) for copy, run in zip(start, runs, strict=True)]
     for (name, a), (other, b) in zip(passes[0].after, passes[1].after, strict=False):
         off = judge.off(a.array(), b.array())
         if off is not None:

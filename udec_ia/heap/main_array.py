@@ -107,6 +107,20 @@ class MainArray:
         self.fixed = mtop is not None
         return True
 
+    def __getstate__(self) -> tuple[Any, ...]:
+        """For pickle: what counts, which are the words below MFREE and the common block."""
+        used = int(self.h.ci[g.MFREE]) - 1
+        return self.scheme, self.fixed, len(self.h.ia), self.h.ia[:used], *self.h[2:]
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        self.scheme, self.fixed, size, words, *common = state
+        ia = _words(size, self.scheme.int_type)
+        ia[: len(words)] = words
+        self.h = self._views(ia, *common)
+
+    def __deepcopy__(self, _: Any) -> MainArray:
+        return self.copy()
+
     def copy(self) -> MainArray:
         """An independent copy of the whole state."""
         other = object.__new__(MainArray)

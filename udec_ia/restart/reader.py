@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.checker import check_links
+from udec_ia.checker import check, check_links
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme
 from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.table_translation import news
 from udec_ia.heap_tools.written_state import TranslationError, Words
+from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
 from udec_ia.printable import printable
@@ -73,11 +74,11 @@ class Restored(NamedTuple):
     unsound: list[str]
 
 
-def load(path: str | Path, force: bool = False) -> Restored:
+def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Restored:
     """The state in the restart file `path`, in the file's own word scheme.
 
     Raises UdecError 29, and nothing else, if the file is not exactly what `save` wrote or, unless taken by
-    `force`, its heap is unsound or it is marked as that.
+    `force`, its state is unsound or it is marked as that. unchecked: only the links and codes are proved.
     """
     path = Path(path)
     with refusing(path):
@@ -85,7 +86,7 @@ def load(path: str | Path, force: bool = False) -> Restored:
             seen = read_state(file, read_front(file))
             series = recall(file, seen.array, bool(seen.mark)) if are_told(seen.array) else []
             deck, laws = read_deck(file), read_laws(file)
-        faults = _faults(seen.array)  # takes memory, and that of the file is given back by now
+        faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
         if not force:
             _refuse_unsound(seen.mark, faults)
         return Restored(seen.array, deck, laws, series, seen.said, faults)
@@ -254,13 +255,15 @@ def _array(state: Words) -> MainArray:
     return array
 
 
-def _faults(array: MainArray) -> list[str]:
-    """What is wrong with the links of a heap, or with codes such as materials or the pass.
+def _faults(array: MainArray, unchecked: bool) -> list[str]:
+    """What is wrong with a state.
 
-    Compiled routines follow these without a further test. Forces and overlaps that have run away are no
-    faults here: such a state is there to be looked at.
+    Compiled routines follow links, and codes such as materials or the pass, without a further test: these
+    are always proved. The rest is not, if the user cannot wait, or if an error has ended a run of the state:
+    forces and overlaps have then run away, and the state is there to be inspected.
     """
-    return [violation.message for violation in check_links(array)]
+    proof = check_links if unchecked or array.h.ci[g.NSPOIL] else check
+    return [violation.message for violation in proof(array)]
 
 
 def _refuse_unsound(mark: list[str], faults: list[str]) -> None:

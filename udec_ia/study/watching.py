@@ -45,7 +45,7 @@ class Observer:
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
-        self.model.observers = (*self._observers, _Eye(self))
+        self.model.session.observers = (*self._observers, _Eye(self))
         monitor.run(text.splitlines(), name)
         monitor.stop()
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,10 +47,30 @@ class LawBook:
     """
 
     def __init__(self, given: Given | Iterable[Given] | None = None) -> None:
-        self.given = read_laws(given)
+        single = given is None or isinstance(given, str | Path | Mapping)
+        self._sources: Any = given if single else list(given)  # type: ignore[arg-type]
+        self.given = read_laws(self._sources)
         self.recorded: Record = {}
         self._calls = np.zeros(len(RESULTS), np.int64)
         self._materials = np.zeros((NMAT, len(ARRAYS)))
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        """For pickle: the sources of the laws, as their machine code belongs to this process."""
+        return self._sources, self.recorded, self.record()
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        sources, recorded, record = state
+        self.__init__(sources)  # type: ignore[misc]
+        if self.note(record):
+            raise UdecError(
+                34, "a file of laws has changed since the model was pickled", "use the former file"
+            )
+        self.recorded = recorded
+
+    def __deepcopy__(self, _: Any) -> LawBook:
+        other = LawBook()
+        other.given, other._sources, other.recorded = self.given, self._sources, dict(self.recorded)
+        return other
 
     @property
     def block_laws(self) -> list[int]:

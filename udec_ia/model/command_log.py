@@ -1,6 +1,6 @@
-"""The log of a session: what was done, said as a deck says it.
+"""The log of a session: the commands that were obeyed, which can be written as the lines of a deck.
 
-A command given in Python is kept as it was called, and said when somebody asks; one of a deck is kept as its
+A command given in Python is kept as it was called, and becomes lines on request; one of a deck is kept as its
 lines. Successive CYCLEs are one line.
 """
 
@@ -18,7 +18,7 @@ PLAIN = (bool, int, float, str, np.generic, type(None))
 
 
 class Step(NamedTuple):
-    """A command as it can be obeyed again."""
+    """A call of a command, which can be repeated."""
 
     method: Callable[..., object]
     args: tuple[Any, ...]
@@ -26,7 +26,7 @@ class Step(NamedTuple):
 
     @property
     def lines(self) -> list[str]:
-        """The command as a deck says it."""
+        """The command as lines of a deck."""
         return spell(*self)
 
     @property
@@ -39,7 +39,7 @@ def _is_plain(value: Any) -> bool:
     return isinstance(value, PLAIN) or (type(value) is tuple and all(map(_is_plain, value)))
 
 
-class Log:
+class CommandLog:
     """steps: commands, or lines of a deck. cycles: of the CYCLEs at the end, None if it does not end so."""
 
     def __init__(self, lines: Sequence[str] = ()) -> None:
@@ -55,7 +55,7 @@ class Log:
         self.add_lines([step] if step.lasts else step.lines)
 
     def add_lines(self, lines: Sequence[str | Step]) -> None:
-        """So was what a deck says."""
+        """Lines of a deck were obeyed."""
         if self.cycles is not None:
             self.steps.append(f"CYCLE {self.cycles}")
         self.steps += lines
@@ -65,5 +65,12 @@ class Log:
     def lines(self) -> list[str]:
         """The lines of a deck that say what was done."""
         last = [] if self.cycles is None else [f"CYCLE {self.cycles}"]
-        said = ([one] if isinstance(one, str) else one.lines for one in self.steps)
-        return [*chain.from_iterable(said), *last]
+        return [*self._step_lines(), *last]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy: commands become lines."""
+        return {"steps": self._step_lines(), "cycles": self.cycles}
+
+    def _step_lines(self) -> list[str]:
+        steps = ([one] if isinstance(one, str) else one.lines for one in self.steps)
+        return list(chain.from_iterable(steps))

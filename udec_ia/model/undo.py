@@ -1,21 +1,21 @@
-"""A command is obeyed as a whole or not at all, whatever ends it.
+"""Undo: a command is obeyed as a whole or not at all, whatever ends it.
 
-An interrupt, a want of memory, an exception in a function of the user's or an error of our own may end a
-command at any step. What it has done until then is taken back: the common block and what the model holds in
-Python from copies that cost nothing, the words of IA() from a copy that costs as much as the whole model. So
-that a short command does not pay for that, the copy is kept from one command to the next, with a list of the
-commands obeyed since. To take one back the copy is put back and they are obeyed again, which gives the same
-words bit for bit. The copy is made anew when they have taken as long as a hundred copies. So copying adds one
-or two per cent to the time of many commands, and to take one back takes little more than a hundred copies do.
+An interrupt, lack of memory, an exception in a user's function or a bug may end a command at any step. What
+it has done until then is taken back: the common block and what the session holds in Python from copies that
+cost nothing, the words of IA() from a copy that costs as much as the whole model. For a short command not to
+pay for that, the copy is kept from one command to the next, with a list of the commands obeyed since. To
+take one back the copy is put back and they are obeyed again, which gives the same words bit for bit. The copy
+is made anew when they have taken as long as a hundred copies. So copying adds one or two per cent to the time
+of many commands, and to take one back takes little more than a hundred copies do.
 
 A command that raises a numbered error has changed no word: ops check before their first change, or go back
 themselves. If groups were made or given back all the same, their words are taken back, too, and so are those
 of the commands before it where several are obeyed as one.
 
-CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`settle`). What follows
-them is taken back as far as to their end (`afresh`). Compiled
-passes stop by themselves for want of memory only, at a place from which the next CYCLE goes on (JPHASE).
-Interpreted and checked ones stop at any place: there the words are copied between the pieces of a run, too.
+CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`confirm_piece`). What
+follows them is taken back as far as to their end (`confirm_run`). Compiled passes stop by themselves for lack
+of memory only, at a place from which the next CYCLE goes on (JPHASE). Interpreted and checked ones stop at
+any place: there the words are copied between the pieces of a run, too.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.tracked_arrays import Writes
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.log import Step
+from udec_ia.model.command_log import Step
 from udec_ia.signals import hold, passing
 
 P = ParamSpec("P")
@@ -47,32 +47,32 @@ REPEATED = 100.0  # a copy is made anew when the commands since then have taken 
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
 
 
-def command(method: Method[P, R]) -> Method[P, R]:
+def changes_array(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that may change any word of IA()."""
-    return _obeyed(_unsettling(method, words=True), words=True)
+    return _undoable(_with_new_step(method, words=True), words=True)
 
 
-def once(method: Method[P, R]) -> Method[P, R]:
-    """A method of Model that may change any word and depends on what Python holds: it cannot be repeated."""
-    return _obeyed(method, words=True, repeated=False)
+def not_repeatable(method: Method[P, R]) -> Method[P, R]:
+    """The same, but the method depends on objects in Python: repeating it could give another state."""
+    return _undoable(method, words=True, repeatable=False)
 
 
-def numbers(method: Method[P, R]) -> Method[P, R]:
+def changes_common(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that changes numbers of the common block only."""
-    return _obeyed(_unsettling(method))
+    return _undoable(_with_new_step(method))
 
 
-def steady(method: Method[P, R]) -> Method[P, R]:
-    """The same, of numbers on which no time-step hangs."""
-    return _obeyed(method)
+def keeps_step(method: Method[P, R]) -> Method[P, R]:
+    """The same, of numbers that do not affect the time-step."""
+    return _undoable(method)
 
 
-def beside(method: Method[P, R]) -> Method[P, R]:
-    """A method of Model that changes what Python holds only, or another array takes the place of this one."""
-    return _obeyed(method, noted=False)
+def outside_array(method: Method[P, R]) -> Method[P, R]:
+    """A method of Model that changes objects in Python only, or replaces the whole array."""
+    return _undoable(method, recorded=False)
 
 
-def looking(method: Method[P, R]) -> Method[P, R]:
+def shows(method: Method[P, R]) -> Method[P, R]:
     """A method of Model that shows or draws: it may take long, and interrupts do not wait for its end."""
 
     @wraps(method)
@@ -80,11 +80,11 @@ def looking(method: Method[P, R]) -> Method[P, R]:
         with passing():
             return method(model, *args, **named)
 
-    return beside(shown)
+    return outside_array(shown)
 
 
-def _unsettling(method: Method[P, R], words: bool = False) -> Method[P, R]:
-    """The next CYCLE finds masses and time-step anew. Obeyed once more, the method says so again.
+def _with_new_step(method: Method[P, R], words: bool = False) -> Method[P, R]:
+    """The next CYCLE finds masses and time-step anew; so it does after the method was repeated.
 
     words: blocks may change, and what was made of them for the last CYCLE is given back. In a heap that is
     unsound its list may lead anywhere: it stays, and the method refuses to follow lists, or mends some word.
@@ -92,36 +92,44 @@ def _unsettling(method: Method[P, R], words: bool = False) -> Method[P, R]:
 
     @wraps(method)
     def unsettles(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
-        model.array.h.ci[g.LREADY] = 0
-        if words and model.array.h.ci[g.IRXPNT] and model.is_sound():
+        h = model.array.h
+        h.ci[g.LREADY] = 0
+        if words and h.ci[g.IRXPNT] and model.session.is_sound():
             lose_relaxations(model.array.h)
         return method(model, *args, **named)
 
     return unsettles
 
 
-def _obeyed(
-    method: Method[P, R], words: bool = False, noted: bool = True, repeated: bool = True
+def _undoable(
+    method: Method[P, R], words: bool = False, recorded: bool = True, repeatable: bool = True
 ) -> Method[P, R]:
+    """`method`, obeyed as a whole or not at all, and logged.
+
+    words: it may change words of IA(). recorded: undoing a later command has to repeat it; repeatable: can.
+    """
+
     @wraps(method)
     def obeyed(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        session = model.session
+
         def obey() -> R:
-            if noted:
-                model.undo.note(Step(method, args, named) if repeated else None)
+            if recorded:
+                session.undo.add_step(Step(method, args, named) if repeatable else None)
             if words:
-                model.undo.keep(model.array)
+                session.undo.save_words(session.array)
             result = method(model, *args, **named)
-            model.log_call(method, args, named)
+            session.log_call(method, args, named)
             return result
 
-        done: R = model.whole(obey)
+        done: R = session.undo.run_whole(model, obey)
         return done
 
     return obeyed
 
 
 class Undoable(Protocol):
-    """What has to be known of a model to take back what is done with it."""
+    """What undo needs of a session."""
 
     array: MainArray
     writes: Writes
@@ -139,30 +147,30 @@ class Undoable(Protocol):
 
 
 class Before:
-    """Everything but the words of IA(): what a model holds in Python, and the common block.
+    """Everything but the words of IA(): what a session holds in Python, and the common block.
 
-    A list of the model is put in place of another, or grows at its end: its length says how it was.
+    A list of the session is put in place of another, or grows at its end: its length says how it was.
     """
 
-    def __init__(self, model: Undoable) -> None:
-        self.array: MainArray = model.array
-        self.h: Memory = model.array.h
+    def __init__(self, session: Undoable) -> None:
+        self.array: MainArray = session.array
+        self.h: Memory = session.array.h
         self.numbers = [part.copy() for part in common(self.h)]
-        self.parts = [(one, vars(one).copy()) for one in model.parts()]
+        self.parts = [(one, vars(one).copy()) for one in session.parts()]
         self.lengths = [
             (value, len(value)) for _, held in self.parts for value in held.values() if type(value) is list
         ]
 
-    def put_back(self, model: Undoable) -> None:
-        """Make the model as it was."""
+    def put_back(self, session: Undoable) -> None:
+        """Make the session as it was."""
         for one, held in self.parts:
             vars(one).clear()
             vars(one).update(held)
         for value, length in self.lengths:
             del value[length:]
         put_common(self.h, self.numbers)
-        model.array.h = self.h
-        model.forget_boxes()
+        session.array.h = self.h
+        session.forget_boxes()
 
     def same_groups(self, h: Memory) -> bool:
         """True if `h` has as many groups of every kind as there were."""
@@ -209,15 +217,15 @@ class Undo:
         self.before: Before | None = None
         self.doing: list[Step | None] = []
 
-    def whole(self, model: Undoable, action: Callable[[], R]) -> R:
-        """Have all that `action` does done or, if it raises, undone, with whatever is done within it."""
+    def run_whole(self, model: Any, action: Callable[[], R]) -> R:
+        """Call `action`, and undo all that it did with `model` if it raises."""
         if self.busy:
             return action()
         with hold():
             try:
-                self._begin(model)
+                self._begin(model.session)
                 result = action()
-                self._end(model)
+                self._end(model.session)
             except BaseException as error:
                 with hold(firm=True):
                     self._take_back(model, error)
@@ -226,11 +234,11 @@ class Undo:
                 self.busy, self.before = False, None
         return result
 
-    def note(self, step: Step | None) -> None:
+    def add_step(self, step: Step | None) -> None:
         """A command begins, `step` if it can be repeated. One that is obeyed within another cannot."""
         self.doing.append(step if step is not None and step.lasts and not self.doing else None)
 
-    def keep(self, array: MainArray) -> None:
+    def save_words(self, array: MainArray) -> None:
         """See to it that the words of `array` can be had again as they were before what is being done.
 
         Those of an array that has come in its course, by START or RESTART, are not needed again.
@@ -241,42 +249,42 @@ class Undo:
                 self._copy(array)
             self.covered = True
 
-    def settle(self, model: Undoable) -> None:
+    def confirm_piece(self, session: Undoable) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
         if mode.python or CHECKED:
-            self._copy(model.array)
-            self.covered, self.settled, self.before = True, True, Before(model)
+            self._copy(session.array)
+            self.covered, self.settled, self.before = True, True, Before(session)
         else:
             self.release()
 
-    def afresh(self, model: Undoable) -> None:
+    def confirm_run(self, session: Undoable) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
-        self.covered, self.settled, self.doing, self.before = False, False, [], Before(model)
+        self.covered, self.settled, self.doing, self.before = False, False, [], Before(session)
 
     def release(self) -> None:
         """Let go of the copy, and of its memory."""
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
 
-    def _begin(self, model: Undoable) -> None:
-        if model.writes.made:
-            model.note_writes()
-            model.writes.made = False
+    def _begin(self, session: Undoable) -> None:
+        if session.writes.made:
+            session.note_writes()
+            session.writes.made = False
         self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
-        self.before = Before(model)
+        self.before = Before(session)
         self.busy = True
 
-    def _end(self, model: Undoable) -> None:
+    def _end(self, session: Undoable) -> None:
         """Note what was done, or that the copy is of no use any more.
 
         What was done is to stay before it is noted: an end in between costs the copy and no more.
         """
         array, self.array = self.array, None
         self.before = None
-        if array is model.array and None not in self.doing:
+        if array is session.array and None not in self.doing:
             self.seconds += perf_counter() - self._start if self.doing else 0.0
-            self.left = image(model.array.h)
+            self.left = image(session.array.h)
             self.since += [step for step in self.doing if step is not None]
             if self.seconds > REPEATED * self.cost:
                 self.since = []
@@ -295,37 +303,38 @@ class Undo:
         self.seconds, self.cost = 0.0, perf_counter() - start
         self.array = array
 
-    def _take_back(self, model: Undoable, error: BaseException) -> None:
+    def _take_back(self, model: Any, error: BaseException) -> None:
         """Make everything as it was before what is being done."""
-        before = self.before
+        before, session = self.before, model.session
         if before is None:
             return
         refused = isinstance(error, UdecError) and not isinstance(error, WrongAddress)
         if refused and self.settled and not mode.python:  # compiled passes have stopped where they may
             return
         changed = self.covered and not (
-            len(self.doing) == 1 and refused and before.same_groups(model.array.h)
+            len(self.doing) == 1 and refused and before.same_groups(session.array.h)
         )
-        before.put_back(model)
+        before.put_back(session)
         if changed and not self._repeat(model, before):
             self._put_words(before.h)
-            model.tell(
+            session.tell(
                 f"lost: the last {counted(len(self.since), 'command')}, which could not be obeyed once more"
             )
             self.array = None
 
-    def _repeat(self, model: Undoable, before: Before) -> bool:
+    def _repeat(self, model: Any, before: Before) -> bool:
         """Put the copy back and obey the commands since then once more; False if that gives another state."""
+        session = model.session
         self._put_words(before.h)
-        model.tell = model.inform = lambda _: None
+        session.tell = session.inform = lambda _: None
         try:
             for step in self.since:
                 step.method(model, *step.args, **step.named)
-            return before.same_common(model.array.h)
+            return before.same_common(session.array.h)
         except Exception:
             return False
         finally:
-            before.put_back(model)
+            before.put_back(session)
 
     def _put_words(self, h: Memory) -> None:
         """Put the copy back, into an array that may have grown since."""

@@ -1,4 +1,4 @@
-"""What a Model records: its histories, and how its SOLVEs ended."""
+"""What a session records: the numbers of its histories, and the results of its SOLVEs."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from udec_ia.output.histories import Files
 
 
-class Recorder:
-    """series: the numbers of all histories. solutions: of all SOLVEs, in order."""
+class HistoryRecorder:
+    """series: the numbers of all histories. solutions: results of all SOLVEs, in order."""
 
     def __init__(self) -> None:
         self.series: list[Series] = []
@@ -25,10 +25,14 @@ class Recorder:
         self.pictures = 0
         self._files: Files | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy: open files stay with the original."""
+        return vars(self) | {"_files": None}
+
     def add(
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
     ) -> list[Series]:
-        """New histories of `field`, every `n` cycles, of the groups that an address or points mean."""
+        """New histories of `field`, every `n` cycles, of the groups at an address or at points."""
         from udec_ia.reader.nearest_group import choose
 
         what = named(field)
@@ -40,8 +44,8 @@ class Recorder:
             series.place = one.place
         return self.series[first:]
 
-    def keep(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
-        """Write what was recorded to base.csv and base.h5, and tell which groups have gone."""
+    def write(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
+        """Write what was recorded to base.csv and base.h5, and report which groups have gone."""
         if not self.series:
             return []
         from udec_ia.output.histories import Files

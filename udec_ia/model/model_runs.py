@@ -1,0 +1,127 @@
+"""CYCLE and SOLVE of a session: cycles with progress, histories, warnings and undo around them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from udec_ia.advice.damping_report import UNDAMPED, describe_damping
+from udec_ia.advice.input_warnings import check_damping, check_input
+from udec_ia.advice.rest_diagnosis import RestDiagnosis
+from udec_ia.advice.step_warnings import describe_step
+from udec_ia.compiling.interpreting import mode
+from udec_ia.errors import UdecError
+from udec_ia.heap_tools.memory_order import arrange
+from udec_ia.layout.offsets import MCTOT, WFRIC
+from udec_ia.model.model_session import Session
+from udec_ia.running.cycle import cycle, finish
+from udec_ia.running.history_series import NEVER, Recording
+from udec_ia.running.mass_scaling import relaxations_due
+from udec_ia.running.observer import Observer
+from udec_ia.running.solve_result import MEAN, Solution, solution_of
+from udec_ia.running.static_relaxation import STATIC, statically
+
+PICTURES = 40  # pictures that an animation takes during one CYCLE command
+
+LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended early
+
+
+def solve_as_given(session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart) -> Solution:
+    """SOLVE with the damping and the time-step that were given."""
+    found = list(check_damping(session.array))
+    session.remark(found)
+    if found:  # CYCLE need not say it again
+        session.skip_remark(UNDAMPED)
+    return _run_to_rest(session, ratio, limit, criterion, log_part)
+
+
+def solve_statically(
+    session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart
+) -> Solution:
+    """SOLVE STATIC."""
+    session.inform(STATIC)
+    undo = session.undo
+    begun = undo.before
+    try:
+        with statically(session.array):
+            return _run_to_rest(session, ratio, limit, criterion, log_part)
+    finally:
+        if undo.before is not begun:  # cycles are to stay, and with them what stood before
+            undo.confirm_run(session)
+
+
+def _run_to_rest(session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart) -> Solution:
+    """Up to `limit` cycles to rest."""
+    array, monitors = session.array, session.monitors
+    diagnosis = RestDiagnosis(monitors.friction_until_rest(array))
+    recording = recording_of(session, ratio, criterion == MEAN)
+    cycles = run_cycles(session, limit, recording, log_part, [diagnosis])
+    solution = diagnosis.complete(array, solution_of(array, ratio, criterion, cycles))
+    session.recorder.solutions.append(solution)
+    if solution:
+        monitors.rested = float(array.h.cd[WFRIC])
+    return solution
+
+
+def recording_of(session: Session, ratio: float = NEVER, mean: bool = False) -> Recording:
+    """What a run records. ratio, mean: the force ratio at which it ends, as of SOLVE."""
+    return Recording(session.array, session.recorder.series, ratio, mean, session.monitors.chatter.marks)
+
+
+def run_cycles(
+    session: Session, n: int, recording: Recording, log_part: LogPart, observers: Sequence[Observer] = ()
+) -> int:
+    """Up to `n` cycles, with progress and files; returns how many were completed.
+
+    log_part: logs the completed cycles when the run ends early. observers: besides those of the session.
+    """
+    array, undo, monitors = session.array, session.undo, session.monitors
+    session.forget_boxes()
+    if array.h.ci[MCTOT] == 0 or relaxations_due(array):
+        undo.save_words(array)  # to be arranged, rounded, given masses and relaxations
+    moved = arrange(array)
+    if moved is not None:
+        session.renumber(moved)
+    monitors.friction_until_rest(array)
+    report = session.report(n)
+    before = int(array.h.ci[MCTOT])
+
+    def confirm_piece() -> None:
+        """The cycles of a run until now are to stay, whatever ends it."""
+        if mode.python:
+            finish(array, recording)
+        undo.confirm_piece(session)
+
+    try:
+        done = cycle(
+            array,
+            n,
+            recording=recording,
+            observers=(*observers, *session.observers, monitors),
+            laws=session.laws,
+            report=report,
+            every=max(1, n // PICTURES) if session.animate else None,
+            prepared=lambda: _warn(session),
+            settled=confirm_piece,
+        )
+    except BaseException:
+        log_part(int(array.h.ci[MCTOT]) - before)  # they stay
+        finish(array, recording)
+        with suppress(UdecError):  # of two errors the first one counts
+            session.write_histories(recording)
+        raise
+    finally:
+        report.close()
+    undo.confirm_run(session)
+    session.write_histories(recording)
+    return done
+
+
+def _warn(session: Session) -> None:
+    """Warn of the time-step and of suspicious input before a CYCLE; explain the step on request."""
+    array, energy = session.array, session.monitors.energy
+    energy.judge(array, session.explain_step)
+    if session.explain_step:
+        session.inform(describe_step(array, energy.safe))
+        session.remark([describe_damping(array.h)], session.inform)
+    session.remark(check_input(array, session.laws.block_laws))

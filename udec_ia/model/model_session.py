@@ -1,0 +1,370 @@
+"""The session of a model: its array, and everything that belongs to the model but is not in the array.
+
+That is: laws, log, histories, pictures, files, warnings, the undo copy, and what has been proved of the
+array. The modules that draw, report and write files are imported when they are first needed: a run without
+pictures does not wait for matplotlib.
+"""
+
+from __future__ import annotations
+
+import logging
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, SupportsIndex, TextIO
+
+import numpy as np
+
+from udec_ia.advice.run_monitors import RunMonitors
+from udec_ia.checker import check, check_shapes
+from udec_ia.compiling.compile_time import compile_seconds
+from udec_ia.errors import UdecError
+from udec_ia.files import last_number
+from udec_ia.heap.accessors import Memory
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.tracked_arrays import Writes, lend
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
+from udec_ia.layout import offsets as g
+from udec_ia.model.command_log import CommandLog, Step
+from udec_ia.model.history_recorder import HistoryRecorder
+from udec_ia.model.undo import Undo
+from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.ops.commands.split_blocks import Boxes
+from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.law_file import Given
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.list_walks import Unsound
+from udec_ia.remark import Remark
+from udec_ia.running.history_series import Recording, Series
+from udec_ia.running.observer import Observer
+from udec_ia.running.solve_result import in_short
+from udec_ia.signals import hold
+
+if TYPE_CHECKING:
+    from udec_ia.output.animate import Animation
+    from udec_ia.output.plot import Plots, What
+    from udec_ia.output.report import Report
+
+log = logging.getLogger("udec_ia")
+
+NAME = "udec"  # names of files begin with this
+GIVEN_ONCE = ("coarse-reals",)  # keys of remarks whose numbers change with every cycle
+NOT_COPIED = (
+    "progress",
+    "tell",
+    "inform",
+    "observers",
+    "undo",
+    "writes",
+    "_lent",
+    "_clock",
+    "_compiled",
+)
+
+
+def warn_in_log(text: str) -> None:
+    """Log a warning; the record has the key of a remark as its attribute `key`, else ""."""
+    log.warning(text, extra={"key": text.key if isinstance(text, Remark) else ""})
+
+
+class Session:
+    """What the methods of one Model work on; Model explains the arguments.
+
+    array: the main array. laws: the user's laws. started: START or RESTART was given. undo: undoes commands.
+    written: words were written by RSET or through `h` since the state was last proved. unproved: the state
+    comes from a restart file, and not all of it was proved. split_boxes: block boxes between SPLITs.
+    monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
+    progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
+    or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
+    restart file, and pictures of the run before it are kept.
+    """
+
+    def __init__(
+        self,
+        build: str = DEFAULT_SCHEME,
+        mtop: SupportsIndex | None = None,
+        out: str | Path = ".",
+        constitutive: Given | Iterable[Given] | None = None,
+        name: str = NAME,
+    ) -> None:
+        self.out = out
+        self.name = name
+        self.mtop = None if mtop is None else _words(mtop)
+        self.scheme = scheme(build)
+        self.array = MainArray(self.scheme, self.mtop)
+        self.laws = LawBook(constitutive)
+        self.started = self.written = self.unproved = self.continued = False
+        self.explain_step = self.animate = False
+        self.logs_calls = True
+        self.split_boxes = Boxes()
+        self.monitors = RunMonitors(self.laws, self.warn)
+        self.log = CommandLog()
+        self.recorder = HistoryRecorder()
+        self.files: list[Path] = []
+        self.plots: Plots | None = None
+        self.animation: Animation | None = None
+        self._remarks: set[str] = set()  # which are not repeated
+        self._set_process()
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
+
+    def _set_process(self) -> None:
+        """What belongs to this process: where messages go, the undo copy, the clock."""
+        self.progress: TextIO | None = None
+        self.tell: Callable[[str], None] = warn_in_log
+        self.inform: Callable[[str], None] = log.info
+        self.observers: Sequence[Observer] = ()
+        self.undo = Undo()
+        self.writes = Writes()
+        self._lent: tuple[Memory, Memory] | None = None  # memory of IA(), and what was lent for it
+        self._clock, self._compiled = perf_counter(), compile_seconds()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy: all but what belongs to this process."""
+        if self.writes.made:
+            self.note_writes()
+        return {name: value for name, value in vars(self).items() if name not in NOT_COPIED}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._set_process()
+        vars(self).update(state)
+
+    @property
+    def out(self) -> Path:
+        """The folder for files; a str that it is set to becomes a path."""
+        return self._out
+
+    @out.setter
+    def out(self, folder: str | Path) -> None:
+        self._out = Path(folder)
+
+    @property
+    def h(self) -> Memory:
+        """The memory of the array, lent: what is written to it is noticed."""
+        if self._lent is None or self._lent[0] is not self.array.h:
+            self._lent = self.array.h, lend(self.array.h, self.writes)
+        return self._lent[1]
+
+    def parts(self) -> Iterator[object]:
+        """The objects that hold what is not in the main array."""
+        frame = None if self.plots is None else self.plots.frame
+        held = self.log, self.recorder, self.plots, frame, self.animation, self.laws
+        for part in (self, *held, *self.recorder.series, self.monitors, self.monitors.energy):
+            if part is not None:
+                yield part
+
+    # ---- the array, and what is proved of it
+
+    def start(self) -> None:
+        """START: a cold start; all that was there is gone."""
+        self.array = MainArray(self.scheme, self.mtop)
+        model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
+        self.laws.note({})
+        self.recorder.series, self.recorder.solutions = [], []
+        self._remarks, self.continued = set(), False
+        self.replace_state(written=False, unproved=False)
+        self.started = True
+
+    def replace_state(self, *, written: bool, unproved: bool) -> None:
+        """The array is another one: what was known of the state before is forgotten."""
+        self.forget_boxes()
+        self.written, self.unproved = written, unproved
+        self.monitors = RunMonitors(self.laws, self.warn)
+
+    def return_to(self, array: MainArray, lines: Sequence[str]) -> None:
+        """Go on from a former state of this run, to which `lines` have led: what came later is forgotten."""
+        with hold():
+            self.undo.release()
+            self.array = array
+            series = self.recorder.series[: len(definitions(array))]
+            for one in series:
+                one.until(int(array.h.ci[g.MCTOT]))
+            self.continue_from(lines, series)
+            self.replace_state(written=False, unproved=True)
+
+    def continue_from(self, lines: Sequence[str], series: list[Series]) -> None:
+        """The state is that of a run that has logged `lines` and recorded `series`."""
+        self.log, self.recorder.series, self.continued = CommandLog(lines), series, True
+        if self.plots is not None:
+            self.plots.count = max(self.plots.count, self._last_picture("-plot"))
+
+    def note_writes(self) -> None:
+        """Something was written to the words that `h` lends: what follows them proves them first."""
+        self.array.h.ci[g.LREADY] = 0
+        self.forget_boxes()
+        self.undo.array = None  # commands obeyed once more would not give these words
+        self.written = True
+
+    def forget_boxes(self) -> None:
+        """Blocks are not where SPLIT has seen them last."""
+        self.split_boxes.forget()
+
+    def ensure_ready(self, sound: bool = True, shapes: bool = False) -> None:
+        """Start a model that was not started; with `sound`, prove the heap first if it has been written to.
+
+        A routine that follows pointers must never meet one that RSET or Python has damaged, nor one that cuts
+        or loads outlines (`shapes`) one of a restart file that crosses itself: error 20.
+        """
+        if not self.started:
+            self.start()
+        if self.writes.made:  # by the function that is obeyed as a whole, and it stays if that is taken back
+            self.note_writes()
+        if (sound and self.written) or (shapes and self.unproved):
+            self.prove()
+
+    def is_sound(self) -> bool:
+        """True if routines may follow the lists of the heap; proved, if words have been written to."""
+        try:
+            self.ensure_ready()
+        except UdecError:
+            return False
+        return True
+
+    def prove(self, whole: bool = False) -> None:
+        """Error 20 with the first violation of links, numbers or outlines that could mislead a routine.
+
+        All of a state from a file is proved, as RESTART does, unless an error has ended a run of it.
+        whole: with the first of all violations; else words that are lost for good are left to SAVE.
+        """
+        proof = check if self.unproved and not self.array.h.ci[g.NSPOIL] else check_shapes
+        broken = proof(self.array)
+        for one in broken:
+            if whole or one.misleads:
+                advice = "undo the change, or RESTART from a sound file"
+                raise UdecError(20, str(one), advice)
+        self.written, self.unproved = bool(broken), False
+
+    def prove_before_save(self) -> None:
+        """Error 20 unless the state is sound, as far as it was written to or not yet proved."""
+        if self.written or (self.unproved and not self.array.h.ci[g.NSPOIL]):
+            self.prove(whole=True)
+
+    # ---- the log
+
+    def log_call(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """Log what was done, to be written as a deck on request."""
+        if self.logs_calls:
+            self.log.add(method, args, named)
+
+    def log_part(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
+        """Log the completed part of a run that has ended early, which no line of a deck says."""
+        self.log.add(method, args, named)
+
+    def log_lines(self, lines: Sequence[str | Step]) -> None:
+        """Log the lines of a deck."""
+        self.log.add_lines(lines)
+
+    @property
+    def deck_log(self) -> list[str]:
+        """The lines of a deck that say what was done."""
+        return self.log.lines
+
+    # ---- warnings and information
+
+    def warn(self, text: str) -> None:
+        """Report `text` as a warning."""
+        self.tell(text)  # not bound beforehand: a monitor changes it
+
+    def remark(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
+        """Report `remarks`, each once, by `tell` if they are not warnings.
+
+        Of those whose numbers change with every cycle one is reported.
+        """
+        for one in remarks:
+            mark = one.key if one.key in GIVEN_ONCE else one
+            if mark not in self._remarks:
+                self._remarks = self._remarks | {mark}
+                (tell or self.tell)(one)
+
+    def skip_remark(self, what: str) -> None:
+        """Do not report remarks on `what`."""
+        self._remarks = self._remarks | {what}
+
+    def summary(self) -> str:
+        """The line that sums up the run until now, of files that are written by now."""
+        from udec_ia.output.progress import summary
+
+        try:
+            forces = table(self.array, "contact")["KCFN"]
+        except Unsound:  # RSET has damaged the contact list, and the run ends all the same
+            forces = np.zeros(0)
+        h = self.array.h
+        return summary(
+            int(h.ci[g.MCTOT]),
+            float(h.cd[g.TIME]),
+            int(h.ci[g.NBLK]),
+            int(h.ci[g.NCON]),
+            float(forces.max(initial=0)),
+            self.files,
+            perf_counter() - self._clock,
+            compile_seconds() - self._compiled,
+            in_short(self.recorder.solutions),
+        )
+
+    # ---- files
+
+    def add_files(self, files: Iterable[Path]) -> None:
+        """Have STOP name `files`, each once."""
+        self.files += [path for path in files if path not in self.files]
+
+    def _last_picture(self, kind: str) -> int:
+        """The last number of a picture to be kept: of the run that this one continues, or 0."""
+        return last_number(self.out, self.name + kind) if self.continued else 0
+
+    def write_histories(self, recording: Recording) -> None:
+        """Write what was recorded."""
+        self.add_files(self.recorder.write(recording, self.out / f"{self.name}-history", self.tell))
+
+    def report(self, n: int) -> Report:
+        """Shows the progress of `n` cycles, and takes pictures of them on request."""
+        from udec_ia.output.report import Report
+
+        if self.animate and self.animation is None:
+            from udec_ia.output.animate import Animation
+
+            self.animation = Animation(self.name)
+        return Report(lambda: self.array.h, n, self.progress, self.animation)
+
+    def renumber(self, moved: Any) -> None:
+        """Groups have new addresses: those of the open frame follow them."""
+        if self.plots is not None:
+            self.plots.renumber(moved)
+
+    def draw(self, n: int, what: What) -> list[Path]:
+        """Start a frame (0) or draw over the last one (1); the files written."""
+        from udec_ia.output.plot import Plots
+
+        if self.plots is None:
+            self.plots = Plots(self.out, self.name, self._last_picture("-plot"))
+        files = self.plots.draw(self.array.h, n, what)
+        for remark in self.plots.remarks(self.array.h, what):
+            self.inform(remark)
+        self.add_files(self.plots.files)
+        return files
+
+    def draw_histories(self) -> list[Path]:
+        """Draw what was recorded. Error 26 if nothing was."""
+        files = self.recorder.plot(self.name, self.out, self._last_picture("-history"))
+        self.add_files(files)
+        return files
+
+    def close_files(self) -> None:
+        """Write what is still open."""
+        if self.plots is not None:
+            self.add_files(self.plots.close())
+        if self.animation is not None:
+            path = self.out / f"{self.name}.gif"
+            if self.continued and path.exists():
+                path = self.out / f"{self.name}-{max(self._last_picture(''), 1) + 1}.gif"
+            self.add_files([self.animation.save(path, self.array.h)])
+            self.animation = None
+        self.recorder.close()
+
+
+def _words(mtop: SupportsIndex) -> int:
+    """`mtop` as an integer; TypeError that says so if it is none."""
+    try:
+        return operator.index(mtop)
+    except TypeError:
+        raise TypeError(f"mtop is a number of words, an integer, not {mtop!r}") from None

@@ -1,0 +1,74 @@
+"""SAVE and RESTART of a session: a state is written to a restart file, and read from one."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from udec_ia.checker import check
+from udec_ia.counting import counted
+from udec_ia.deck.command_monitor import RESTART_FILE
+from udec_ia.errors import MESSAGES, UdecError, spoilt
+from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
+from udec_ia.model.model_session import Session
+from udec_ia.ops.common.array_growth import refit
+from udec_ia.printable import printable
+
+
+def save_state(session: Session, path: str | Path | None, force: bool) -> Path:
+    """Write the restart file `path`, by default restart.h5 in the folder `out`; see Model.save."""
+    from udec_ia.restart import save
+
+    if not force:
+        session.prove_before_save()
+    broken = [str(one) for one in check(session.array)] if force else []
+    if broken:
+        session.tell(f"the state is unsound, and the file is marked so: {broken[0]}")
+    target = session.out / RESTART_FILE if path is None else Path(path)
+    folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
+    if makes and not folder.resolve().is_relative_to(session.out.resolve()):
+        advice = "create it first, or give a name within the folder for files (--out)"
+        raise UdecError(31, f"{folder} does not exist, and is outside the folder for files", advice)
+    recorded = session.recorder.series
+    written = save(session.array, target, session.deck_log, session.laws.record(), recorded, broken)
+    session.add_files([written])
+    if makes:
+        session.inform(f"the folder {printable(str(folder))} did not exist and was created")
+    return written
+
+
+def restart_from(session: Session, path: str | Path | None, force: bool, unchecked: bool) -> None:
+    """Continue from the restart file `path`, by default restart.h5 in the folder `out`; see Model.restart."""
+    from udec_ia.restart import load
+
+    if force and unchecked:
+        raise ValueError("restart takes force or unchecked, not both")
+    source = session.out / RESTART_FILE if path is None else path
+    array, deck_log, laws, series, said, unsound = load(source, force, unchecked)
+    refit(array, session.mtop)
+    session.array = array
+    session.continue_from(deck_log, series)
+    for sentence in said:
+        session.tell(sentence)
+    if unsound:
+        session.tell(
+            f"taken by force: CYCLE and other commands that follow links are refused while {unsound[0]}"
+        )
+    for warning in session.laws.note(laws):
+        session.tell(warning)
+    ci, name = array.h.ci, array.scheme.name
+    session.replace_state(written=force, unproved=force or unchecked or bool(ci[NSPOIL]))
+    session.started = True
+    session.inform(
+        f"{printable(str(source))}: {counted(ci[NBLK], 'block')}, {counted(ci[NCON], 'contact')}, "
+        f"{counted(ci[MCTOT], 'cycle')}, "
+        f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
+    )
+    if ci[NSPOIL] in MESSAGES:
+        session.tell(
+            f"{spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))}: inspect it, and continue from a state before that"
+        )
+    if array.scheme != session.scheme:
+        session.inform(
+            f"continues with the word scheme {array.scheme.name}, as saved; --build applies to START only"
+        )
