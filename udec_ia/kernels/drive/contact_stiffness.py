@@ -1,4 +1,4 @@
-"""What the contacts add to the row sums of the stiffness matrix (ops.run.rows).
+"""What the contacts add to the row sums of the stiffness matrix (running.stiffness_bound).
 
 A contact has KN along its normal n and KS along its tangent t. With the displacement u = sum_j s_j q_j of its
 point, q_j the degrees of freedom of both sides and s_j how far a unit of each moves the point, it has

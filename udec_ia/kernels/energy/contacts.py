@@ -2,7 +2,7 @@
 
 The contact pass tells of a contact when all that it is going to feel is known and it still holds what it felt
 before. What sliding takes is summed by the laws themselves: a run that gains energy from nowhere is found by
-it, too (ops/run/runaway.py).
+it, too (advice/energy_monitor.py).
 """
 
 from __future__ import annotations
