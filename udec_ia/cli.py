@@ -24,7 +24,7 @@ from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
 from udec_ia.layout.table import StaleLayout
-from udec_ia.printable import printable
+from udec_ia.printable import printable, visible
 from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
@@ -67,7 +67,7 @@ def arguments() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not takes_files(args.out):
-        print(f"udec: --out {args.out}: files cannot be written there", file=sys.stderr)
+        print(f"udec: --out {printable(str(args.out))}: files cannot be written there", file=sys.stderr)
         return MISUSE
     from udec_ia.deck.command_monitor import run_deck
     from udec_ia.deck.interactive_session import converse, history, history_file
@@ -107,7 +107,7 @@ def completed(given: Sequence[str]) -> list[str]:
         return list(given)
     if first and not first.startswith("-") and not os.path.exists(first):
         verbs = ", ".join(f"udec {verb}" for verb in VERBS)
-        arguments().error(f"there is no file {first}, and the commands are {verbs}: udec --help")
+        arguments().error(f"there is no file {printable(first)}, and the commands are {verbs}: udec --help")
     return ["run", *given]
 
 
@@ -176,7 +176,7 @@ def _main(argv: Sequence[str]) -> int:
         sys.stdout.flush()
     except UdecError as error:
         _last_of_output()
-        print(error, file=sys.stderr)
+        print(visible(str(error)), file=sys.stderr)
         return ERROR
     except StaleLayout as error:
         print(f"udec: {error}", file=sys.stderr)

@@ -18,9 +18,18 @@ MESSAGE = 2000  # characters of a whole message, in which there may be paths of 
 def printable(text: str, limit: int = NAME) -> str:
     """The first `limit` characters of `text`, each of which takes its place on a line."""
     cut = text if len(text) <= limit else f"{text[:limit]}..."
-    if cut.isprintable():
-        return cut
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
+    return _escaped(cut)
+
+
+def visible(text: str) -> str:
+    """All lines of `text`, in which what is not plainly visible is an escape."""
+    return "\n".join(map(_escaped, text.split("\n")))
+
+
+def _escaped(line: str) -> str:
+    if line.isprintable():
+        return line
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
 
 
 def folded(text: str) -> str:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia import Model, UdecError
-from udec_ia.kernels.drive.unbalanced import force_ratio
+from udec_ia.kernels.drive.unbalanced_force import force_ratio
 from udec_ia.layout.offsets import MCTOT
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -353,6 +353,8 @@ def test_contacts_out_of_order_are_named() -> None:
         putr(h, corner, g.KXP, x)
         putr(h, corner, g.KXCP, x + inward)
     putr(h, upper, g.KBRO, float(np.hypot(0.2, 0.5)))
+    putr(h, upper, g.KBM, 800.0)
+    putr(h, upper, g.KBI, 800.0 * (0.4**2 + 1.0) / 12)
     relink(h, lower, [low[0], low[1], left, right, low[2], low[3]])
     for contact, x in ((left, 0.3 + ROUNDING), (right, 0.7 - ROUNDING)):
         puti(h, contact, g.KCCOD, 3)

@@ -6,8 +6,8 @@ import pytest
 
 from udec_ia.checker import check
 from udec_ia.heap.accessors import getr, iget, puti, putr
-from udec_ia.kernels.links.lists import idomp
-from udec_ia.kernels.map.virtual import hook, take_contact_out
+from udec_ia.kernels.links.linked_lists import idomp
+from udec_ia.kernels.map.virtual_contacts import hook, take_contact_out
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.reader.list_walks import corners, groups

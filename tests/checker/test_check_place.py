@@ -8,9 +8,8 @@ import pytest
 from udec_ia import Model
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
-from udec_ia.checker.contact_overlaps import Touches
-from udec_ia.checker.contact_places import place
-from udec_ia.kernels.audit.outlines import end_of
+from udec_ia.checker.contact_places import Touches, place
+from udec_ia.kernels.audit.block_outlines import end_of
 from udec_ia.layout import offsets as g
 
 

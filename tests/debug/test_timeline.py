@@ -20,7 +20,7 @@ from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas
-from udec_ia.reader.places import place
+from udec_ia.reader.places import find_number
 
 KEPT_CYCLES = 460
 
@@ -85,7 +85,7 @@ def test_the_last_change_of_any_word(both: Any) -> None:
         atlas = Atlas(timeline.at(event).h)
         kind = str(rng.choice([kind for kind in KINDS if len(atlas.groups[kind])]))
         field = TABLE.group(kind).fields[int(rng.integers(len(TABLE.group(kind).fields)))]
-        word = place(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
+        word = find_number(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
         values = [word.value(h) for h in arrays[: event + 1]]
         changes = [k for k in range(1, event + 1) if values[k] != values[k - 1]]
         assert find_last_hit(timeline, event, WordChange(word))[0] == max(changes, default=0), word
@@ -198,7 +198,7 @@ def test_only_the_present_timeline_counts_after_resume(tmp_path: Path) -> None:
         if step == 0:  # before the first command
             debugger.goal_cycle = 50
         elif step == 1:
-            word = place(debugger.atlas, "block@721.KYD")
+            word = find_number(debugger.atlas, "block@721.KYD")
             debugger.add(WordChange(word, "<", float(word.value(debugger.array.h) or 0) + 0.1))
             debugger.add(ContactChange("recoded"))
             debugger.add(ContactChange("made"))
@@ -241,7 +241,7 @@ def test_probes_are_at_the_present_after_a_search_that_fails(tmp_path: Path) -> 
     whole = debugged("i32r64", tmp_path)
     size = max(copy.size for copy in whole.timeline.copies.values())
     poor = debugged("i32r64", tmp_path, budget=4 * size)
-    word = place(poor.atlas, "TIME")
+    word = find_number(poor.atlas, "TIME")
     probe = WordChange(word)
     poor.add(probe)
     begun: list[float] = []

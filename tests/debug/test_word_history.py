@@ -26,7 +26,7 @@ from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import getr
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, Atlas
-from udec_ia.reader.places import named, place
+from udec_ia.reader.places import find_number, number_of
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_within_a_cycle_its_own_writes_come_first(debugger: Debugger, trace: Cyc
     done = len(trace.writes) // 2
     trace.go(done)
     last = trace.accesses[trace.writes[done - 1]]
-    last_place = named(Atlas(trace.state.h), last.part, last.at)
+    last_place = number_of(Atlas(trace.state.h), last.part, last.at)
     lines = list(explain_write_within(debugger.timeline, event, trace, last_place))
     assert lines
     assert all(line.startswith(f"{last_place.name}: ") for line in lines)
@@ -101,9 +101,9 @@ def test_who_wrote_a_word(debugger: Debugger) -> None:
     event = timeline.event_of(90)
     atlas = Atlas(timeline.at(event).h)
     for block in atlas.groups["block"].tolist():
-        word = place(atlas, f"block@{block}.KYD")
+        word = find_number(atlas, f"block@{block}.KYD")
         told = "\n".join(explain_write(timeline, event, word))
-        if place(atlas, f"block@{block}.KBFIX").value(atlas.h):
+        if find_number(atlas, f"block@{block}.KBFIX").value(atlas.h):
             continue
         found = re.search(r"-> (\S+) .* in (\w+) \((\w+\.py):(\d+)\), move_all, \w+ of block@(\d+)", told)
         assert found, told
@@ -117,12 +117,12 @@ def test_who_wrote_what_no_cycle_has_written(debugger: Debugger) -> None:
     timeline = debugger.timeline
     atlas = debugger.atlas
     fixed = next(
-        ib for ib in atlas.groups["block"].tolist() if place(atlas, f"block@{ib}.KBFIX").value(atlas.h)
+        ib for ib in atlas.groups["block"].tolist() if find_number(atlas, f"block@{ib}.KBFIX").value(atlas.h)
     )
     assert "FIX 0,4 0,1" in "\n".join(
-        explain_write(timeline, timeline.now, place(atlas, f"block@{fixed}.KBFIX"))
+        explain_write(timeline, timeline.now, find_number(atlas, f"block@{fixed}.KBFIX"))
     )
-    assert "PROPERTY" in "\n".join(explain_write(timeline, timeline.now, place(atlas, "AKN")))
+    assert "PROPERTY" in "\n".join(explain_write(timeline, timeline.now, find_number(atlas, "AKN(1)")))
 
 
 def test_why_a_force_sum_is_what_it_is(debugger: Debugger) -> None:
@@ -132,7 +132,7 @@ def test_why_a_force_sum_is_what_it_is(debugger: Debugger) -> None:
     h = timeline.at(event).h
     atlas, summed = Atlas(h), 0
     for block in atlas.groups["block"].tolist():
-        word = place(atlas, f"block@{block}.KBFY")
+        word = find_number(atlas, f"block@{block}.KBFY")
         lines = list(explain_value(timeline, event, word))
         steps = [
             (float(found[1]), float(found[2]), found[3])
@@ -177,14 +177,14 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
     atlas = debugger.atlas
     for part in ("ci", "cr", "cd"):
         for index in range(len(getattr(atlas.h, part))):
-            one = named(atlas, part, index)
-            assert place(atlas, one.name) == one
+            one = number_of(atlas, part, index)
+            assert find_number(atlas, one.name) == one
     for kind in KINDS:
         for iad in atlas.groups[kind].tolist()[:2]:
             for word in atlas.words(atlas.span(iad)):
-                one = place(atlas, f"{kind}@{iad}.{word.name}")
+                one = find_number(atlas, f"{kind}@{iad}.{word.name}")
                 assert one.value(atlas.h) == atlas.value(word)
-                assert place(atlas, str(word.first)) == one
+                assert find_number(atlas, str(word.first)) == one
 
 
 @pytest.mark.parametrize(
@@ -195,16 +195,16 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
         ("block@3.KX", "no block at 3"),
         ("zone@1.KZG(9)", "no zone at 1"),
         ("NONE", "is not a variable of the common block"),
-        ("block@1", "give KIND@ADDRESS.FIELD"),
+        ("block@1", "is a whole group"),
         ("0", "addresses 1 to"),
         ("99999999", "addresses 1 to"),
         ("FRAC(2)", "1 element"),
-        ("", "give KIND"),
+        ("", "names no place"),
     ],
 )
 def test_names_that_mean_nothing(name: str, says: str, debugger: Debugger) -> None:
     with pytest.raises((ValueError, IndexError), match=says):
-        place(debugger.atlas, name)
+        find_number(debugger.atlas, name)
 
 
 def test_where_groups_got_other_addresses_the_search_is_over(tmp_path: Path) -> None:
@@ -218,5 +218,10 @@ def test_where_groups_got_other_addresses_the_search_is_over(tmp_path: Path) -> 
     timeline, atlas = debugger.timeline, debugger.atlas
     iad = int(atlas.groups["block"][-1])
     assert next(iter(explain_birth(timeline, timeline.now, iad))) == RENUMBERED
-    assert next(iter(explain_write(timeline, timeline.now, place(atlas, f"block@{iad}.KMAT")))) == RENUMBERED
-    assert "KYD: " in next(iter(explain_write(timeline, timeline.now, place(atlas, f"block@{iad}.KYD"))))
+    assert (
+        next(iter(explain_write(timeline, timeline.now, find_number(atlas, f"block@{iad}.KMAT"))))
+        == RENUMBERED
+    )
+    assert "KYD: " in next(
+        iter(explain_write(timeline, timeline.now, find_number(atlas, f"block@{iad}.KYD")))
+    )

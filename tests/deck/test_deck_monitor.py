@@ -1,6 +1,7 @@
 """The monitor, on a model that only writes down what it is told."""
 
 import io
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from support.call_recorder import Recorder
 
 from udec_ia import Model
+from udec_ia.cli import main
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.interactive_session import converse, history, history_file
@@ -332,3 +334,32 @@ def test_the_history_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     with history(history_file()):
         assert readline.get_history_item(1) == "GRAVITY 0 -10"
     readline.clear_history()
+
+
+@pytest.mark.parametrize("one_line", [True, False])
+@pytest.mark.parametrize("seekable", [True, False])
+def test_a_deck_that_does_not_end_is_an_error(
+    one_line: bool, seekable: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether it comes from a file or through a pipe, in one line or many."""
+    monkeypatch.setattr("udec_ia.deck.deck_statements.LARGEST", 1000)
+
+    class Endless(io.StringIO):
+        def seekable(self) -> bool:
+            return seekable
+
+    text = "*" * 3000 if one_line else "* comment\n" * 300
+    with pytest.raises(UdecError) as caught:
+        run_deck(Recorder(), Endless(text), io.StringIO(), name="pipe")
+    assert caught.value.number == 28
+    assert "pipe" in caught.value.message
+
+
+def test_all_commands_that_read_decks_have_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("udec_ia.deck.deck_statements.LARGEST", 100)
+    deck = tmp_path / "long.dat"
+    deck.write_text("* comment\n" * 30)
+    for name in ("run", "debug", "trade", "sweep"):
+        more = ["--set", "F=1,2"] if name == "sweep" else []
+        with suppress(SystemExit):
+            assert main([name, str(deck), "--out", str(tmp_path / name), *more]) not in (0, None)

@@ -13,7 +13,8 @@ from support.call_recorder import Recorder
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
 from udec_ia.deck.command_monitor import run_deck
-from udec_ia.deck.deck_variables import Values
+from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.deck_variables import Values, Variables
 
 PILE = """START
 DEFAULT F=0.5 N=3
@@ -26,7 +27,9 @@ CYCLE $N
 SLIP = "PROP MAT=1 F=$F\n"
 
 
-def told(deck: str, values: Values | None = None) -> list[tuple[str, tuple[object, ...], dict[str, object]]]:
+def obeyed_calls(
+    deck: str, values: Values | None = None
+) -> list[tuple[str, tuple[object, ...], dict[str, object]]]:
     """The calls that a deck makes, behind START."""
     model = Recorder()
     run_deck(model, "START\n" + deck, io.StringIO(), values)
@@ -54,7 +57,7 @@ def refused(deck: str, values: Values | None = None) -> UdecError:
     ],
 )
 def test_values_are_put_in(deck: str, values: Values, friction: float) -> None:
-    assert told(deck, values) == [("property", (), {"material": 1, "friction": friction})]
+    assert obeyed_calls(deck, values) == [("property", (), {"material": 1, "friction": friction})]
 
 
 @pytest.mark.parametrize(
@@ -68,7 +71,7 @@ def test_values_are_put_in(deck: str, values: Values, friction: float) -> None:
     ],
 )
 def test_values_are_put_into_names_of_files(line: str, path: str) -> None:
-    assert told(f"{line}\nFRAC $F\n", {"F": 7})[0] == ("save", (), {"path": Path("results") / path})
+    assert obeyed_calls(f"{line}\nFRAC $F\n", {"F": 7})[0] == ("save", (), {"path": Path("results") / path})
 
 
 @pytest.mark.parametrize(
@@ -167,6 +170,45 @@ def test_a_deck_with_variables_is_the_deck_with_their_values(
     names = [f"${'XY'[k]}" if variable else text for k, (text, variable) in enumerate(numbers)]
     values = {"XY"[k]: text for k, (text, variable) in enumerate(numbers) if variable}
     line, plain = between.join(["GRAVITY", *names]), between.join(["GRAVITY", *(one for one, _ in numbers)])
-    assert told(line, values) == told(plain)
+    assert obeyed_calls(line, values) == obeyed_calls(plain)
     one, two = refused(line + " BAD", values), refused(plain + " BAD")
     assert one.column - len(line) == two.column - len(plain)
+
+
+@pytest.mark.parametrize(
+    ("line", "values", "number"),
+    [
+        ("PROP MAT=1 KN=0.5$KN", {"KN": "1E8"}, "0.51E8"),
+        ("PROP MAT=1 KN=$KN.5", {"KN": 2}, "2.5"),
+        ("PROP MAT=1 KN=1E-$N", {"N": 8}, "1E-8"),
+        ("PROP MAT=1 KN=1$E", {"E": "E8"}, "1E8"),
+        ("CYCLE $A$B", {"A": 1, "B": 2}, "12"),
+        ("PATCH FRAC=0.5$F", {"F": 1}, "0.51"),
+    ],
+)
+def test_a_value_beside_a_number_makes_no_other_number(
+    line: str, values: dict[str, int | str], number: str
+) -> None:
+    with pytest.raises(UdecError) as caught:
+        list(Variables(values).filled(statements([line], "deck.dat")))
+    error = caught.value
+    assert (error.number, error.column) == (10, line.index("$") + 1)
+    assert number in error.message
+
+
+@pytest.mark.parametrize(
+    ("line", "values", "filled"),
+    [
+        ("GRAVITY 0 -$G", {"G": 10}, "GRAVITY 0 -10"),
+        ("SAVE run-$F.h5", {"F": 0.5}, "SAVE run-0.5.h5"),
+        ("PATCH block@$N.KXD=$V", {"N": 88, "V": -1}, "PATCH block@88.KXD=-1"),
+        ("SPLIT -1,$Y 7,$Y", {"Y": 2}, "SPLIT -1,2 7,2"),
+        ("PLOT S$I", {"I": 11}, "PLOT S11"),
+        ("PROP MAT=1 KN=${KN}e3", {"KN": 2}, "PROP MAT=1 KN=2e3"),
+    ],
+)
+def test_a_value_may_be_part_of_a_word_or_have_a_sign(
+    line: str, values: dict[str, int | float], filled: str
+) -> None:
+    (statement,) = Variables(values).filled(statements([line], "deck.dat"))
+    assert [one.text for one in statement.lines] == [filled]

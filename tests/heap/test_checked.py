@@ -99,5 +99,5 @@ def test_it_is_too_late_once_kernels_are_loaded() -> None:
 
 def test_chatter_is_looked_for_in_both_builds() -> None:
     """A size has more numbers behind it in the checked build: words that share a mark are as many as ever."""
-    import_it = "from udec_ia.kernels.drive.openings import STRIDE; print(STRIDE)"
+    import_it = "from udec_ia.kernels.drive.cycle import STRIDE; print(STRIDE)"
     assert {run("-c", import_it, UDEC_CHECKED=build).stdout for build in "01"} == {f"{min(g.NVCN[:3])}\n"}

@@ -17,7 +17,7 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.kernels.drive.passes import passes
+from udec_ia.kernels.drive.cycle import passes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.running.cycle import prepare

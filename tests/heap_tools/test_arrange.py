@@ -13,7 +13,7 @@ from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.relocation import relocate
-from udec_ia.heap_tools.memory_order import arrange
+from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MFREE
 from udec_ia.output.outline import snapshot
 
@@ -26,7 +26,7 @@ def folder_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("udec_ia.heap_tools.memory_order.LARGE", 2)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.LARGE", 2)
 
 
 def rows(m: Model) -> dict[str, Any]:
@@ -83,7 +83,7 @@ def test_a_large_model_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {kind: len(table) for kind, table in rows(here).items()} == {
         kind: len(table) for kind, table in rows(there).items()
     }
-    monkeypatch.setattr("udec_ia.heap_tools.memory_order.LARGE", 500)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.LARGE", 500)
     cycles = 100
     for m in (here, there):
         m.cycle(cycles)

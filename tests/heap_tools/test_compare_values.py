@@ -18,11 +18,9 @@ from udec_ia.cli import main
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
-from udec_ia.heap_tools.comparison_report import diff
+from udec_ia.heap_tools.comparison_report import diff, raw
 from udec_ia.heap_tools.rewrite_heap import rewrite
-from udec_ia.heap_tools.state_comparison import compare
-from udec_ia.heap_tools.value_comparison import reals_apart, tolerance
-from udec_ia.heap_tools.word_comparison import raw
+from udec_ia.heap_tools.state_comparison import compare, reals_apart, tolerance
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.group_tables import table

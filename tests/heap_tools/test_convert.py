@@ -25,8 +25,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import ALL_SCHEMES, Scheme, scheme
-from udec_ia.heap_tools.convert_word_scheme import convert
-from udec_ia.heap_tools.fitted_contacts import settle
+from udec_ia.heap_tools.convert_word_scheme import convert, settle
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.layout import offsets as g

@@ -13,10 +13,8 @@ from udec_ia import Model
 from udec_ia.heap.accessors import iget, puti
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
-from udec_ia.heap_tools.all_pointers import who
-from udec_ia.heap_tools.list_printout import walk
+from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.memory_use import junk
-from udec_ia.heap_tools.word_report import what
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts
 from udec_ia.reader.atlas import JUNK, UNUSED, Atlas

@@ -17,14 +17,11 @@ from support.every_group_kind import every_kind
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.command_line.coloured_listing import show
-from udec_ia.heap_tools.all_pointers import who
 from udec_ia.heap_tools.heap_dump import common, dump
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
-from udec_ia.heap_tools.list_printout import walk
-from udec_ia.heap_tools.memory_use import junk
+from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
-from udec_ia.heap_tools.word_report import what
 from udec_ia.output.dump import raw
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.listing import Listing, Stream
@@ -119,8 +116,8 @@ def test_what_cannot_be_looked_at(file: str, tmp_path: Path, capsys: pytest.Capt
         (["dump", file, "5-3"], "there are no words 5 to 3"),
         (["dump", file, "5-0"], "there are no words 5 to 0"),
         (["dump", file, "5/0"], "there are no words 5 to 4"),
-        (["dump", file, "x"], "give 412, 412-500"),
-        (["dump", file, "common", "--raw"], "give 412, 412-500"),
+        (["dump", file, "x"], "X names no words of IA()"),
+        (["dump", file, "common", "--raw"], "COMMON names no words of IA()"),
         (["find", file, "block where KXDD > 1"], "\n    block where KXDD > 1\n                ^\n"),
         (["find", file, "block", "--tolerance", "1"], "--tolerance goes with --value"),
         (["graph", file, "8000"], "only groups have pointers"),

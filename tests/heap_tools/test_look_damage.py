@@ -17,14 +17,11 @@ from support.every_group_kind import every_kind
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.heap_tools.all_pointers import who
 from udec_ia.heap_tools.heap_dump import common, dump
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
-from udec_ia.heap_tools.list_printout import walk
-from udec_ia.heap_tools.memory_use import junk
+from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
-from udec_ia.heap_tools.word_report import what
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output import heap_picture, place_picture, pointer_picture

@@ -15,12 +15,12 @@ from udec_ia.heap.accessors import iget
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_dump import common, dump
-from udec_ia.heap_tools.word_report import what
+from udec_ia.heap_tools.heap_lookup import what
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output.dump import dump as plain_dump
 from udec_ia.output.dump import raw
-from udec_ia.reader import group_names as names
+from udec_ia.reader import atlas as names
 from udec_ia.reader.atlas import KINDS, Atlas
 
 Row = dict[str, Any]

@@ -17,7 +17,7 @@ from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap_tools.heap_map import ACROSS, DOWN, cover, heap_map, stretch
+from udec_ia.heap_tools.memory_use import ACROSS, DOWN, cover, heap_map, stretch
 from udec_ia.heap_tools.pointer_graph import NODES, dot, graph, neighbourhood
 from udec_ia.layout import offsets as g
 from udec_ia.output import heap_picture, place_picture, pointer_picture

@@ -61,7 +61,7 @@ def test_every_form(name: str) -> None:
     for text, (kind, field, value) in forms(base(name)).items():
         array = base(name).copy()
         (former,) = patch(array, text).former
-        assert (former.now, former.what.split(" ")[0].split("(")[0]) == (value, field), text
+        assert (former.now, former.what.rpartition(".")[2].split("(")[0]) == (value, field), text
         if kind:
             row = {"block": 2, "zone": 3}[kind]
             assert value in np.atleast_1d(table(array, kind)[field][row])
@@ -92,13 +92,13 @@ def faults(array: MainArray) -> dict[str, tuple[int, str]]:
         "NBLK = 9223372036854775808": (28, "NBLK cannot be 9223372036854775808"),
         f"block@{block}.KXQ = 1": (10, "KXQ is not a field of a block\nthere are HEAD, KB, "),
         f"block@{block + 1}.KXD = 1": (10, f"there is no block at {block + 1}"),
-        f"corner@{block}.KXP = 1": (10, f"there is no corner at {block}\nwhat is there: block@{block}"),
+        f"corner@{block}.KXP = 1": (10, f"there is no corner at {block}\nthat word is in block@{block}"),
         "block@0.KXD = 1": (10, "there is no block at 0"),
-        "block@999999999999.KXD = 1": (10, "what is there: outside IA"),
+        "block@999999999999.KXD = 1": (10, "there is no block at 999999999999"),
         f"brick@{block}.KXD = 1": (10, "brick is not a kind of group"),
-        f"block@{block}.KMAT = 1.5": (10, "'1.5' is not an integer, which KMAT of block@"),
-        f"block@{block}.KMAT = {over}": (28, f"KMAT of block@{block} cannot be {over}"),
-        f"block@{block}.KMAT = {'9' * 5000}": (28, f"KMAT of block@{block} cannot be 9999"),
+        f"block@{block}.KMAT = 1.5": (10, "'1.5' is not an integer, which block@"),
+        f"block@{block}.KMAT = {over}": (28, f"block@{block}.KMAT cannot be {over}"),
+        f"block@{block}.KMAT = {'9' * 5000}": (28, f"block@{block}.KMAT cannot be 9999"),
         f"block@{block}.KMAT = 51": (
             28,
             f"not be sound: invariant 2: KMAT of block@{block} is 51, not 1 to 50",
@@ -107,10 +107,10 @@ def faults(array: MainArray) -> dict[str, tuple[int, str]]:
             28,
             f"KNB of corner@{corner} points to {corner}, which is no block",
         ),
-        f"{real} = 1": (10, f"{real} is in the real KX of block@{block}\ngive block@{block}.KX = VALUE"),
+        f"{real} = 1": (10, f"{real} is in the real block@{block}.KX\ngive block@{block}.KX = VALUE"),
         "0 = 1": (30, f"the words in use are 1 to {last}"),
         f"{last + 1} = 1": (30, f"{last + 1}"),
-        f"history@{history}.KHN = 3": (10, f"KHN of history@{history} says what was recorded"),
+        f"history@{history}.KHN = 3": (10, f"history@{history}.KHN states what was recorded"),
         f"MTOP = {len(array.h.ia) - 4}": (28, "MTOP is"),
         f"MFREE = {len(array.h.ia) + 2}": (28, "MFREE is"),
         "MFREE = 0": (28, "MFREE is 0"),
@@ -153,7 +153,7 @@ def test_one_word_changes_or_none(
     element = f"({i + 1})" if field.count > 1 else ""
     text = f"{group.name}@{rows['address'][row]}.{field.name}{element} = {value!r}"
     if group.name == "history" and field.role == "data" and field.target is None:
-        with pytest.raises(UdecError, match="says what was recorded"):
+        with pytest.raises(UdecError, match="states what was recorded"):
             patch(array, text)
         return
     sound = patch(forced, text, force=True).broken == []

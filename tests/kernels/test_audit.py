@@ -20,7 +20,7 @@ from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
 from udec_ia.heap import untrusted_lists
 from udec_ia.kernels.audit import faces
-from udec_ia.kernels.audit.outlines import in_polygon, in_rounded
+from udec_ia.kernels.audit.block_outlines import in_polygon, in_rounded
 from udec_ia.layout import offsets as g
 
 RATIO, STEP, SIZE = 2, 1, 4

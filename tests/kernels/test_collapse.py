@@ -10,7 +10,7 @@ from naive.relocate import differences, essence
 from support.mechanics_scenes import G, sound
 
 from udec_ia import Model
-from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced
 from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"

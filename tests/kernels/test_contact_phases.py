@@ -15,7 +15,7 @@ from udec_ia.compiling.interpreting import interpreted, observe
 from udec_ia.heap.accessors import int64, size_of
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.contact.ford import ford
-from udec_ia.kernels.energy.contacts import note_contact
+from udec_ia.kernels.energy.work_account import note_contact
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.laws.law_book import LawBook

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from support.watched_model import Over, Stage
+from support.watched_model import Over, WatchedModel
 
 from udec_ia.model import Model
 
@@ -41,7 +41,7 @@ def needles() -> Model:
 @pytest.mark.parametrize("share", [0.03, 0.2, 0.9])
 def test_two_needles_that_meet_in_a_gap_have_a_contact(share: float) -> None:
     """However fast they come there: `share` is what both together go in a cycle, in rounding lengths."""
-    stage = Stage(model=needles())
+    stage = WatchedModel(model=needles())
     model = stage.model
     model.round(D)
     model.fix(0, 4, 2.8, 3.2)

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.random_impacts import SHAPES
-from support.watched_model import Over, Stage
+from support.watched_model import Over, WatchedModel
 from trials import impact_search
 
 from udec_ia import Model, UdecError
@@ -191,7 +191,7 @@ CYCLE 2
 @pytest.mark.parametrize("way", [CONSTANT_SPEED, FREE_BLOCK, SPEED_RISES], ids=["constant", "free", "rises"])
 def test_a_block_does_not_go_through_a_fixed_one(way: str) -> None:
     """A contact in time, or error 15."""
-    stage = Stage()
+    stage = WatchedModel()
     with suppress(Over):
         stage.run(START + way)
     assert set(stage.errors) <= {15}
@@ -201,7 +201,7 @@ def test_a_block_does_not_go_through_a_fixed_one(way: str) -> None:
 @pytest.mark.parametrize("deck", FOUND.values(), ids=FOUND)
 def test_what_the_search_has_found(deck: str) -> None:
     """Contacts where bodies overlap and only there; error 15 in time, and for a reason."""
-    stage = Stage()
+    stage = WatchedModel()
     with suppress(Over):
         stage.run(deck)
     assert set(stage.errors) <= {15}

@@ -9,7 +9,7 @@ import pytest
 import shapely
 from naive.overlaps import Body, bare, deeper, deepest, depth, outline, parts, touching, within
 from support.mechanics_scenes import box, model
-from support.watched_model import Stage, Wrong
+from support.watched_model import WatchedModel, Wrong
 
 D = 0.1
 CLOSE = 2e-3 * D  # what chords and sampling cost
@@ -108,18 +108,18 @@ def test_what_happens_within_a_step() -> None:
 # ---- the stage
 
 
-def gap() -> tuple[Stage, int, int]:
+def gap() -> tuple[WatchedModel, int, int]:
     """Two blocks 1 m apart, without a contact, on a stage."""
     m = model(*box(0, 3, 0, 1), d=D)
     m.split(1, -1, 1, 2)
     m.split(2, -1, 2, 2)
     m.delete(1, 2, 0, 1)
-    stage = Stage(model=m)
+    stage = WatchedModel(model=m)
     left, right = sorted(stage.bodies(), key=lambda ib: stage.centroid(ib)[0])
     return stage, left, right
 
 
-def shifted(stage: Stage, ib: int, by: float) -> dict[int, Body]:
+def shifted(stage: WatchedModel, ib: int, by: float) -> dict[int, Body]:
     """The bodies, that of block `ib` moved to the left."""
     bodies = stage.bodies()
     return {**bodies, ib: Body(bodies[ib].corners - (by, 0), bodies[ib].plain)}
@@ -144,7 +144,7 @@ def test_the_stage_sees_contacts_that_are_too_deep_and_such_that_touch_nothing()
     """Of two blocks that touch, when their bodies are elsewhere than their contacts."""
     m = model(*box(0, 2, 0, 1), d=D)
     m.split(1, -1, 1, 2)
-    stage = Stage(model=m)
+    stage = WatchedModel(model=m)
     right = max(stage.bodies(), key=lambda ib: stage.centroid(ib)[0])
     stage._look(None, shifted(stage, right, 0.45 * D))
     with pytest.raises(Wrong, match=r"deep: .* by 0.600 D"):

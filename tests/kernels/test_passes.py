@@ -9,7 +9,7 @@ import pytest
 from support.mechanics_scenes import on_base
 
 from udec_ia import Model
-from udec_ia.kernels.drive import passes as module
+from udec_ia.kernels.drive import cycle as module
 from udec_ia.kernels.drive import recording
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft

@@ -10,9 +10,9 @@ import pytest
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.kernels.body.blocks import KEEP
-from udec_ia.kernels.detect.search import arc_on_arc, arc_on_edge
-from udec_ia.kernels.geometry.shape import crad
+from udec_ia.kernels.detect.contact_search import arc_on_arc, arc_on_edge
+from udec_ia.kernels.drive.cycle import KEEP
+from udec_ia.kernels.geometry.block_shape import crad
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, ROUNDING_DIGITS, last_digit

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from udec_ia.kernels.geometry.sorting import stable_order
+from udec_ia.kernels.geometry.box_sweep import stable_order
 
 
 @given(st.lists(st.integers(-3, 3), max_size=40))

@@ -10,7 +10,7 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.heap.accessors import getr, iget
-from udec_ia.kernels.body.bounds import _function, set_signals
+from udec_ia.kernels.body.boundary_conditions import _function, set_signals
 from udec_ia.layout import offsets as g
 
 EXACT = 1e-9

@@ -7,8 +7,8 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.heap.accessors import getr, putr
+from udec_ia.kernels.geometry.block_shape import crad
 from udec_ia.kernels.geometry.contact_geometry import BLUNT, meet
-from udec_ia.kernels.geometry.shape import crad
 from udec_ia.layout import offsets as g
 
 D = 0.05

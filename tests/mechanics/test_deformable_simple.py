@@ -10,7 +10,7 @@ import pytest
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import getr, putr
 from udec_ia.kernels.body.sdef import put_strain_rate, put_stress, stress
-from udec_ia.kernels.geometry.tensor import cayley
+from udec_ia.kernels.geometry.plane_tensors import cayley
 from udec_ia.layout import offsets as g
 
 RHO = 2000.0

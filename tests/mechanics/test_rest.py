@@ -14,7 +14,7 @@ from support.mechanics_scenes import G, block, box, model, on_base
 from support.safe_step_scenes import draw
 
 from udec_ia import Model, UdecError
-from udec_ia.kernels.energy.stored import kinetic
+from udec_ia.kernels.energy.stored_energy import kinetic
 from udec_ia.layout import offsets as g
 
 KN, DENSITY = 1e8, 1000.0

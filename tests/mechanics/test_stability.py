@@ -8,7 +8,7 @@ import pytest
 from support.mechanics_scenes import G
 
 from udec_ia import Model
-from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced
 from udec_ia.layout.offsets import TDEL
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"

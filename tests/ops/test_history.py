@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from support.every_group_kind import GROUPS, every_kind
 from support.handmade_map import two_blocks
-from support.mechanics_scenes import at, block, standing, value
+from support.mechanics_scenes import at, block, standing_block, value
 
 from udec_ia import Model, UdecError
 from udec_ia.checker import check, check_links
@@ -71,12 +71,12 @@ def state(m: Model) -> list[Any]:
 
 def test_recording_changes_nothing_and_does_not_depend_on_the_commands(tmp_path: Path) -> None:
     """Multiples of n only, each once, over CYCLE commands of any length; more rows than fit at once."""
-    plain = standing(tmp_path / "plain")
+    plain = standing_block(tmp_path / "plain")
     plain.damping(0.3, 10)
     plain.cycle(ROWS + 700)
     runs = []
     for pieces in ([ROWS + 700], [1, 1, 5, 0, ROWS, 693]):
-        m = standing(tmp_path / str(len(pieces)))
+        m = standing_block(tmp_path / str(len(pieces)))
         m.damping(0.3, 10)
         m.history(1, "KY", at=(0, 0.5))
         m.history(7, "unbalanced")
@@ -144,7 +144,7 @@ def test_a_recording_of_a_bare_array_makes_its_own_series() -> None:
 
 def test_a_point_means_the_nearest_group(tmp_path: Path) -> None:
     """By brute force over the tables; a domain is where its contacts are on the mean."""
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.split(-9, 0.5, 9, 0.5)
     m.split(0, 0.4, 0, 2)
     m.cycle(1)
@@ -214,7 +214,7 @@ def test_what_belongs_to_deformable_blocks_is_found_by_points(tmp_path: Path) ->
     ],
 )
 def test_wrong_parameters(what: dict[str, Any], number: int, parameter: str, tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     before = m.h.ia.tobytes(), m.h.ci.tobytes()
     with pytest.raises(UdecError) as caught:
         m.history(**{"n": 1} | what)
@@ -234,7 +234,7 @@ def test_no_room_for_a_history(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("field", "number"), [("KHK", 99), ("KHF", 999), ("KHN", 0), ("KHG", "corner")])
 def test_the_checker_knows_histories(field: str, number: int | str, tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.history(5, "KY", at=(0, 0.5))
     m.history(5, "TIME")
     assert check(m.array) == []
@@ -250,7 +250,7 @@ def test_the_checker_knows_histories(field: str, number: int | str, tmp_path: Pa
 
 
 def test_a_damaged_history_stops_the_next_cycle(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.history(5, "KY", at=(0, 0.5))
     m.rset(1e300, int(m.table("history")["address"][0]), 2)
     with pytest.raises(UdecError) as caught:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from naive.relocate import relocate
 from support.handmade_map import two_blocks
-from support.mechanics_scenes import block, push, standing, value
+from support.mechanics_scenes import block, push, standing_block, value
 
 from udec_ia import Model
 from udec_ia.heap.find_lose import find, lose
@@ -18,7 +18,7 @@ from udec_ia.ops.commands.history_definitions import define, definitions, named
 
 def test_a_group_that_has_gone_leaves_nan_and_is_told_once(tmp_path: Path) -> None:
     """A block that jumps loses a contact; landing makes a new one at the same address."""
-    m, told = standing(tmp_path, fraction=0.5), []
+    m, told = standing_block(tmp_path, fraction=0.5), []
     m.tell = told.append
     contacts = m.table("contact")["address"].tolist()
     m.history(1, "KCN", at=[(-1, 0), (1, 0)])
@@ -48,7 +48,7 @@ def test_a_group_that_has_gone_leaves_nan_and_is_told_once(tmp_path: Path) -> No
 
 
 def test_a_loss_is_told_in_the_deck(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.split(-9, 0.5, 9, 0.5)
     printed = m.run("HISTORY 1 KY AT 0,0.75\nDELETE -1 1 0.6 0.9\nCYCLE 1\n")
     assert printed is not None
@@ -56,7 +56,7 @@ def test_a_loss_is_told_in_the_deck(tmp_path: Path) -> None:
 
 
 def test_a_deleted_block_is_not_followed(tmp_path: Path) -> None:
-    m, told = standing(tmp_path), []
+    m, told = standing_block(tmp_path), []
     m.tell = told.append
     m.split(-9, 0.5, 9, 0.5)
     (upper,) = m.history(10, "KY", at=(0, 0.75))
@@ -82,7 +82,7 @@ def test_giving_a_group_back_blinds_its_histories_only() -> None:
 
 def test_save_and_restart_go_on_recording(tmp_path: Path) -> None:
     """Elsewhere and under another name: the files hold all that was recorded from the first cycle on."""
-    whole, first = standing(tmp_path / "whole"), standing(tmp_path / "first")
+    whole, first = standing_block(tmp_path / "whole"), standing_block(tmp_path / "first")
     for m in (whole, first):
         m.history(3, "KY", at=(0, 0.5))
         m.history(4, "KCFN", at=(1, 0))
@@ -104,7 +104,7 @@ def test_save_and_restart_go_on_recording(tmp_path: Path) -> None:
 
 
 def test_restart_takes_back_what_was_recorded_later(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     (height,) = m.history(1, "KY", at=(0, 0.5))
     m.cycle(5)
     m.save()
@@ -117,7 +117,7 @@ def test_restart_takes_back_what_was_recorded_later(tmp_path: Path) -> None:
 
 
 def test_a_loss_is_told_once_over_a_restart(tmp_path: Path) -> None:
-    m, told = standing(tmp_path), []
+    m, told = standing_block(tmp_path), []
     m.tell = told.append
     m.split(-9, 0.5, 9, 0.5)
     m.history(1, "KY", at=(0, 0.75))
@@ -131,7 +131,7 @@ def test_a_loss_is_told_once_over_a_restart(tmp_path: Path) -> None:
 
 
 def test_histories_follow_groups_that_change_places(tmp_path: Path) -> None:
-    m, moved = standing(tmp_path), standing(tmp_path)
+    m, moved = standing_block(tmp_path), standing_block(tmp_path)
     for one in (m, moved):
         one.history(1, "KXP", at=(0.5, 1))
         one.history(1, "KY", at=(0, 0.5))

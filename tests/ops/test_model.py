@@ -17,6 +17,7 @@ from udec_ia import Model, UdecError
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.errors import MESSAGES
 from udec_ia.heap.word_scheme import ALL_SCHEMES
+from udec_ia.layout import offsets as g
 
 ROOT = Path(__file__).parents[2]
 SQUARE = (0, 0, 0, 1, 1, 1, 1, 0)
@@ -258,3 +259,15 @@ def test_every_scheme_is_a_build() -> None:
     with pytest.raises(ValueError, match="i16r32, i32r32") as caught:
         Model("i8r8")
     assert all(name in str(caught.value) for name in ALL_SCHEMES)
+
+
+def test_the_error_of_no_damping_names_how_to_switch_it_off() -> None:
+    m = Model()
+    with pytest.raises(UdecError) as caught:
+        m.damping(0, 0)
+    assert (caught.value.number, caught.value.parameter) == (28, "freq")
+    assert "DAMPING 0 1" in caught.value.advice
+    m.damping(local=0.8)
+    m.damping(0, 1)
+    assert (m.h.cr[[g.ALPHA, g.BETA]] == 0).all()
+    assert m.h.ci[g.LREST] == 0

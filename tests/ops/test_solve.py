@@ -14,7 +14,7 @@ from support.mechanics_scenes import block, on_base, push
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.kernels.drive.unbalanced import force_ratio
+from udec_ia.kernels.drive.unbalanced_force import force_ratio
 from udec_ia.layout import offsets as g
 
 CHECK = 10  # cycles between two looks, as docs/histories.md says

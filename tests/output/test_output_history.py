@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support.mechanics_scenes import block, push, standing
+from support.mechanics_scenes import block, push, standing_block
 
 from udec_ia import UdecError
 from udec_ia.layout import offsets as g
@@ -16,7 +16,7 @@ from udec_ia.output.graph import figure
 
 
 def test_files_say_what_was_recorded(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.name = "scene"
     m.history(2, "KY", at=(0, 0.5))
     m.history(3, "unbalanced")
@@ -44,7 +44,7 @@ def test_files_say_what_was_recorded(tmp_path: Path) -> None:
 
 def test_what_an_error_cuts_short_is_in_the_files(tmp_path: Path) -> None:
     """Error 15 ends the CYCLE after the cycle in which it arises, and that is recorded too."""
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     (height,) = m.history(1, "KY", at=(0, 0.5))
     push(m, int(block(m, 0, 0.5)["address"]), yd=-30.0)
     with pytest.raises(UdecError) as caught:
@@ -57,7 +57,7 @@ def test_what_an_error_cuts_short_is_in_the_files(tmp_path: Path) -> None:
 
 def test_a_full_disk_is_error_31(tmp_path: Path) -> None:
     (tmp_path / "udec-history.h5").mkdir()
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     (height,) = m.history(1, "KY", at=(0, 0.5))
     with pytest.raises(UdecError, match=r"udec-history\.h5") as caught:
         m.cycle(3)
@@ -66,7 +66,7 @@ def test_a_full_disk_is_error_31(tmp_path: Path) -> None:
 
 
 def test_print_and_dump_show_histories(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     assert "No histories" in m.print("histories")
     m.history(5, "KY", at=(0, 0.5))
     m.cycle(10)
@@ -79,7 +79,7 @@ def test_print_and_dump_show_histories(tmp_path: Path) -> None:
 
 
 def test_a_deck_says_what_it_records(tmp_path: Path) -> None:
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     printed = m.run("HIS 10 KXD AT 0,0.5 0,-1\nHISTORY 5 UNB\nHISTORY 1 time\nCYCLE 5\nPLOT HISTORY\nP HIS\n")
     assert printed is not None
     lines = printed.splitlines()
@@ -94,7 +94,7 @@ def test_a_deck_says_what_it_records(tmp_path: Path) -> None:
 
 def test_the_picture(tmp_path: Path) -> None:
     """A panel for each field, a curve for each history that breaks off where its group has gone."""
-    m = standing(tmp_path)
+    m = standing_block(tmp_path)
     m.tell = lambda text: None
     with pytest.raises(UdecError, match="nothing was recorded"):
         m.plot(history=True)

@@ -163,6 +163,7 @@ BELOW = {  # layers that a layer imports
     "command_line": {
         "counting",
         "debug",
+        "deck",
         "diverge",
         "errors",
         "compiling",

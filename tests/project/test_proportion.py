@@ -19,7 +19,7 @@ from udec_ia import Model
 from udec_ia.advice.step_warnings import describe_step
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.memory_use import heap_map
 from udec_ia.layout import offsets as g
 from udec_ia.output import histories
 from udec_ia.output.outline import snapshot

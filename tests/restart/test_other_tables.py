@@ -189,7 +189,7 @@ CASES = {
 }  # fmt: skip
 
 
-def told(model: Model, folder: Path, case: Case, seed: int | None = 1) -> Path:
+def write_case(model: Model, folder: Path, case: Case, seed: int | None = 1) -> Path:
     """A file of the model, written by the other table with its groups in random order."""
     theirs = parse(case.text)
     rng = None if seed is None else np.random.default_rng(seed)
@@ -201,7 +201,7 @@ def told(model: Model, folder: Path, case: Case, seed: int | None = 1) -> Path:
 def test_a_file_by_another_table_is_read_by_names(name: str, model: Model, tmp_path: Path) -> None:
     """Every field and variable is what it was, but for addresses; and histories go on."""
     case = CASES[name]
-    path = told(model, tmp_path, case)
+    path = write_case(model, tmp_path, case)
     other = Model.restore(path)
     assert differences(essence(model.array), essence(other.array)) == []
     told_of = [(one.name, one.numbers.tobytes()) for one in other.histories()]
@@ -239,7 +239,7 @@ def test_words_by_another_table_are_those_that_a_program_with_it_writes(name: st
 @pytest.mark.parametrize("name", ["middle", "codes", "heads", "common", "all at once"])
 def test_what_was_read_goes_on_bit_for_bit(name: str, tmp_path: Path) -> None:
     one = scene(tmp_path)
-    two = Model.restore(told(one, tmp_path, CASES[name]), out=tmp_path / "two")
+    two = Model.restore(write_case(one, tmp_path, CASES[name]), out=tmp_path / "two")
     for m in (one, two):
         m.cycle(10)
         m.split(-1, 0.4, 1, 0.6)
@@ -253,7 +253,7 @@ def test_what_was_read_goes_on_bit_for_bit(name: str, tmp_path: Path) -> None:
 def test_in_every_word_scheme(build: str, tmp_path: Path) -> None:
     one = every_kind(build)
     case = CASES["all at once"]
-    other = Model.restore(told(one, tmp_path, case))
+    other = Model.restore(write_case(one, tmp_path, case))
     assert differences(essence(one.array), essence(other.array)) == []
     for scheme in ALL_SCHEMES.values():
         state = translate(words_of(one.array), parse(case.text), scheme)

@@ -67,7 +67,7 @@ def on_base(b: float, h: float, d: float, width: float, **numbers: Any) -> Model
     return m
 
 
-def standing(out: Path, **numbers: Any) -> Model:
+def standing_block(out: Path, **numbers: Any) -> Model:
     """A block of 1 by 1 at rest on a fixed base; two contacts, which carry no force yet."""
     m = on_base(1.0, 1.0, 0.1, 4.0, friction=0.5, **numbers)
     m.out = out

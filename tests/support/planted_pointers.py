@@ -95,7 +95,7 @@ def wrong(m: Model, target: str) -> Iterator[tuple[str, int]]:
             yield f"a {kind}", int(at[kind][-1])
 
 
-def said(m: Model) -> str:
+def describe_result(m: Model) -> str:
     """What two cycles say, and whether an error in the first leaves the words as they were."""
     before, cycles = words(m), int(m.array.h.ci[g.MCTOT])
     try:
@@ -129,7 +129,7 @@ def plant(m: Model, every: int) -> None:
     for name, word, what, iad in planted[::every] if CHECKED else []:
         m.session.return_to(before.copy(), [])
         m.array.h.ia[word - 1] = iad
-        print(f"{name} {what}: {said(m)}")
+        print(f"{name} {what}: {describe_result(m)}")
 
 
 if __name__ == "__main__":

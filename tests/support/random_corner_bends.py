@@ -2,8 +2,8 @@
 
 Two blocks meet at a corner of each that turns by a few degrees, or one of them has a straight edge there.
 Every corner is driven: the upper block moves as one, the lower block's nearly straight corner goes up and
-down. So corners lose their arcs and get them again while others touch them. Played on a Stage while it is
-drawn; lengths are drawn in edges, speeds in rounding lengths a step.
+down. So corners lose their arcs and get them again while others touch them. Played on a WatchedModel while
+it is drawn; lengths are drawn in edges, speeds in rounding lengths a step.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from support.random_impacts import drive
-from support.watched_model import Stage
+from support.watched_model import WatchedModel
 
 Rng = np.random.Generator
 Vector = Any  # array of two
@@ -45,7 +45,7 @@ def _around(point: Vector, reach: float) -> list[float]:
     return [x - reach, x + reach, y - reach, y + reach]
 
 
-def _cut(stage: Stage, rng: Rng, frame: Frame) -> None:
+def _cut(stage: WatchedModel, rng: Rng, frame: Frame) -> None:
     """A box, cut across so that thin wedges left and right of a point can be taken away; two blocks stay."""
     stage.do("block", *frame.place((-WIDE, -HIGH), (-WIDE, HIGH), (WIDE, HIGH), (WIDE, -HIGH)))
     middle, rise, fall = float(rng.uniform(-0.5, 0.5)), *(float(s) for s in rng.uniform(0.01, 0.06, 2))
@@ -64,7 +64,7 @@ def _cut(stage: Stage, rng: Rng, frame: Frame) -> None:
         stage.do("delete", *_around(frame.place((middle + 2 * x / 3, y / 3)), 0.01))
 
 
-def bend(stage: Stage, rng: Rng) -> None:
+def bend(stage: WatchedModel, rng: Rng) -> None:
     """Draw a bend and play it. Raises Wrong or Over."""
     frame, stiff = Frame(rng), 10.0 ** rng.uniform(7, 9)
     stage.do("property", 1, density=2000.0, kn=stiff, ks=stiff, friction=0.5, bulk=stiff * 20, g=stiff * 12)

@@ -1,7 +1,7 @@
 """Random impacts: two bodies cut from one block, or a few, are driven or thrown at each other.
 
-A strike is drawn from a generator and played on a Stage while it is drawn. Lengths are drawn in edges, speeds
-in rounding lengths a step (up to FAST along each axis): so every size, time-step and word scheme gives
+A strike is drawn from a generator and played on a WatchedModel while it is drawn. Lengths are drawn in edges,
+speeds in rounding lengths a step (up to FAST along each axis): so every size, time-step and word scheme gives
 impacts of the same kinds.
 """
 
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from support.watched_model import Stage
+from support.watched_model import WatchedModel
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.layout.offsets import KBEX, KFG, KG, KXG, KYG, MFDEF
 
@@ -115,7 +115,7 @@ def moved(ring: Outline, cuts: list[tuple[float, ...]], rng: Rng, narrow: bool) 
 # ---- a strike
 
 
-def strike(stage: Stage, kind: str, rng: Rng, types: bool = True) -> None:
+def strike(stage: WatchedModel, kind: str, rng: Rng, types: bool = True) -> None:
     """Draw a strike of the kind and play it; with `types`, blocks may deform. Raises Wrong or Over."""
     ring, cuts = moved(*SHAPES[kind](rng), rng, stage.build.endswith("32"))
     stiff = 10.0 ** rng.uniform(7, 9)
@@ -165,12 +165,12 @@ def strike(stage: Stage, kind: str, rng: Rng, types: bool = True) -> None:
     stage.check()
 
 
-def _needle_sides(stage: Stage, pieces: list[int]) -> int:
+def _needle_sides(stage: WatchedModel, pieces: list[int]) -> int:
     """The piece with the bluntest sharpest corner."""
     return max(pieces, key=lambda ib: sharpest(stage.bodies()[ib].corners))
 
 
-def _soften(stage: Stage, rng: Rng, *blocks: int) -> None:
+def _soften(stage: WatchedModel, rng: Rng, *blocks: int) -> None:
     """Make some of the blocks deformable."""
     for ib in blocks:
         kind = str(rng.choice(TYPES))
@@ -193,14 +193,14 @@ def sharpest(corners: Any) -> float:
     return float(np.arctan2(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]), (u * v).sum(axis=1)).min())
 
 
-def near(stage: Stage, ib: int) -> tuple[float, float, float, float]:
+def near(stage: WatchedModel, ib: int) -> tuple[float, float, float, float]:
     """A small range about the centroid of a block."""
     (x, y), size = stage.centroid(ib), 1e-3 * float(np.ptp(stage.bodies()[ib].corners, axis=0).max())
     size += 1e-6 * max(abs(x), abs(y))
     return float(x - size), float(x + size), float(y - size), float(y + size)
 
 
-def drive(stage: Stage, ib: int, rng: Rng | None = None, **words: Any) -> None:
+def drive(stage: WatchedModel, ib: int, rng: Rng | None = None, **words: Any) -> None:
     """BOUNDARY for one block: at its centroid, or at all grid-points of a fully-deformable one."""
     h = stage.model.h
     if iget(h, ib, HEAD) != MFDEF:
@@ -277,7 +277,7 @@ def _way(rng: Rng, direction: Vector, cycles: int) -> list[tuple[int, Vector]]:
     return WAYS[int(rng.integers(len(WAYS)))](rng, direction, cycles)
 
 
-def _run(stage: Stage, rng: Rng, mover: int, way: list[tuple[int, Vector]]) -> None:
+def _run(stage: WatchedModel, rng: Rng, mover: int, way: list[tuple[int, Vector]]) -> None:
     """Drive the mover along its way; it may be let go, stopped or thrown in between."""
     free = rng.random() < 0.35
     release = int(rng.integers(len(way))) if free else len(way)
@@ -307,7 +307,7 @@ def _run(stage: Stage, rng: Rng, mover: int, way: list[tuple[int, Vector]]) -> N
         stage.cycle(n)
 
 
-def _near_strike(stage: Stage, kind: str, rng: Rng, mover: int, target: int) -> None:
+def _near_strike(stage: WatchedModel, kind: str, rng: Rng, mover: int, target: int) -> None:
     """Away from the target by a few rounding lengths, and back."""
     tips = kind == "needles"
     away = stage.centroid(mover) - stage.centroid(target) if tips else _outwards(stage, mover, target)
@@ -334,14 +334,14 @@ def _pounce(rng: Rng, direction: Vector, gap: float) -> list[tuple[int, Vector]]
     return [(n, direction * max(gap - left, 0.0) / n), *steps, (40, direction * slow(rng))]
 
 
-def _go(stage: Stage, mover: int, step: Vector, cycles: int) -> None:
+def _go(stage: WatchedModel, mover: int, step: Vector, cycles: int) -> None:
     """Drive the mover by `step`, in rounding lengths, in each of some cycles."""
     vx, vy = (float(v) for v in clipped(step) * stage.d / stage.step)
     drive(stage, mover, xvel=vx, yvel=vy)
     stage.cycle(cycles)
 
 
-def _outwards(stage: Stage, mover: int, target: int) -> Vector:
+def _outwards(stage: WatchedModel, mover: int, target: int) -> Vector:
     """The normal of an edge of the target that looks towards the mover's centroid best."""
     ring, to = stage.bodies()[target].corners, stage.centroid(mover)
     along = np.roll(ring, -1, axis=0) - ring
@@ -350,7 +350,7 @@ def _outwards(stage: Stage, mover: int, target: int) -> Vector:
     return normal[int(seen.argmax())]
 
 
-def _aimed_strike(stage: Stage, rng: Rng, mover: int, target: int) -> None:
+def _aimed_strike(stage: WatchedModel, rng: Rng, mover: int, target: int) -> None:
     """Away, aside, and then with a corner or an edge towards a corner or an edge of the target."""
     bodies = stage.bodies()
     size = float(np.ptp(bodies[target].corners, axis=0).max())

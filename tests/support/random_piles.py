@@ -1,7 +1,7 @@
 """Random assemblies that move for long: up to 60 blocks, gravity, friction, pull-outs, deletions.
 
-A pile is drawn and played on a Stage as strikes are. The extreme ones have sharp tips, small roundings,
-slivers and far origins.
+A pile is drawn and played on a WatchedModel as strikes are. The extreme ones have sharp tips, small
+roundings, slivers and far origins.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from support.random_impacts import drive, edges, moved, near
-from support.watched_model import Stage
+from support.watched_model import WatchedModel
 from udec_ia.heap.accessors import getr
 from udec_ia.layout.offsets import AKN, KBM
 
@@ -24,7 +24,7 @@ CYCLES = 2000
 STEP = 40  # cycles from one look to the next
 
 
-def pile(stage: Stage, kind: str, rng: Rng) -> None:
+def pile(stage: WatchedModel, kind: str, rng: Rng) -> None:
     """Draw a pile of the kind and play it. Raises Wrong or Over."""
     extreme = kind == "extreme"
     w, h = rng.uniform(4, 12, 2)
@@ -92,7 +92,7 @@ def _cuts(rng: Rng, w: float, h: float, extreme: bool) -> list[tuple[float, ...]
     return [found[k] for k in rng.permutation(len(found))]
 
 
-def _event(stage: Stage, rng: Rng) -> Any:
+def _event(stage: WatchedModel, rng: Rng) -> Any:
     """Something happens: a block is deleted, pulled, thrown, let go, fixed or split."""
     blocks = list(stage.bodies())
     ib = int(rng.choice(blocks))
@@ -118,18 +118,18 @@ def _event(stage: Stage, rng: Rng) -> Any:
         stage.do("property", 1, friction=float(rng.uniform(0, 1)))
 
 
-def _extent(stage: Stage, ib: int) -> float:
+def _extent(stage: WatchedModel, ib: int) -> float:
     """The longer side of the box about a block."""
     return float(np.ptp(stage.bodies()[ib].corners, axis=0).max())
 
 
-def _stopping(stage: Stage, ib: int) -> float:
+def _stopping(stage: WatchedModel, ib: int) -> float:
     """The time in which a contact stops a block: it goes as deep as its speed times that."""
     h = stage.model.h
     return max(float(np.sqrt(getr(h, ib, KBM) / h.cr[AKN])), stage.step)
 
 
-def _all(stage: Stage) -> tuple[float, float, float, float]:
+def _all(stage: WatchedModel) -> tuple[float, float, float, float]:
     """A range about everything."""
     points = np.concatenate([body.corners for body in stage.bodies().values()])
     low, high = points.min(axis=0), points.max(axis=0)

@@ -2,8 +2,8 @@
 
 Both are cut from one block with a slit. Every bend of a face is convex or concave by 1e-4 to 0.15 radians,
 so the circles of its corners are far greater than the rounding length, and their centres far away. Played on
-a Stage while it is drawn; lengths are drawn in edges, speeds in rounding lengths a step. The checker looks
-after every cycle: a contact that is missing for one cycle only is what such corners do.
+a WatchedModel while it is drawn; lengths are drawn in edges, speeds in rounding lengths a step. The
+checker looks after every cycle: a contact that is missing for one cycle only is what such corners do.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from support.random_corner_bends import Frame
 from support.random_impacts import drive, edges, near
-from support.watched_model import Stage
+from support.watched_model import WatchedModel
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.layout.offsets import MFDEF
 
@@ -46,7 +46,7 @@ def _slit(rng: Rng) -> tuple[Any, Any]:
     return lower, upper
 
 
-def _cut(stage: Stage, rng: Rng, frame: Frame) -> bool:
+def _cut(stage: WatchedModel, rng: Rng, frame: Frame) -> bool:
     """Two bodies with a slit between them, rounded; False if they cannot be made."""
     lower, upper = _slit(rng)
     floor, top = lower[:, 1].min() - THICK, upper[:, 1].max() + THICK
@@ -62,7 +62,7 @@ def _cut(stage: Stage, rng: Rng, frame: Frame) -> bool:
     return stage.do("round", float(shortest * 10.0 ** rng.uniform(-2, np.log10(0.45)))) is not None
 
 
-def _soften(stage: Stage, rng: Rng, *blocks: int) -> None:
+def _soften(stage: WatchedModel, rng: Rng, *blocks: int) -> None:
     """Make a body deformable, or both: its face bends further, then."""
     for ib in blocks:
         drawn = rng.random()
@@ -72,7 +72,7 @@ def _soften(stage: Stage, rng: Rng, *blocks: int) -> None:
             stage.do("change", *near(stage, ib), type="sdef")
 
 
-def graze(stage: Stage, rng: Rng) -> None:
+def graze(stage: WatchedModel, rng: Rng) -> None:
     """Draw a graze and play it. Raises Wrong or Over."""
     frame, stiff = Frame(rng), 10.0 ** rng.uniform(7, 9)
     friction = float(rng.choice([0.0, 0.5]))

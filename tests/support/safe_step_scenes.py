@@ -23,7 +23,7 @@ MANY = 40  # blocks
 
 
 @dataclass(frozen=True)
-class Drawn:
+class RandomScene:
     """A model, what is in it, and its materials: bulk and shear moduli, and joint stiffnesses, by number."""
 
     model: Model
@@ -32,7 +32,7 @@ class Drawn:
     joints: dict[int, tuple[float, float]]
 
 
-def draw(kind: str, seed: int) -> Drawn:
+def draw(kind: str, seed: int) -> RandomScene:
     """Scene number `seed` of a kind, before its first cycle."""
     rng = np.random.default_rng([KINDS.index(kind), seed])
     size = 10 ** rng.uniform(-2, 3)
@@ -53,7 +53,7 @@ def draw(kind: str, seed: int) -> Drawn:
                 m.split(*(size * cut).ravel().tolist())
     m.gravity(0, 0)
     furnish(m, rng, size, soft=kind == "deformable")
-    return Drawn(m, layout, moduli, joints)
+    return RandomScene(m, layout, moduli, joints)
 
 
 def materials(m: Model, rng: Any, size: float) -> tuple[dict[int, Any], dict[int, Any]]:

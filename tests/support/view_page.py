@@ -19,7 +19,7 @@ needs_browser = pytest.mark.skipif(
 HOSTILE = "</script><script>pwned=1</script><img src=x onerror=pwned=2>"
 
 
-class Told:
+class ViewCase:
     """The states of the page: one model, before and after it ran, and a damaged copy; and the page."""
 
     def __init__(self, folder: Path) -> None:
@@ -47,7 +47,7 @@ class Told:
         return array
 
 
-def addresses(told: Told, kind: str) -> list[int]:
+def addresses(told: ViewCase, kind: str) -> list[int]:
     return [int(address) for address in told.now[kind]["address"]]
 
 

@@ -60,7 +60,7 @@ class Over(Exception):
         self.number = number
 
 
-class Stage:
+class WatchedModel:
     """A model on which a scene is played: every command through `do`, every cycle through `cycle`."""
 
     def __init__(self, build: str = "i32r64", model: Model | None = None) -> None:

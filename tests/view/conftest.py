@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import pytest
 from support.headless_browser import Browser
-from support.view_page import Told
+from support.view_page import ViewCase
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> Told:
-    return Told(tmp_path_factory.mktemp("view"))
+def viewed(tmp_path_factory: pytest.TempPathFactory) -> ViewCase:
+    return ViewCase(tmp_path_factory.mktemp("view"))
 
 
 @pytest.fixture(scope="module")
@@ -22,11 +22,11 @@ def running() -> Iterator[Browser]:
 
 
 @pytest.fixture
-def browser(running: Browser, told: Told) -> Iterator[Browser]:
+def browser(running: Browser, viewed: ViewCase) -> Iterator[Browser]:
     """A browser that shows the second state. Nothing may go wrong in it, and nothing be fetched."""
     running.size(1280, 800)
     running.scheme("light")
-    running.open(told.path, "#state=2")
+    running.open(viewed.path, "#state=2")
     yield running
     assert running.faults() == []
-    assert running.requests() == [told.path.absolute().as_uri()] * len(running.requests())
+    assert running.requests() == [viewed.path.absolute().as_uri()] * len(running.requests())

@@ -1,7 +1,7 @@
 """The colours of the kinds keep apart, also for those who do not see red, green or blue as others do.
 
 A colour as it is seen by these is calculated by the matrices of Machado, Oliveira and Fernandes (2009) for
-the severity 1, and two colours are compared by their distance in CIELAB (1976), where 2.3 can just be told.
+the severity 1, and two colours are compared by their distance in CIELAB (1976), where 2.3 can just be viewed.
 """
 
 from __future__ import annotations

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from support.headless_browser import Browser
-from support.view_page import Told, addresses, inked, needs_browser, on_picture, selected
+from support.view_page import ViewCase, addresses, inked, needs_browser, on_picture, selected
 
 pytestmark = needs_browser
 
 
-def test_it_fits_its_window(browser: Browser, told: Told) -> None:
-    block = addresses(told, "block")[0]
+def test_it_fits_its_window(browser: Browser, viewed: ViewCase) -> None:
+    block = addresses(viewed, "block")[0]
     for width, height in ((1280, 800), (1920, 1080), (900, 700), (390, 800)):
         browser.size(width, height)
-        browser.open(told.path, f"#at={block}&state=2")
+        browser.open(viewed.path, f"#at={block}&state=2")
         assert browser.js("document.scrollingElement.scrollWidth") <= width
         if width > 900:
             assert browser.js("document.scrollingElement.scrollHeight") <= height
@@ -28,22 +28,22 @@ def test_it_fits_its_window(browser: Browser, told: Told) -> None:
             assert min(box) > 200, (part, width)
 
 
-def test_light_and_dark(browser: Browser, told: Told) -> None:
+def test_light_and_dark(browser: Browser, viewed: ViewCase) -> None:
     colours: dict[str, Any] = {}
     for scheme in ("light", "dark"):
         browser.scheme(scheme)
-        browser.open(told.path)
+        browser.open(viewed.path)
         colours[scheme] = browser.js("[getComputedStyle(document.body).color, colours(app.table).paper]")
     assert colours["light"] == ["rgb(28, 27, 25)", "#ffffff"]
     assert colours["dark"][1] == "#17181a"
 
 
-def test_blocks_are_drawn_where_they_are(browser: Browser, told: Told) -> None:
+def test_blocks_are_drawn_where_they_are(browser: Browser, viewed: ViewCase) -> None:
     """Inside a block, away from its outline, its points and its name, there is nothing but its colour."""
-    browser.open(told.path, "#state=2")
+    browser.open(viewed.path, "#state=2")
     inked(browser, "#picture")  # it has been drawn by now
     rng = np.random.default_rng(2)
-    rows = {int(row["address"]): row for row in told.now["block"]}
+    rows = {int(row["address"]): row for row in viewed.now["block"]}
     soft = {1: "block", 2: "sdef"}
     blocks = {at: soft[row["HEAD"]] for at, row in rows.items() if row["HEAD"] in soft}
     assert {*blocks.values()} == {"block", "sdef"}
@@ -64,9 +64,9 @@ def test_blocks_are_drawn_where_they_are(browser: Browser, told: Told) -> None:
         assert {*found} == {colour}, address
 
 
-def test_zooming(browser: Browser, told: Told) -> None:
+def test_zooming(browser: Browser, viewed: ViewCase) -> None:
     """Wheel, mouse, buttons and keys; what lay under the mouse stays there."""
-    block = addresses(told, "block")[3]
+    block = addresses(viewed, "block")[3]
     x, y = on_picture(browser, block)
     scale = browser.js("app.picture.eye.scale")
     browser.ask("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-100)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from support.headless_browser import Browser
-from support.view_page import Told, arrived, needs_browser
+from support.view_page import ViewCase, arrived, needs_browser
 
 from udec_ia.layout import offsets as g
 
@@ -18,8 +18,8 @@ def ask(browser: Browser, query: str) -> None:
     browser.key("Enter")
 
 
-def test_the_search(browser: Browser, told: Told) -> None:
-    block = int(told.now["block"]["address"][2])
+def test_the_search(browser: Browser, viewed: ViewCase) -> None:
+    block = int(viewed.now["block"]["address"][2])
     ask(browser, "40")
     arrived(browser, 40)
     ask(browser, f"block@{block}")
@@ -33,17 +33,17 @@ def test_the_search(browser: Browser, told: Told) -> None:
     ask(browser, "DTOL")
     browser.wait("document.querySelector('tr.word')")
     assert browser.js("document.querySelector('tr.word .number').firstChild.data") == str(
-        float(told.model.h.cr[g.DTOL])
+        float(viewed.model.h.cr[g.DTOL])
     )
 
 
-def test_a_list_is_put_in_order(browser: Browser, told: Told) -> None:
+def test_a_list_is_put_in_order(browser: Browser, viewed: ViewCase) -> None:
     ask(browser, "KYD")
     order = (
         "[...document.querySelectorAll('#found tbody tr')].map((r) =>"
         "[r.querySelector('a').dataset.address, r.cells[1].textContent].map(Number))"
     )
-    rows = told.now["block"]
+    rows = viewed.now["block"]
     by_address = sorted(zip(rows["address"].tolist(), rows["KYD"].tolist(), strict=True))
     assert [tuple(row) for row in browser.js(order)] == by_address
     browser.click_on("#found th:nth-child(2) button")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.headless_browser import Browser
-from support.view_page import HOSTILE, Told, arrived, needs_browser, selected
+from support.view_page import HOSTILE, ViewCase, arrived, needs_browser, selected
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g
@@ -20,10 +20,10 @@ def hash_of(browser: Browser) -> dict[str, str]:
     return dict(browser.js("[...new URLSearchParams(location.hash.slice(1))]"))
 
 
-def test_the_selection_stays_from_state_to_state(browser: Browser, told: Told) -> None:
-    block = next(row for row in told.now["block"] if row["KYD"] != 0)
+def test_the_selection_stays_from_state_to_state(browser: Browser, viewed: ViewCase) -> None:
+    block = next(row for row in viewed.now["block"] if row["KYD"] != 0)
     address = int(block["address"])
-    was = told.before["block"][told.before["block"]["address"] == address]["KYD"][0]
+    was = viewed.before["block"][viewed.before["block"]["address"] == address]["KYD"][0]
     browser.js(f"location.hash = 'at={address}&state=2'")
     browser.wait("document.querySelector('tr.changed')")
     row = "[...document.querySelectorAll('#chosen tr')].find((r) => r.cells[0].textContent === 'KYD')"
@@ -54,18 +54,18 @@ def test_the_selection_stays_from_state_to_state(browser: Browser, told: Told) -
     assert changed > 100
 
 
-def test_the_last_word_counts(browser: Browser, told: Told) -> None:
+def test_the_last_word_counts(browser: Browser, viewed: ViewCase) -> None:
     """A state that takes its time does not come up when another one has been asked for since."""
-    browser.open(told.path, "#state=1")
+    browser.open(viewed.path, "#state=1")
     browser.js("(app.turn(3), app.turn(1))")
     browser.js("app.open(3).then(() => new Promise((done) => setTimeout(done, 50)))")
     assert (browser.js("app.shown"), hash_of(browser)["state"]) == (1, "1")
 
 
-def test_a_damaged_state(browser: Browser, told: Told) -> None:
+def test_a_damaged_state(browser: Browser, viewed: ViewCase) -> None:
     """What the checker says stands at the groups that it names, and the rest can be looked at."""
-    first, second = told.now["block"]["address"][1:3].tolist()
-    browser.open(told.path, f"#at={first}&state=3")
+    first, second = viewed.now["block"]["address"][1:3].tolist()
+    browser.open(viewed.path, f"#at={first}&state=3")
     browser.wait("document.querySelector('#chosen .fault')")
     faults = browser.js("[...document.querySelectorAll('#chosen .fault')].map((one) => one.textContent)")
     assert any("is no corner" in fault or "KP of block" in fault for fault in faults)
@@ -83,12 +83,12 @@ def test_a_damaged_state(browser: Browser, told: Told) -> None:
     assert browser.js(f"{row}.querySelector('.number').firstChild.data") == "NaN"
 
 
-def test_whatever_the_words_say_the_page_shows_it(browser: Browser, told: Told, tmp_path: Path) -> None:
+def test_whatever_the_words_say_the_page_shows_it(browser: Browser, viewed: ViewCase, tmp_path: Path) -> None:
     """Random words: every state is drawn, every group can be looked at, and nothing goes wrong."""
     rng, pages = np.random.default_rng(4), Page()
-    used = int(told.model.h.ci[g.MFREE]) - 1
+    used = int(viewed.model.h.ci[g.MFREE]) - 1
     for k in range(6):
-        array = told.model.array.copy()
+        array = viewed.model.array.copy()
         for _ in range(20 * (k + 1)):
             array.h.ia[int(rng.integers(used))] = rng.choice(
                 [0, -1, int(rng.integers(used)), int(rng.integers(-(2**31), 2**31))]
@@ -111,23 +111,23 @@ def test_whatever_the_words_say_the_page_shows_it(browser: Browser, told: Told, 
         )
         assert looked > 5
     assert browser.faults() == []
-    browser.open(told.path)
+    browser.open(viewed.path)
 
 
 def test_what_is_left_out_is_said(
-    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Told
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, viewed: ViewCase
 ) -> None:
     monkeypatch.setattr(page, "LIMIT", 1000)
     pages = Page()
-    pages.add(told.model.array, "cut")
+    pages.add(viewed.model.array, "cut")
     cut = pages.write(tmp_path / "cut.html")
     browser.open(cut, "#at=1200")
     assert "left out" in browser.js("document.querySelector('#about .fault').textContent")
     assert browser.js("document.querySelector('#chosen').textContent") == "1200 is left out of this page"
-    browser.open(told.path)
+    browser.open(viewed.path)
 
 
-def test_all_word_schemes_and_none_in_common(browser: Browser, tmp_path: Path, told: Told) -> None:
+def test_all_word_schemes_and_none_in_common(browser: Browser, tmp_path: Path, viewed: ViewCase) -> None:
     """One block in each; from one to the next nothing is compared."""
     pages = Page()
     for build in ("i16r32", "i32r32", "i16r64", "i32r64", "i64r64"):
@@ -142,23 +142,23 @@ def test_all_word_schemes_and_none_in_common(browser: Browser, tmp_path: Path, t
         assert browser.js(f"{row}.querySelector('.number').firstChild.data") == "0.75"
         assert browser.js("document.querySelectorAll('tr.changed').length") == 0
         assert ("not compared" in browser.js("document.querySelector('#state').textContent")) == (k > 0)
-    browser.open(told.path)
+    browser.open(viewed.path)
 
 
 # ---- what others wrote
 
 
-def test_text_of_others_stays_text(browser: Browser, told: Told) -> None:
-    browser.open(told.path, "#at=1&state=3")
+def test_text_of_others_stays_text(browser: Browser, viewed: ViewCase) -> None:
+    browser.open(viewed.path, "#at=1&state=3")
     assert browser.js("document.querySelector('#name').textContent") == f"damaged{HOSTILE}"
     assert browser.js("document.querySelector('#about pre').textContent") == HOSTILE
     assert browser.js("document.images.length") == 0
     assert browser.js("typeof pwned") == "undefined"
 
 
-def test_the_policy_holds(running: Browser, told: Told) -> None:
+def test_the_policy_holds(running: Browser, viewed: ViewCase) -> None:
     """A script that got into the page would not run, nor would anything be fetched."""
-    running.open(told.path)
+    running.open(viewed.path)
     running.js(
         "document.body.append(Object.assign(document.createElement('script'), {textContent: 'pwned = 4'}))"
     )

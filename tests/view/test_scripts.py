@@ -24,12 +24,11 @@ from support.replayable_steps import blocks, outline
 from udec_ia import Model
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.heap_tools.all_pointers import who
+from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.output.outline import domain_polygons
-from udec_ia.reader.atlas import JUNK, KINDS, Atlas
+from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, Atlas, called
 from udec_ia.reader.field_rows import NOT_ALLOWED, meaning
-from udec_ia.reader.group_names import ASTRAY, called
 from udec_ia.view.page import LIMIT, script
 from udec_ia.view.states import state
 from udec_ia.view.tables import tables
@@ -157,9 +156,9 @@ def compare(array: MainArray, spans: Any, every: int) -> None:
         if span.kind not in KINDS:
             continue
         for said, word in zip(one["words"], atlas.words(span), strict=True):
-            told = meaning(atlas, span, word)
-            assert said["text"] == told
-            broken = ASTRAY in told or told.startswith(NOT_ALLOWED) or told == "no head code of its kind"
+            text = meaning(atlas, span, word)
+            assert said["text"] == text
+            broken = ASTRAY in text or text.startswith(NOT_ALLOWED) or text == "no head code of its kind"
             assert said["sound"] is not broken
         if k % every == 0:
             rows = who(atlas, span.first).rows

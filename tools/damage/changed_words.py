@@ -33,7 +33,7 @@ import numpy as np
 from udec_ia import Model
 from udec_ia.checker import check, check_links
 from udec_ia.checker.checked_state import State
-from udec_ia.checker.integer_codes import allowed
+from udec_ia.checker.pointers_and_codes import allowed
 from udec_ia.errors import UdecError
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.main_array import MainArray

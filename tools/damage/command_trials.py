@@ -92,7 +92,7 @@ def spoil(array: MainArray, rng: Rng) -> None:
         h.cr[rng.integers(len(h.cr))] = rng.choice([np.nan, np.inf, -1.0, 1e30, 0.0])
 
 
-def wreck(rng: Rng, sound: Path, into: Path, secret: Path) -> str:
+def damage_file(rng: Rng, sound: Path, into: Path, secret: Path) -> str:
     """Write a damaged copy of a file; returns what was done."""
     what = int(rng.integers(5))
     into.unlink(missing_ok=True)
@@ -251,7 +251,7 @@ def cases(seed: int, first: int, last: int, sound: Path, only: list[str]) -> Ite
         for case in range(first, last):
             rng = np.random.default_rng([seed, case])
             good, bad = sound / f"{list(ALL_SCHEMES)[case % 5]}.h5", Path("bad.h5")
-            what = wreck(rng, good, bad, outside / "secret")
+            what = damage_file(rng, good, bad, outside / "secret")
             kept = bad.read_bytes()
             given = [*looks(rng, "bad.h5"), *changes(rng, "bad.h5", str(good)), *runs(rng, "bad.h5")]
             if rng.random() < PICTURES:

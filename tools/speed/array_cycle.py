@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.contact.changes import TURNED
+from udec_ia.kernels.contact.map_changes import TURNED
 from udec_ia.layout import offsets as g
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import loop

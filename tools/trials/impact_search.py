@@ -46,7 +46,7 @@ from support.random_corner_bends import bend
 from support.random_impacts import SHAPES, strike
 from support.random_piles import PILES, pile
 from support.random_sliding_faces import graze
-from support.watched_model import Over, Stage, Wrong
+from support.watched_model import Over, WatchedModel, Wrong
 
 SCHEMES = {"i16r32": 0.15, "i32r32": 0.1, "i16r64": 0.15, "i32r64": 0.5, "i64r64": 0.1}
 FACES = {"bends": bend, "grazes": graze}
@@ -79,7 +79,7 @@ def play(kind: str, seed: int, number: int, build: str | None = None) -> Outcome
     """Play one scene."""
     rng = np.random.default_rng([seed, KINDS.index(kind), number])
     drawn = str(rng.choice(list(SCHEMES), p=list(SCHEMES.values())))
-    stage = Stage(build or drawn)
+    stage = WatchedModel(build or drawn)
     found = Outcome(kind, number, build=stage.build)
     try:
         if kind in FACES:

@@ -3,7 +3,7 @@
 A stiff contact swings at a frequency that mass damping of a low one does not reach. Where it swings so widely
 that it opens, it loses its friction each time, and what lies on such contacts slides at any friction.
 
-The only cost is a look at all contacts every LOOK cycles (kernels.drive.openings). Every JUDGE cycles the
+The only cost is a look at all contacts every LOOK cycles (kernels.drive.cycle). Every JUDGE cycles the
 contacts are counted that have opened or closed between OFTEN pairs of looks or more, against all that bore a
 force. Blocks that fall or settle rattle as well, in some places and for a while. It is chatter if a SHARE of
 all contacts does so in two such windows in a row.
@@ -20,8 +20,8 @@ import numpy as np
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
-from udec_ia.kernels.drive.openings import LOOK, STRIDE
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.drive.cycle import LOOK, STRIDE
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.remark import Remark
 from udec_ia.running.group_names import contact_name
@@ -47,7 +47,7 @@ class ChatterMonitor:
         self._marks = np.zeros(0, np.uint8)
 
     def marks(self, h: Memory, n: int) -> Any:
-        """Marks for `n` cycles, as drive.openings wants them: none before there is a window to be judged."""
+        """Marks for `n` cycles, as drive.cycle wants them: none before there is a window to be judged."""
         if h.ci[g.MCTOT] + n < JUDGE:
             return np.zeros(0, np.uint8)
         needed = int(h.ci[g.MFREE]) // STRIDE + 1

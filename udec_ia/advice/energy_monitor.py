@@ -34,10 +34,15 @@ from udec_ia.advice.step_warnings import fraction_line, safe_fraction, step_warn
 from udec_ia.errors import OUT_OF_NOWHERE, UdecError
 from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.bounds import power_of_loads
-from udec_ia.kernels.drive.timestep import addresses
-from udec_ia.kernels.energy.inertial import energy_of_motion
-from udec_ia.kernels.energy.stored import height, liveliest, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.body.boundary_conditions import power_of_loads
+from udec_ia.kernels.energy.stored_energy import (
+    energy_of_motion,
+    height,
+    liveliest,
+    strain_of_blocks,
+    strain_of_contacts,
+)
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.common.number_limits import last_digit

@@ -16,11 +16,12 @@ from udec_ia.advice.damping_report import what_damps
 from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
 from udec_ia.kernels.geometry.tolerances import edges
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
+from udec_ia.ops.commands.generate_zones import inertia_ratio
 from udec_ia.ops.common.number_limits import NMAT, last_digit
 from udec_ia.remark import Remark
 
@@ -37,6 +38,7 @@ SLENDER = 100  # length over mean width of a block, from which on it is a sliver
 Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of the mean force on a contact: force of a last digit from which on to warn
 TINY = 1e-4  # fraction of the critical time-step from which downwards to warn
+GREATER = 1.005  # moment of inertia of zones over that of the body from which on to report it
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
 
@@ -63,6 +65,38 @@ def check_properties(array: MainArray, material: int, values: dict[str, float | 
                 f"{name.replace('_', ' ')} {value:g} of material {material} is a tangent, of {angle:.3g} "
                 f"degrees: if an angle of {value:g} degrees is meant, give {tangent:.3g}",
             )
+
+
+def check_new_material(array: MainArray, many: int, material: int) -> Iterator[Remark]:
+    """CHANGE: a material whose density comes too late."""
+    if array.h.ci[g.MCTOT]:
+        yield Remark(
+            "density-too-late",
+            f"masses were made before the first cycle: {counted(many, 'block')} of material {material} now "
+            "will keep mass and weight; a new density counts after a new START",
+        )
+
+
+def describe_inertia(array: MainArray, ib: int) -> Iterator[Remark]:
+    """GENERATE: how much more slowly block `ib` turns with its mass at grid-points."""
+    ratio = inertia_ratio(array.h, ib)
+    if ratio > GREATER:
+        yield Remark(
+            "inertia-of-zones",
+            f"masses at grid-points make the moment of inertia of block@{ib} {ratio:.2f} times that of the "
+            "body: it turns more slowly; smaller zones have less of this",
+        )
+
+
+def check_spin(array: MainArray, ib: int, before: float) -> Iterator[Remark]:
+    """GENERATE: another angular velocity of block `ib` than `before` (rad/s)."""
+    now = float(getr(array.h, ib, g.KTD))
+    if now != before:
+        yield Remark(
+            "spin-changed",
+            f"block@{ib} spins at {now:.4g} rad/s, and had {before:.4g}: its moment of inertia has grown, "
+            "and its angular momentum stays",
+        )
 
 
 def check_fraction(f: float) -> Iterator[Remark]:
@@ -137,8 +171,8 @@ def check_laws(array: MainArray, groups: Groups = listed) -> Iterator[Remark]:
         return
     blocks, contacts = groups(array, "block"), groups(array, "contact")
     followers = [
-        integers(h, groups, material)[integers(h, groups, number) > 1]
-        for groups, material, number in ((blocks, g.KMAT, g.KCONS), (contacts, g.KCM, g.KCC))
+        integers(h, blocks, g.KMAT)[integers(h, blocks, g.KCONS) > 1],
+        materials_of(h, contacts)[integers(h, contacts, g.KCC) > 1],
     ]
     for m in np.setdiff1d(integers(h, blocks, g.KMAT), np.concatenate(followers)):
         if m in given:

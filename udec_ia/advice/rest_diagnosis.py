@@ -16,8 +16,8 @@ from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
-from udec_ia.kernels.drive.timestep import addresses
-from udec_ia.kernels.energy.stored import strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.energy.stored_energy import strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.remark import Remark

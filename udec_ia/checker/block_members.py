@@ -16,8 +16,7 @@ from functools import cache
 
 import numpy as np
 
-from udec_ia.checker.checked_state import State
-from udec_ia.checker.ring_arrays import corner_before
+from udec_ia.checker.checked_state import State, corner_before
 from udec_ia.reader.field_reading import TABLE, Numbers, names
 
 OF_BLOCK = ("corner", "gridpoint", "zone")  # kinds of groups that belong to a block
@@ -26,6 +25,8 @@ KGP, *_ = names("corner", "backlink")
 KCOR, *_ = names("gridpoint", "backlink")
 KZG, *_ = names("zone", "triple")
 KFMIX = "KFMIX"
+
+MASS_SHARE = 1e-3  # by which sums of masses may differ, for rounding in 32 bits
 
 
 def check_members(state: State) -> None:
@@ -201,6 +202,26 @@ def _check_pairs(state: State) -> None:
     for k in np.flatnonzero((distinct != 4) | (owner[first] != owner[second]) | (first == second)):
         zone = state.address["zone"][rows[first[k]]]
         state.report(6, f"{KFMIX} of block@{owner[first[k]]} is 1, but zone@{zone} is no pair with the next")
+
+
+def check_point_masses(state: State) -> None:
+    """Invariant 7: a grid-point has a third of the mass of each of its zones, a block that of its zones."""
+    rows = np.stack([state.rows("gridpoint", state.column("zone", KZG, i)) for i in range(3)], axis=1)
+    known = (rows >= 0).all(axis=1)
+    mass, points = state.column("zone", "KZM")[known], len(state.address["gridpoint"])
+    due = np.bincount(rows[known].ravel(), np.repeat(mass / 3, 3), points)
+    _check_masses(state, "gridpoint", "KGPM", due, np.ones(points, bool))
+    block = state.rows("block", state.owner["zone"][known])
+    due = np.bincount(block[block >= 0], mass[block >= 0], len(state.address["block"]))
+    _check_masses(state, "block", "KBM", due, np.isin(state.address["block"], zoned(state)))
+
+
+def _check_masses(state: State, kind: str, field: str, due: Numbers, here: Numbers) -> None:
+    """The masses of the groups `here` are those that their zones give them."""
+    mass = state.column(kind, field)
+    for k in np.flatnonzero(here & (np.abs(mass - due) > MASS_SHARE * np.maximum(np.abs(due), np.abs(mass)))):
+        group = state.address[kind][k]
+        state.report(7, f"{field} of {kind}@{group} is {mass[k]}, but its zones have the mass {due[k]}")
 
 
 def check_zone_areas(state: State) -> None:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from udec_ia.checker.block_members import zoned
 from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.kernels.audit.outlines import (
+from udec_ia.kernels.audit.block_outlines import (
     Outlines,
     fill_blocks,
     fill_circles,
@@ -17,8 +18,7 @@ from udec_ia.kernels.audit.outlines import (
     short_edges,
     wrong_circles,
 )
-from udec_ia.reader.field_reading import INDEX, Numbers
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import INDEX, Numbers, told
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
@@ -111,10 +111,35 @@ def check_outlines(state: State, o: Outlines) -> None:
             f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}, "
             f"KRAD {o.r[i]}, but its edges ask for {x}, {y}, {radius}",
         )
+    _check_inertia(state, o, rows, area, far)
     noted = state.column("block", "KBRO")[rows]
     for b in np.flatnonzero(np.abs(far - noted) > 2 * o.slack):
         state.report(
             7, f"KBRO of block@{o.block[b]} is {noted[b]}, but a corner is {far[b]} from the centroid"
+        )
+
+
+def _check_inertia(state: State, o: Outlines, rows: Numbers, area: Numbers, far: Numbers) -> None:
+    """Mass and moment of inertia of a block without zones are those of one density.
+
+    Which density is not known: PROPERTY may have changed it since the mass was calculated.
+    """
+    centroid = np.column_stack([state.column("block", name)[rows] for name in ("KX", "KY")])
+    here = o.p - centroid[o.owner]
+    last = here[o.before]
+    cross = here[:, 0] * last[:, 1] - here[:, 1] * last[:, 0]  # clockwise: positive
+    second = np.add.reduceat(cross * (here**2 + here * last + last**2).sum(axis=1), o.first) / 12
+    off = np.add.reduceat(cross[:, None] * (here + last), o.first) / (6 * area[:, None])
+    second -= area * (off**2).sum(axis=1)
+    mass, inertia = (state.column("block", name)[rows] for name in ("KBM", "KBI"))
+    due = mass * second / area
+    share = 1e-3 + 20 * o.slack * far / area
+    wrong = np.abs(inertia - due) > share * np.maximum(inertia, due)
+    for b in np.flatnonzero(wrong & (area > 0) & ~np.isin(o.block, zoned(state))):
+        state.report(
+            7,
+            f"KBI of block@{o.block[b]} is {inertia[b]}, but with the mass {mass[b]} (KBM) its outline has "
+            f"the moment of inertia {due[b]}",
         )
 
 

@@ -1,12 +1,11 @@
 """Invariant 6 for boundary conditions and signals: a condition acts on one place, which it holds as it says.
 
-    a condition acts on a grid-point if the block has zones, else on a corner or on the block itself
-    one on a corner carries the load of an edge that begins or ends there, and is given no velocities; where
-    the other end has a condition of its own that names this one's corner, this one names that of the other
-    the velocities that a condition gives are held at its grid-point or block
-    a FUNCTION has a number of its own and points, a sine has neither
-
-That a grid-point or block holds a velocity that no condition gives is sound: it keeps what it has.
+a condition acts on a grid-point if the block has zones, else on a corner or on the block itself
+one on a corner carries the load of an edge that begins or ends there, and is given no velocities; where
+the other end has a condition of its own that names this one's corner, this one names that of the other
+a grid-point or block holds the velocities that conditions give it (KGFIX, KBFIX) and no others
+a block that FIX holds has no velocity
+a FUNCTION has a number of its own and points, a sine has neither
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ def check_bounds(state: State) -> None:
     if len(state.address["bound"]):
         _check_places(state)
         _check_edges(state)
-        _check_held(state)
+    _check_held(state)
     _check_signals(state)
 
 
@@ -72,24 +71,28 @@ def _check_edges(state: State) -> None:
 
 
 def _check_held(state: State) -> None:
-    """Velocities that are given are not calculated."""
-    bounds, given = state.address["bound"], state.column("bound", "KUFIX")
-    fixed = state.column("block", "KBFIX")
-    along_x, along_y = fixed & (g.FIXED | g.GIVEN_X) != 0, fixed & (g.FIXED | g.GIVEN_Y) != 0
-    held = along_x * g.ALONG_X + along_y * g.ALONG_Y  # of a block, in the code of a grid-point
-    for kind, name, field, values in (
-        ("gridpoint", "KUG", "KGFIX", state.column("gridpoint", "KGFIX")),
-        ("block", "KUB", "KBFIX", held),
+    """Velocities are held where conditions give them, and nowhere else; a fixed block is at rest."""
+    given, on_point = state.column("bound", "KUFIX"), state.column("bound", "KUG") != 0
+    of_blocks = np.where(given & g.ALONG_X, g.GIVEN_X, 0) | np.where(given & g.ALONG_Y, g.GIVEN_Y, 0)
+    fixed = state.column("block", "KBFIX") == g.FIXED
+    for kind, name, field, codes, acts, exempt in (
+        ("gridpoint", "KUG", "KGFIX", given, on_point, False),
+        ("block", "KUB", "KBFIX", of_blocks, ~on_point, fixed),
     ):
-        acts = state.column("bound", "KUG") == 0 if kind == "block" else True
         row = state.rows(kind, state.column("bound", name))
-        for k in np.flatnonzero(acts & (row >= 0) & (given & ~np.append(values, 0)[row] != 0)):
-            target = state.address[kind][row[k]]
+        acts = acts & (row >= 0)
+        due = np.zeros(len(state.address[kind]), np.int64)
+        np.bitwise_or.at(due, row[acts], codes[acts])
+        held = state.column(kind, field)
+        for k in np.flatnonzero((held != due) & ~exempt):
             state.report(
                 6,
-                f"bound@{bounds[k]} gives velocities (KUFIX is {given[k]}), but {field} of {kind}@{target} "
-                f"is {state.get(int(target), field)}, which does not hold them",
+                f"{field} of {kind}@{state.address[kind][k]} is {held[k]}, "
+                f"but conditions give it the velocities {due[k]}",
             )
+    moving = np.any([state.column("block", name) != 0 for name in ("KXD", "KYD", "KTD")], axis=0)
+    for k in np.flatnonzero(fixed & moving):
+        state.report(6, f"block@{state.address['block'][k]} is fixed (KBFIX is 1), but has a velocity")
 
 
 def _check_signals(state: State) -> None:

@@ -1,11 +1,16 @@
-"""Invariants 3, 4 and 5: the lists of the blocks, the loops of the domains, Euler's formula.
+"""Lists of blocks, loops of domains, Euler's formula and the outer domain: invariants 3, 4 and 5.
 
-Every contact stands in the lists of two blocks, so it can be passed in two ways: having come along the
-list of KB1 one goes on along KB2, and the other way round. To go on along a block to its next contact and
-to change the block there is a permutation of these passages; its cycles are the faces of the map. Each
-must be the loop of one domain.
+Every contact stands in the lists of two blocks, so it can be passed in two ways: from the list of KB1 to that
+of KB2, and the other way round. To go on along a block to its next contact and to change the block there is a
+permutation of these passages. Its cycles are the faces of the map, and each must be the loop of one domain.
 
 All lists are looked at together, as arrays; only what is wrong is looked at by itself.
+
+A domain is on the left of its loop. So the polygon of its loop, through contacts and corners, has a positive
+area, but for the overlaps. The outer domain has the ground on its outside, and minus the area of all that it
+encloses: no other is as low. The loop passes a virtual contact on both of the ways between its two blocks, so
+the two jumps cancel: each block's part of the loop counts as if it closed at the item before the contact.
+After an error that let blocks into each other areas prove nothing, and this is left out.
 """
 
 from __future__ import annotations
@@ -17,11 +22,11 @@ import numpy as np
 from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.counting import counted
-from udec_ia.heap.untrusted_lists import ill_linked
-from udec_ia.kernels.audit.faces import cycles, passages, pieces
+from udec_ia.errors import DISORDERED
+from udec_ia.heap.untrusted_lists import ill_linked, place_items
+from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
-from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names, told
 
 PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
 ILL_LINKED = InterpretWhenSmall(ill_linked, 5e5)  # items
@@ -219,3 +224,31 @@ def _check_connected(state: State) -> None:
     PIECES(len(one), one, two, smallest)
     for block in blocks[smallest != 0]:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
+
+
+AREAS, PLACE_ITEMS = InterpretWhenSmall(areas, 9e5), InterpretWhenSmall(place_items, 1e6)  # items
+
+
+def check_outer(state: State) -> None:
+    """Invariant 4, if every list is closed and all places are numbers."""
+    rings, domains = state.rings, state.address["domain"]
+    if state.common("NSPOIL") in DISORDERED:
+        return
+    if len(rings.block) < len(state.address["block"]) or len(domains) < 2:
+        return
+    if not len(rings.item) or (rings.row < 0).any() or (rings.at < 0).any():  # a block's part is missing
+        return
+    places, fields = np.empty((len(rings.item), 2)), ("KXP", "KYP", "KXC", "KYC")
+    reals = tuple(state.offset[name] for name in fields)
+    PLACE_ITEMS(len(places), state.h.ra, rings.item, rings.contact, state.ratio, reals, places)
+    virtual = state.column("contact", "KCCOD") == g.VIRTUAL
+    named = np.array([state.rows("domain", state.column("contact", side)) for side in SIDES])
+    twice = np.zeros(len(domains))
+    of_lists = rings.lists, rings.contact, rings.row, rings.side
+    if not AREAS(len(rings.item), *of_lists, virtual, named, places, twice):
+        return
+    outer, lowest = state.common("IODPNT"), int(twice.argmin())
+    if outer != domains[lowest]:
+        state.report(
+            4, f"IODPNT, the outer domain, is {outer}, but domain@{domains[lowest]} lies around all blocks"
+        )

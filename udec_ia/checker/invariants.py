@@ -9,38 +9,42 @@
     5. blocks - contacts + domains = 2; the counts of the common block and of zones are true, and tolerances
        are those of the rounding length
     6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
-    7. reals are finite, masses and areas positive, overlaps within DTOL2, contact codes agree with geometry
+    7. reals are finite, areas positive, overlaps within DTOL2; masses and contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
 
 What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say,
 the checker comes to an end and raises nothing.
+`unjudged` states what is left out and why: a state may be unfinished, or beyond what an invariant can prove.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from udec_ia.checker.block_members import check_members, check_zone_areas
+from udec_ia.checker.block_members import check_members, check_point_masses, check_zone_areas
 from udec_ia.checker.block_outlines import check_outlines, outlines
 from udec_ia.checker.boundary_conditions import check_bounds, check_times
 from udec_ia.checker.checked_state import State, Violation
-from udec_ia.checker.common_block import check_common
 from udec_ia.checker.connected_pieces import check_pieces
-from udec_ia.checker.contact_map import check_map
-from udec_ia.checker.contact_overlaps import check_contacts, touches
-from udec_ia.checker.contact_places import check_places
-from udec_ia.checker.integer_codes import check_codes
+from udec_ia.checker.contact_map import check_map, check_outer
+from udec_ia.checker.contact_places import check_contacts, check_places, touches
 from udec_ia.checker.memory_words import check_memory
 from udec_ia.checker.missing_contacts import check_complete
-from udec_ia.checker.outer_domain import check_outer
-from udec_ia.checker.pointer_targets import check_pointers
-from udec_ia.checker.real_numbers import check_numbers
-from udec_ia.checker.recorded_histories import check_histories
+from udec_ia.checker.pointers_and_codes import (
+    check_codes,
+    check_common,
+    check_histories,
+    check_numbers,
+    check_pointers,
+)
+from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.audit.outlines import Outlines
+from udec_ia.kernels.audit.block_outlines import Outlines
 from udec_ia.layout import offsets as g
-from udec_ia.reader.field_reading import KIND_CODE
+from udec_ia.reader.field_reading import KIND_CODE, TABLE
 
 
 def check_links(array: MainArray) -> list[Violation]:
@@ -88,6 +92,7 @@ def _check_shapes(state: State) -> Outlines | None:
     """Numbers and outlines; the outlines, or None if there are none."""
     check_numbers(state)
     check_zone_areas(state)
+    check_point_masses(state)
     check_times(state)
     shapes = outlines(state)
     if shapes is not None:
@@ -108,3 +113,44 @@ def _check_links(state: State) -> None:
     check_outer(state)
     check_members(state)
     check_bounds(state)
+
+
+SHOWN = 3  # violations that a summary names
+PHASES = {code.value: code.text for code in TABLE.codes_of("JPHASE")}
+BEYOND_LINKS = 7  # the first invariant that is not of links
+
+
+def unjudged(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
+    """What `check` does not judge in the state of `array`, in sentences; [] if it judges all.
+
+    found: what `check` has found. Where links are broken, what hangs on them is left out.
+    """
+    phase, error, cycle = (int(array.h.ci[place]) for place in (g.JPHASE, g.NSPOIL, g.MCSPOI))
+    broken = any(one.invariant < BEYOND_LINKS for one in found)
+    return unfinished(phase, error, cycle) + (["not judged: what depends on broken links"] if broken else [])
+
+
+def unfinished(phase: int, error: int, cycle: int) -> list[str]:
+    """What is not judged in a state that stopped before a pass, or of which an error has ended a run.
+
+    phase, error, cycle: JPHASE, NSPOIL and MCSPOI.
+    """
+    said = []
+    if phase != g.AT_BLOCKS:
+        said.append(
+            "not judged: contacts against outlines, as the state stopped in the middle of a cycle, "
+            f"{PHASES.get(phase, 'before an unknown pass')} (JPHASE {phase})"
+        )
+    if error in DISORDERED:
+        said.append(
+            f"not judged: which domain is the outer one, as error {error} in cycle {cycle}, "
+            f"{MESSAGES[error]}, has ended a run of this state"
+        )
+    return said
+
+
+def in_short(broken: Sequence[Violation]) -> str:
+    """Some violations in words: those that mislead go before the words that are lost because of them."""
+    more = [f"and {len(broken) - SHOWN} more"] if len(broken) > SHOWN else []
+    first = sorted(broken, key=lambda one: not one.misleads)
+    return "; ".join([*map(str, first[:SHOWN]), *more])

@@ -13,8 +13,7 @@ from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.untrusted_lists import gaps
-from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers, told
 
 JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
 GAPS = InterpretWhenSmall(gaps, 9e6)  # places where a group could begin

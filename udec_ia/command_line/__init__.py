@@ -11,7 +11,7 @@ from typing import Any
 from udec_ia.command_line import (
     change_commands,
     check_command,
-    debug,
+    debug_command,
     diff_command,
     diverge,
     info_command,
@@ -23,7 +23,7 @@ from udec_ia.command_line import (
 )
 
 READ_ONLY = (check_command, look_commands, diff_command, change_commands)  # commands that run nothing
-PARTS = (info_command, *READ_ONLY, debug, diverge, sweep, trade, view_command, verify)
+PARTS = (info_command, *READ_ONLY, debug_command, diverge, sweep, trade, view_command, verify)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 LOOKS = tuple(verb for part in READ_ONLY for verb in part.VERBS)
 

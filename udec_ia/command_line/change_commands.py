@@ -166,7 +166,7 @@ def _write(
     broken: Sequence[Violation] = (),
 ) -> Listing:
     """TO, unless the state is not sound: then only if it is forced."""
-    from udec_ia.heap_tools.fault_summary import in_short
+    from udec_ia.checker import in_short
     from udec_ia.reader.listing import Listing
     from udec_ia.restart import save_changed
 

@@ -16,10 +16,10 @@ from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
-from udec_ia.heap_tools.heap_map import PICTURE
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, UNUSED
+from udec_ia.heap_tools.memory_use import PICTURE
+from udec_ia.printable import visible
+from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, NOTHING, UNUSED
 from udec_ia.reader.field_rows import NOT_ALLOWED
-from udec_ia.reader.group_names import ASTRAY
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
 from udec_ia.reader.listing import Line, Listing, Tables
 
@@ -38,6 +38,7 @@ def show(listing: Listing | Tables, stream: TextIO) -> None:
     coloured = console.color_system is not None and not console.no_color
     picture = PICTURE in listing.columns
     for line in listing.lines():
+        line = line._replace(text=visible(line.text))
         for text, last in _folded(line, max(console.width, 2 * ROOM)):
             console.print(_coloured(text, last, line, picture) if coloured else text, soft_wrap=True)
 

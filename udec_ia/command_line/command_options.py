@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import DAMAGED, UdecError
-from udec_ia.printable import folded
+from udec_ia.printable import folded, visible
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing, Tables
@@ -93,7 +93,7 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
             return 0
         found = look(args)
     except (IndexError, ValueError) as error:
-        print(folded(f"udec {verb}: {error}"), file=sys.stderr)
+        print(folded(visible(f"udec {verb}: {error}")), file=sys.stderr)
         return MISUSE
     except UdecError as error:
         if error.number == DAMAGED and "file" in args:  # it is no run that has done this
@@ -113,4 +113,4 @@ def _print(found: Listing | Tables, as_json: bool) -> None:
 
         show(found, sys.stdout)
     else:
-        sys.stdout.writelines(f"{line.text}\n" for line in found.lines())
+        sys.stdout.writelines(f"{visible(line.text)}\n" for line in found.lines())

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, variables
 from udec_ia.counting import counted
+from udec_ia.deck.deck_statements import read_deck
 from udec_ia.errors import UdecError
 from udec_ia.printable import printable
 
@@ -118,7 +119,7 @@ def _run(
 
 
 def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8-sig", errors="replace")
+    return read_deck(path)
 
 
 def _diverge(args: argparse.Namespace) -> Listing:

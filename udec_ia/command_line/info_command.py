@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 VERBS = ("info",)
 SCRIPT = """\
 from udec_ia.heap_tools.facilities import facilities
-from udec_ia.heap_tools.unused_facilities import idle
+from udec_ia.heap_tools.facilities import idle
 from udec_ia.restart import info, look_into
 
 array = look_into({file!r})  # of a model: model.array
@@ -57,8 +57,7 @@ def _look(args: argparse.Namespace) -> Listing | Tables:
 def _known(args: argparse.Namespace) -> Tables:
     """What the file says about itself, and what its words show, if they can be read here."""
     from udec_ia.errors import UdecError
-    from udec_ia.heap_tools.facilities import facilities
-    from udec_ia.heap_tools.unused_facilities import idle
+    from udec_ia.heap_tools.facilities import facilities, idle
     from udec_ia.reader.listing import Listing, Tables
     from udec_ia.restart import info, look_into
 

@@ -1,13 +1,14 @@
 """Commands that look into one restart file.
 
 udec what FILE 412        udec dump FILE 412-500    udec find FILE 'block where KXD > 0.1'
-udec who FILE 412         udec junk FILE            udec map FILE --out map.png
+udec who FILE block@88    udec junk FILE            udec map FILE --out map.png
 udec walk FILE block 88                             udec graph FILE 412 --depth 2 --out graph.svg
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable
 from importlib import import_module
 from math import isfinite
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing
 
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
-ADDRESS: dict[str, Any] = {"type": int, "metavar": "ADDRESS", "help": "address of a word of IA()"}
+PLACE: dict[str, Any] = {
+    "metavar": "PLACE",
+    "help": "an address, or a name as in block@88.KXD",
+}
 OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows at most"}
 
@@ -55,6 +59,11 @@ class Call(NamedTuple):
         )
 
 
+def _place(text: str) -> int | str:
+    """The argument PLACE: an integer, or text for udec_ia.reader.places."""
+    return int(text) if re.fullmatch(r"[+-]?\d+", text) else text
+
+
 def _literal(value: Any) -> str:
     """A value as Python reads it."""
     return f"float('{value}')" if isinstance(value, float) and not isfinite(value) else repr(value)
@@ -65,15 +74,13 @@ def add_commands(commands: Any) -> None:
     what = _look(
         commands, "what", "say what a word is, show the group that it is part of, and where it lies", _what
     )
-    what.add_argument("address", **ADDRESS)
+    what.add_argument("place", type=_place, **PLACE)
     what.add_argument("--out", **OUT)
     who = _look(commands, "who", "list all words that point to the group of a word", _who)
-    who.add_argument("address", **ADDRESS)
-    walk = _look(
-        commands, "walk", "follow a list: block, contact, ..., block ADDRESS, KR ADDRESS, ...", _walk
-    )
+    who.add_argument("place", type=_place, **PLACE)
+    walk = _look(commands, "walk", "follow a list: block, contact, ..., block PLACE, KR PLACE, ...", _walk)
     walk.add_argument("along", metavar="LIST", help="kind of group, or the field that links the list")
-    walk.add_argument("start", nargs="?", **ADDRESS)
+    walk.add_argument("start", nargs="?", type=_place, **PLACE)
     walk.add_argument("--field", metavar="FIELD", help="show this field of each group that has it")
     walk.add_argument("--limit", **LIMIT)
     _look(commands, "junk", "say how full the memory is: kinds of groups, junk by sizes, lost words", _junk)
@@ -84,20 +91,20 @@ def add_commands(commands: Any) -> None:
     )
     a_map.add_argument("--out", **OUT)
     graph = _look(commands, "graph", "show the pointers around a group, as a list or as a picture", _graph)
-    graph.add_argument("address", **ADDRESS)
+    graph.add_argument("place", type=_place, **PLACE)
     graph.add_argument("--depth", type=int, default=1, metavar="N", help="pointers to follow (default: 1)")
     graph.add_argument("--out", metavar="PICTURE", help="file to draw to, .png, .svg or .dot")
 
 
 def _add_dump(commands: Any) -> None:
     dump = _look(
-        commands, "dump", "show words field by field: all, or ADDRESS, ADDRESS-ADDRESS, ADDRESS/WORDS", _dump
+        commands, "dump", "show words field by field: all, or PLACE, PLACE-PLACE, PLACE/WORDS", _dump
     )
     dump.add_argument(
         "words",
         nargs="?",
         metavar="WORDS",
-        help="412, 412-500 (to 500), 412/20 (20 words) or common (default: all)",
+        help="412, 412-500 (to 500), 412/20 (20 words), block@88 or common (default: all)",
     )
     form = dump.add_mutually_exclusive_group()
     form.add_argument("--raw", action="store_true", help="as DUMP of 1980 does: several words to a line")
@@ -117,7 +124,7 @@ def _add_find(commands: Any) -> None:
     wanted = find.add_mutually_exclusive_group(required=True)
     wanted.add_argument("condition", nargs="?", help="such as 'block where KXD > 0.1 and KMAT == 2'")
     wanted.add_argument("--value", type=float, metavar="X", help="find all numbers that are X")
-    wanted.add_argument("--points-to", type=int, metavar="ADDRESS", help="find all pointers to this address")
+    wanted.add_argument("--points-to", type=_place, metavar="PLACE", help="find all pointers to this place")
     find.add_argument(
         "--tolerance",
         type=float,
@@ -145,17 +152,17 @@ def _named(args: argparse.Namespace, *names: str) -> dict[str, Any]:
 
 def _what(args: argparse.Namespace) -> Call:
     if args.out is not None:
-        return Call("output.place_picture", "draw", (args.address, args.out))
-    return Call("heap_tools.word_report", "what", (args.address,))
+        return Call("output.place_picture", "draw", (args.place, args.out))
+    return Call("heap_tools.heap_lookup", "what", (args.place,))
 
 
 def _who(args: argparse.Namespace) -> Call:
-    return Call("heap_tools.all_pointers", "who", (args.address,))
+    return Call("heap_tools.heap_lookup", "who", (args.place,))
 
 
 def _walk(args: argparse.Namespace) -> Call:
     start = () if args.start is None else (args.start,)
-    return Call("heap_tools.list_printout", "walk", (args.along, *start), _named(args, "field", "limit"))
+    return Call("heap_tools.heap_lookup", "walk", (args.along, *start), _named(args, "field", "limit"))
 
 
 def _junk(_: argparse.Namespace) -> Call:
@@ -163,12 +170,12 @@ def _junk(_: argparse.Namespace) -> Call:
 
 
 def _dump(args: argparse.Namespace) -> Call:
-    from udec_ia.heap_tools.heap_dump import ALONE, limits
+    from udec_ia.heap_tools.heap_dump import ALONE
 
     radix = {} if args.radix == 10 else {"radix": args.radix}
     if args.words == ALONE and not args.raw and not radix:
         return Call("heap_tools.heap_dump", "common")
-    given = () if args.words is None else limits(args.words)
+    given = () if args.words is None else (args.words,)
     if args.raw:
         return Call("output.dump", "raw", given)
     return Call("heap_tools.heap_dump", "dump", given, radix)
@@ -187,11 +194,11 @@ def _find(args: argparse.Namespace) -> Call:
 
 def _map(args: argparse.Namespace) -> Call:
     if args.out is None:
-        return Call("heap_tools.heap_map", "heap_map")
+        return Call("heap_tools.memory_use", "heap_map")
     return Call("output.heap_picture", "draw", (args.out, args.file.name), subject="array")
 
 
 def _graph(args: argparse.Namespace) -> Call:
     if args.out is None:
-        return Call("heap_tools.pointer_graph", "graph", (args.address, args.depth))
-    return Call("output.pointer_picture", "draw", (args.address, args.out, args.depth))
+        return Call("heap_tools.pointer_graph", "graph", (args.place, args.depth))
+    return Call("output.pointer_picture", "draw", (args.place, args.out, args.depth))

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, seconds, variables, word_scheme
+from udec_ia.deck.deck_statements import read_deck
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing, Tables
@@ -90,7 +91,7 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
 
 
 def _text(args: argparse.Namespace) -> str:
-    return str(args.deck.read_text(encoding="utf-8-sig", errors="replace"))
+    return read_deck(args.deck)
 
 
 def _digits(args: argparse.Namespace) -> Listing | Tables:

@@ -23,19 +23,16 @@ from udec_ia.debug.stop_conditions import (
 )
 from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.errors import UdecError
-from udec_ia.heap_tools.all_pointers import who
-from udec_ia.heap_tools.heap_dump import ALONE, common, dump, limits
-from udec_ia.heap_tools.heap_map import heap_map
+from udec_ia.heap_tools.heap_dump import ALONE, common, dump
+from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find
-from udec_ia.heap_tools.list_printout import walk
-from udec_ia.heap_tools.memory_use import junk
+from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.heap_tools.pointer_graph import graph
-from udec_ia.heap_tools.word_report import what
 from udec_ia.layout import offsets as g
 from udec_ia.printable import folded
 from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import place
+from udec_ia.reader.places import address_of, find_number
 
 INSIDE = ("pass", "group", "write")
 LISTED = 5  # lines of the deck before and after
@@ -113,7 +110,7 @@ class DebuggerCommands(cmd.Cmd):
         """reverse-continue [NAME]: back to the last break or watch, or to the last change of a word."""
         debugger = self.debugger
         conditions: list[StopCondition] = (
-            [WordChange(place(debugger.atlas, text))] if text else [*debugger.conditions.values()]
+            [WordChange(find_number(debugger.atlas, text))] if text else [*debugger.conditions.values()]
         )
         hit = debugger.back_to(conditions)
         self.say(hit or (f"{text} has not changed before" if text else "no break or watch was hit before"))
@@ -184,7 +181,7 @@ class DebuggerCommands(cmd.Cmd):
         words = text.removesuffix("if changed").replace(" if ", " ").split()
         if len(words) not in (1, 3) or (len(words) == 3 and words[1] not in COMPARED):
             raise ValueError("give a word, or a comparison: watch block@88.KXD, or watch block@88.KXD > 0.1")
-        word = place(self.debugger.atlas, words[0])
+        word = find_number(self.debugger.atlas, words[0])
         self._add(WordChange(word, words[1], float(words[2])) if words[1:] else WordChange(word))
 
     def do_delete(self, text: str) -> None:
@@ -225,7 +222,7 @@ class DebuggerCommands(cmd.Cmd):
     def do_print(self, text: str) -> None:
         """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), FRAC, 412."""
         for name in text.split():
-            word = place(self.debugger.atlas, name)
+            word = find_number(self.debugger.atlas, name)
             self.say(f"{word.name} = {format_number(word.value(self.debugger.array.h))} {word.unit}".rstrip())
 
     def do_wrote(self, text: str) -> None:
@@ -237,15 +234,16 @@ class DebuggerCommands(cmd.Cmd):
         self._explain(word_history.explain_value, text)
 
     def do_born(self, text: str) -> None:
-        """born ADDRESS: how the group there came to be, and what stood there before."""
+        """born PLACE: how the group at block@88 or 412 came to be, and what stood there before."""
         self.say_all(
             word_history.explain_birth(
-                self.debugger.timeline, self.debugger.event, _count(text.partition("@")[2] or text)
+                self.debugger.timeline, self.debugger.event, address_of(self.debugger.atlas, text)
             )
         )
 
     def _explain(self, answer: Any, text: str) -> None:
-        word, timeline, event = place(self.debugger.atlas, text), self.debugger.timeline, self.debugger.event
+        word = find_number(self.debugger.atlas, text)
+        timeline, event = self.debugger.timeline, self.debugger.event
         trace = self.debugger.trace
         here = [] if trace is None else [*word_history.explain_write_within(timeline, event, trace, word)]
         self.say_all(iter(here) if here else answer(timeline, event, word))
@@ -253,15 +251,15 @@ class DebuggerCommands(cmd.Cmd):
     # ---- reading the array, as `udec what`, `udec who` ... read a file
 
     def do_what(self, text: str) -> None:
-        """what ADDRESS: what a word is, and its group."""
+        """what PLACE: what a word is, and its group."""
         self._look(what, text)
 
     def do_who(self, text: str) -> None:
-        """who ADDRESS: all words that point there."""
+        """who PLACE: all words that point there."""
         self._look(who, text)
 
     def do_walk(self, text: str) -> None:
-        """walk LIST [ADDRESS]: along a list."""
+        """walk LIST [PLACE]: along a list."""
         self._look(walk, text)
 
     def do_find(self, text: str) -> None:
@@ -269,9 +267,9 @@ class DebuggerCommands(cmd.Cmd):
         self.stdout.write(find(self.debugger.atlas, text).as_text())
 
     def do_dump(self, text: str) -> None:
-        """dump [ADDRESS[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
+        """dump [PLACE[-LAST|/COUNT] | common]: words with their fields; all words if nothing is given."""
         atlas = self.debugger.atlas
-        found = common(atlas) if text == ALONE else dump(atlas, *(limits(text) if text else ()))
+        found = common(atlas) if text == ALONE else dump(atlas, text or None)
         self.stdout.writelines(f"{line.text}\n" for line in found.lines())
 
     def do_map(self, _: str) -> None:
@@ -279,7 +277,7 @@ class DebuggerCommands(cmd.Cmd):
         self._look(heap_map, "")
 
     def do_graph(self, text: str) -> None:
-        """graph ADDRESS [DEPTH]: the pointers around a group."""
+        """graph PLACE [DEPTH]: the pointers around a group."""
         self._look(graph, text)
 
     def do_junk(self, _: str) -> None:

@@ -13,9 +13,8 @@ from udec_ia.debug.stop_conditions import GroupBirth, StopCondition, WordChange,
 from udec_ia.debug.timeline import Timeline
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, Atlas
-from udec_ia.reader.group_names import called
-from udec_ia.reader.places import Place, named
+from udec_ia.reader.atlas import KINDS, Atlas, called
+from udec_ia.reader.places import Place, number_of
 
 MANY = 12  # origins of a value that are shown
 RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
@@ -143,7 +142,7 @@ def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterato
     own: list[str] = []
     others: list[str] = []
     for one in trace.origins(number):
-        source = named(atlas, one.part, one.at)
+        source = number_of(atlas, one.part, one.at)
         if one.part == "ia" or source.name == place.name:
             continue
         unit = f" {source.unit}" if source.unit else ""

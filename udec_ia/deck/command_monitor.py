@@ -7,7 +7,6 @@ in a run the state is then saved, so that nothing that was computed is lost.
 
 from __future__ import annotations
 
-import errno
 import io
 import os
 import re
@@ -19,7 +18,7 @@ from typing import Any, Protocol, TextIO, TypeVar
 from udec_ia.counting import counted
 from udec_ia.deck.command_forms import RUNS, Counts, match
 from udec_ia.deck.command_table import COMMANDS
-from udec_ia.deck.deck_statements import WORD, Statement, at, statements
+from udec_ia.deck.deck_statements import WORD, Statement, at, limited, open_deck, statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
@@ -239,7 +238,7 @@ def run_deck(
     if not isinstance(deck, str | Path):
         _run_whole(monitor, deck, name)
     elif isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
-        with _opened(deck) as lines:
+        with open_deck(deck) as lines:
             _run_whole(monitor, lines, str(deck))
     else:
         _run_whole(monitor, io.StringIO(deck, newline=None), name)
@@ -252,18 +251,10 @@ def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
     What comes out of a pipe is obeyed as it comes, but for one to which values are given.
     """
     if lines.seekable() or monitor.variables.given:
-        lines = io.StringIO(lines.read())
+        lines = io.StringIO("".join(limited(lines, file)))
         monitor.variables.check(lines, file)
         lines.seek(0)
-    monitor.run(lines, file)
-
-
-def _opened(deck: str | Path) -> TextIO:
-    """The file `deck`. A name that no file can have, with a NUL in it, is that of no file."""
-    try:
-        return open(deck, encoding="utf-8-sig", errors="replace")
-    except ValueError as error:
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(deck)) from error
+    monitor.run(limited(lines, file), file)
 
 
 def names_a_file(text: str) -> bool:
@@ -277,7 +268,7 @@ def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
-        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
 

@@ -72,7 +72,8 @@ COMMANDS = (
         " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
         "non-reflecting, with the present properties. A sine (frequency, duration) begins now; a FUNCTION "
         "depends on the time of the model. Either multiplies loads and velocities. Loads add to existing "
-        "loads. A velocity replaces the previous one. Free removes all conditions.",
+        "loads. A velocity replaces the previous one; a fixed block takes none but 0. "
+        "Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -288,7 +289,8 @@ COMMANDS = (
         CHANGES,
         "Change words of the main array by name: a field of a group, a variable of the common block, or an "
         "integer word by its address. Separate several with commas. The state is first proved sound with "
-        "the new values; otherwise nothing is changed.",
+        "the new values; otherwise nothing is changed. A fixed block that gets a velocity stays where it is "
+        "and drags what touches it, like a conveyor belt.",
         "PATCH block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1",
         text="assignments",
         needs_text=True,

@@ -7,18 +7,23 @@ known not to continue it: this is why the report asks for one more line after ST
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from pathlib import Path
+from typing import NamedTuple, TextIO
 
 from udec_ia.errors import UdecError
+from udec_ia.printable import printable
 
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment
 REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, being of 1980
 CONTINUATION = "+"
+LARGEST = 100_000_000  # characters of a deck
 SHOWN = 40  # characters of a word that are worth repeating
 WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
 
@@ -162,6 +167,33 @@ class Reader:
         """What is left at the end of the deck: comments and blank lines, as a statement without tokens."""
         held, self._held = self._held, []
         return Statement(held) if held else None
+
+
+def limited(lines: Iterable[str] | TextIO, file: str) -> Iterator[str]:
+    """The lines of a deck. Error 28 after LARGEST characters: a file or pipe may be endless."""
+    left = LARGEST
+    read = getattr(lines, "readline", None)
+    source = iter(lambda: read(left + 1), "") if read else iter(lines)
+    for line in source:
+        left -= len(line)
+        if left < 0:
+            detail = f"{printable(file)} has more than {LARGEST:,} characters, and is no deck"
+            raise UdecError(28, detail, "give a file with commands, one to a line")
+        yield line
+
+
+def read_deck(path: str | Path) -> str:
+    """The text of the deck in a file. UdecError 28 if it is too long, OSError if it cannot be read."""
+    with open_deck(path) as lines:
+        return "".join(limited(lines, str(path)))
+
+
+def open_deck(path: str | Path) -> TextIO:
+    """The file of a deck. A name that no file can have, with a NUL in it, is that of no file."""
+    try:
+        return open(path, encoding="utf-8-sig", errors="replace")
+    except ValueError as error:
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path)) from error
 
 
 def statements(lines: Iterable[str], file: str) -> Iterator[Statement]:

@@ -25,6 +25,7 @@ from udec_ia.deck.deck_statements import (
     obeyed,
     quoted,
     statements,
+    tokens,
     tokens_of,
 )
 from udec_ia.deck.keyword_suggestions import with_suggestion
@@ -131,7 +132,27 @@ class Variables:
             text += line.text[end : use.start()]
             put_in.append(Put(len(text) + 1, len(text) + len(value) + 1, use.start() + 1, use.end() + 1))
             text, end = text + value, use.end()
-        return Line(line.file, line.number, text + line.text[end:], line, tuple(put_in)) if put_in else line
+        filled = Line(line.file, line.number, text + line.text[end:], line, tuple(put_in))
+        self._check_numbers(filled)
+        return filled if put_in else line
+
+    def _check_numbers(self, line: Line) -> None:
+        """Error 10 where a value and what stands beside it make another number: 0.5$KN would be 0.51E8.
+
+        Braces, as in 0.5${KN}, say that this is wanted.
+        """
+        for token in tokens(line):
+            for put in line.put_in:
+                inside = token.column <= put.first and put.end <= token.end
+                value = line.text[put.first - 1 : put.end - 1]
+                if inside and token.text.lstrip("+-") != value.lstrip("+-") and NUMBER.fullmatch(token.text):
+                    written = line.written or line
+                    use = written.text[put.at - 1 : put.after - 1]
+                    if use.startswith("${"):
+                        continue
+                    detail = f"{use} = {value} beside another number would make {token.text}"
+                    advice = "separate them by a blank; a deck does not calculate, so give the product"
+                    raise at(UdecError(10, detail, advice), Token(use, written, put.at))
 
     def _value(self, line: Line, use: re.Match[str]) -> str:
         """What stands for the variable at a place of `line`."""

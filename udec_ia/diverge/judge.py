@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap_tools.compared_heap import Side
+from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.reader.atlas import KINDS
 

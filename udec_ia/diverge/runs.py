@@ -17,7 +17,7 @@ from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
 from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
 from udec_ia.deck.deck_variables import Values
 from udec_ia.deck.lines_and_calls import parse
-from udec_ia.kernels.drive.unbalanced import at_rest
+from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.running.history_series import SOLVE_LIMIT
 

@@ -110,7 +110,7 @@ def lay_out_lists(
     side: Any,
     at: Any,
 ) -> None:
-    """What stands where in the clockwise lists that close, as checker/ring_arrays.py has it.
+    """What stands where in the clockwise lists that close, as checker/checked_state.py has it.
 
     to_host: to KB1 of a contact; lists: address of the block, first item and number of items, for each list;
     items: addresses; row: among the groups in use; neighbours: item before, item after, corner at or after.

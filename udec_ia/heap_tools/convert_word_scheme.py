@@ -1,23 +1,34 @@
-"""A sound state in the words of another scheme, ready to go on.
+"""A sound state in the words of another scheme, ready to go on (`udec convert`).
 
-Every number is written as it is (rewrite.py), and with reals of the same width that is all: the run goes on
-to the same last digit. In reals of another width circles, which follow from the corners, and overlaps, which
-follow from both, need not fit any more. The last digit of wider ones is finer than all that narrow ones could
-say, so these are found anew from the corners (settle.py); in narrower ones, if the checker asks for it.
+Every number is written as it is (rewrite_heap.py), and with reals of the same width that is all: the run goes
+on to the same last digit. In reals of another width circles, which follow from the corners, and overlaps,
+which follow from both, need not fit any more. The last digit of wider reals is finer than the narrow ones
+could hold, so circles, the reach of each block and the places and overlaps of contacts are found anew from
+the corners; in narrower ones, if the checker asks for it. Else the checker and SPLIT would take the
+difference for damage, and the springs of the next cycle for a movement. Corners, velocities, forces and
+stresses stay, and so does the map.
+
+Between two passes of a cycle (JPHASE) contacts are yet to follow their blocks: then they stay as they are.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from udec_ia.checker import Violation, check
+from udec_ia.checker.block_outlines import circles, extent, outlines
+from udec_ia.checker.checked_state import State
+from udec_ia.checker.contact_places import touches
+from udec_ia.heap.accessors import Memory, getr, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import Scheme
-from udec_ia.heap_tools.fault_summary import too_coarse
-from udec_ia.heap_tools.fitted_contacts import settle
+from udec_ia.heap_tools.field_translation import Fit
 from udec_ia.heap_tools.rewrite_heap import Rewritten, rewrite
-from udec_ia.heap_tools.word_fit import Fit
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, last_digit
+from udec_ia.reader.group_tables import addresses
 
 
 class Converted(NamedTuple):
@@ -70,3 +81,48 @@ def _rounding(made: Fit) -> str:
     gone = f"too small, now 0: {made.vanished}" if made.vanished else ""
     lost = f"{made.rounded} of {made.reals} reals have lost digits"
     return "; ".join(part for part in (lost, worst, gone) if part)
+
+
+def settle(array: MainArray) -> float:
+    """Bring circles, reaches and contacts of `array` up to its corners. Returns the greatest change, in m."""
+    with np.errstate(all="ignore"):
+        state = State(array)
+        o = outlines(state)
+        if o is None or not o.d > 0:
+            return 0.0
+        h, rows = array.h, state.rows("block", o.block)
+        centre, radius = circles(o)
+        arc = (o.r != 0) & (radius != 0)  # a corner with a radius keeps one, and one without it none
+        centre[~arc], radius[~arc] = np.where(o.r == 0, o.p.T, o.c.T).T[~arc], o.r[~arc]
+        changes = [
+            _put(h, o.corner, zip((g.KXCP, g.KYCP, g.KRAD), (*centre.T, radius), strict=True)),
+            _put(h, o.block, [(g.KBRO, extent(state, o, rows)[1])]),
+        ]
+        if state.common("JPHASE") == g.AT_BLOCKS:
+            touch = touches(state, o._replace(c=centre, r=radius))
+            contacts = state.address["contact"][touch.row]
+            new = (touch.overlap, *touch.point.T)
+            changes.append(_put(h, contacts, zip((g.KCN, g.KXC, g.KYC), new, strict=True)))
+    return max(changes)
+
+
+def _put(h: Memory, at: Any, fields: Any) -> float:
+    """Put reals of the groups at `at` where they are finite; returns the greatest change."""
+    change = 0.0
+    for offset, values in fields:
+        old = getr(h, at, offset)
+        new = np.where(np.isfinite(values), values, old)
+        putr(h, at, offset, new)
+        change = max(change, float(np.nanmax(np.abs(new - old), initial=0.0)))
+    return change
+
+
+def too_coarse(array: MainArray) -> list[Violation]:
+    """Whether the reals resolve the rounding length where the blocks are as well as ROUND asks for."""
+    at = addresses(array, "corner")
+    size = float(sum(np.abs(getr(array.h, at, k)) for k in (g.KXP, g.KYP)).max(initial=0.0))
+    d, digit = float(array.h.cr[g.DTOL]), last_digit(array, size)
+    if d >= ROUNDING_DIGITS * digit:
+        return []
+    what = f"the rounding length is {d:g}, and {array.scheme.real_bits}-bit reals resolve {digit:g} there"
+    return [Violation(7, f"{what}: it must be at least {ROUNDING_DIGITS * digit:g}")]

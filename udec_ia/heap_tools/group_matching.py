@@ -1,7 +1,7 @@
 """Which group of one heap is which of the other: by its place in the map, and not by its address.
 
-    block      by its place in the block list, whatever has come or gone there (blocks.py)
-    corner     by its place round its block, counted from KP (rings.py), else by where it lies
+    block      by its place in the block list, whatever has come or gone there (block_matching.py)
+    corner     by its place round its block, counted from KP, else by where it lies
     extension  of a block or a domain: that of a block or domain that matches
     gridpoint  by its place in the list of its block, zones too; if their number has changed, by its corner
     contact    by the two corners that name its segments, else by the two blocks and one of these, else by the
@@ -14,6 +14,9 @@
 Where one state has more groups of one key than the other, these wait. What is left over matches if all
 pointers of matched groups that lead to the one lead to the other, too: so a broken link loses no group that
 other links hold. Those that have waited come then, in turn. What is left at last was made or deleted.
+
+KP may name another corner in the other state. The ring of a block is turned only if the corners of the other
+block from another one on lie where those of this one do: all of them, or, of a block that was cut, most.
 
 A rule looks at addresses only to follow a pointer, so states that were renumbered, or written in other words,
 match group by group. Nothing is trusted: of a damaged heap the groups that the census reaches are matched.
@@ -28,12 +31,47 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap_tools.block_matching import aligned, alike, blocks_of
-from udec_ia.heap_tools.compared_heap import Side
-from udec_ia.heap_tools.ring_matching import turned
+from udec_ia.heap_tools.block_matching import Side, aligned, alike, blocks_of
 from udec_ia.heap_tools.row_matching import Pairs, elected, fold, in_turn, unanimous
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, choices
+
+
+def turned(sides: Sequence[Side], rings: Pairs, many: Any, needed: Any) -> Any:
+    """The corners (n,) of the other's blocks in the order of those of the one. rings: both, from KP on.
+
+    many: corners of each block (m,). needed: how many of them must lie in one place when its ring is turned.
+    """
+    first = np.cumsum(many) - many
+    best, found = np.zeros(len(many), np.int64), needed - 1
+    places = [_places(side, at) for side, at in zip(sides, rings, strict=True)]
+    rows = np.arange(len(many))
+    turn = 0
+    while len(rows := rows[many[rows] > turn]):
+        now = _together(places, first[rows], many[rows], turn)
+        good = now > found[rows]
+        best[rows[good]], found[rows[good]] = turn, now[good]
+        rows = rows[now < many[rows]]
+        turn += 1
+    place = np.arange(len(rings[0])) - np.repeat(first, many)
+    return rings[1][np.repeat(first, many) + (place + np.repeat(best, many)) % np.repeat(many, many)]
+
+
+def _places(side: Side, at: Any) -> Any:
+    """Where the corners (n,) lie, to 32-bit reals: columns that are equal for one place (2, n)."""
+    with np.errstate(over="ignore"):
+        return np.array([side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")])
+
+
+def _together(places: Sequence[Any], first: Any, many: Any, turn: int) -> Any:
+    """How many corners of each block (m,) lie in one place, if those of the other are so many places on."""
+    starts = np.cumsum(many) - many
+    place = np.arange(int(many.sum())) - np.repeat(starts, many)
+    base = np.repeat(first, many)
+    there = base + (place + turn) % np.repeat(many, many)
+    same = (places[0][:, base + place] == places[1][:, there]).all(0)
+    return np.add.reduceat(same.astype(np.int64), starts)
+
 
 ROUNDS = 20  # of looking for what is left over, each from what the one before has found
 KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is, the best ones first

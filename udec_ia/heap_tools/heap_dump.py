@@ -7,7 +7,6 @@ as they are, several to a line; what is the same over and over is told once.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
@@ -16,7 +15,7 @@ import numpy as np
 
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.main_array import variable
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span
+from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span, leads_to, names
 from udec_ia.reader.field_rows import (
     COLUMNS,
     COMMON,
@@ -29,11 +28,10 @@ from udec_ia.reader.field_rows import (
     span_rows,
     word_width,
 )
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.listing import Listing, Stream
+from udec_ia.reader.places import stretch
 
 ALONE = "common"  # the common block, where a stretch of addresses is asked for
-STRETCH = re.compile(r"(\d{1,18})(?:-(\d{1,18})|/(\d{1,18}))?")
 AT_ONCE = 1024  # spans that are looked at together
 PIECE = 2**16  # words that are in no group and looked at together
 VALUE = 13  # characters of a value
@@ -45,13 +43,16 @@ JUNK_LINKS = (
 )
 
 
-def dump(atlas: Atlas, first: int | None = None, last: int | None = None, radix: int = 10) -> Listing:
+def dump(atlas: Atlas, first: int | str | None = None, last: int | None = None, radix: int = 10) -> Listing:
     """The words from address `first` to `last`, field by field; without them the common block and all words.
 
-    radix: 8, 10 or 16, of the words as they are. IndexError for what does not lie in IA(), ValueError for
-    another radix.
+    first: an address, or both as text: 412, 412-500, 412/20, block@88. radix: 8, 10 or 16, of the words as
+    they are. IndexError for what does not lie in IA(), ValueError for what names no words, and for another
+    radix.
     """
     top, whole = len(atlas.h.ia), first is None
+    if isinstance(first, str):
+        first, last = stretch(atlas, first)
     first, last = 1 if first is None else first, top if last is None else last
     if not 1 <= first <= last <= top:
         raise IndexError(f"there are no words {first} to {last}: IA() has the addresses 1 to {top}")
@@ -67,16 +68,6 @@ def dump(atlas: Atlas, first: int | None = None, last: int | None = None, radix:
         f"IA() has {top} words of {bits} bits, {atlas.ratio} to a real, and {atlas.free - 1} have been in use"
     )
     return Listing([said], ("group", *COLUMNS), Stream(rows), widths=_widths(atlas, radix), headed=True)
-
-
-def limits(words: str) -> tuple[int, int]:
-    """First and last address of 412, 412-500 or 412/20. ValueError for what is none of these."""
-    given = STRETCH.fullmatch(words)
-    if given is None:
-        forms = f"412, 412-500 (to address 500), 412/20 (20 words), or {ALONE} alone"
-        raise ValueError(f"{words}: give {forms}")
-    first, last, many = given.groups(default="")
-    return int(first), int(last) if last else int(first) + int(many or 1) - 1
 
 
 def common(atlas: Atlas) -> Listing:

@@ -10,12 +10,12 @@ import numpy as np
 
 from udec_ia.counting import counted
 from udec_ia.heap.main_array import variable
-from udec_ia.heap_tools.all_pointers import pointer_rows, pointing
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas
+from udec_ia.heap_tools.heap_lookup import pointer_rows, pointing
+from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas, leads_to, names
 from udec_ia.reader.conditions import ADDRESS, satisfying
 from udec_ia.reader.field_rows import COMMON
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 LIMIT = 1000  # rows, if it is not said how many
 TOLERANCE = 1e-6  # as a share of the value that is looked for
@@ -70,11 +70,12 @@ def find_value(atlas: Atlas, value: float, tolerance: float = TOLERANCE, limit: 
     return Listing([said], (ADDRESS, "group", "field", "value", "unit"), rows)
 
 
-def find_pointers(atlas: Atlas, address: int, limit: int = LIMIT) -> Listing:
-    """All pointers whose value is `address`, whatever is there, if anything. limit: rows.
+def find_pointers(atlas: Atlas, place: int | str, limit: int = LIMIT) -> Listing:
+    """All pointers whose value is the address of a place, or any integer. limit: rows.
 
-    ValueError for what no word can hold.
+    ValueError for what no word can hold, and for no such place.
     """
+    address = address_of(atlas, place)
     if abs(address) >= 2**63:
         raise ValueError(f"{address} is more than an integer of 64 bits holds")
     found = list(pointing(atlas, address))

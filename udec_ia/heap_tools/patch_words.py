@@ -17,18 +17,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.checker import Violation, check
+from udec_ia.checker import Violation, check, in_short
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap_tools.fault_summary import in_short
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field
-from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Span, Word
-from udec_ia.reader.group_names import called
+from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.places import Place, PlaceError, find_number
 from udec_ia.reader.recordable_numbers import HISTORY
 
-ELEMENT = r"(?P<name>[A-Za-z]\w*)(\((?P<element>\d{1,9})\))?"
-PLACE = re.compile(rf"(?P<address>\d{{1,18}})|((?P<kind>[A-Za-z]+)@(?P<group>\d{{1,18}})\.)?{ELEMENT}")
 INTEGER = re.compile(r"[+-]?\d+")
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?")
 DIGITS = 20  # and a sign: of an integer of 64 bits
@@ -105,93 +102,46 @@ def read_patches(array: MainArray, assignments: Sequence[str]) -> list[Patch]:
 def _read(array: MainArray, atlas: Atlas, text: str) -> Patch:
     """One assignment."""
     left, _, right = (part.strip() for part in text.partition("="))
-    found = PLACE.fullmatch(left)
-    if not (found and right):
+    if not (left and right):
         raise UdecError(10, f"{text!r} is not an assignment", FORM)
-    if found["address"]:
-        return _of_word(atlas, int(found["address"]), right)
-    if found["kind"]:
-        return _of_group(atlas, found["kind"].lower(), int(found["group"]), found, right)
-    field = next((one for one in TABLE.common if one.name == found["name"].upper()), None)
-    if field is None:
-        raise UdecError(10, f"{found['name']} is not a variable of the common block", FORM)
-    return _of_common(array, field, _element(field, found), right)
-
-
-def _of_word(atlas: Atlas, address: int, text: str) -> Patch:
-    """An integer word by its address."""
-    if not 1 <= address < atlas.free:
-        raise UdecError(30, f"{address}", f"the words in use are 1 to {atlas.free - 1}")
-    span, word = atlas.word_at(address)
-    if word is None:
-        return _judged(f"word {address} of {called(atlas, span)}", atlas.h.ia, address - 1, text)
-    if word.field.real:
-        what = f"{address} is in the real {word.name} of {called(atlas, span)}"
-        raise UdecError(10, what, f"give {span.name}.{word.name} = VALUE")
-    return _of_field(atlas, span, word, text)
-
-
-def _of_group(atlas: Atlas, kind: str, address: int, found: re.Match[str], text: str) -> Patch:
-    """A field of a group."""
-    if kind not in KINDS:
-        raise UdecError(10, f"{kind} is not a kind of group", f"there are {', '.join(KINDS)}")
-    if not atlas.holds(kind, address):
-        there = called(atlas, atlas.span(address)) if 1 <= address <= len(atlas.h.ia) else "outside IA()"
-        raise UdecError(10, f"there is no {kind} at {address}", f"what is there: {there}")
-    field = next((one for one in TABLE.group(kind).fields if one.name == found["name"].upper()), None)
-    if field is None:
-        names = ", ".join(one.name for one in TABLE.group(kind).fields)
-        raise UdecError(10, f"{found['name']} is not a field of a {kind}", f"there are {names}")
-    span = atlas.span(address)
-    return _of_field(atlas, span, atlas.word(span, field, _element(field, found)), text)
-
-
-def _of_field(atlas: Atlas, span: Span, word: Word, text: str) -> Patch:
-    """An element of a field of a group, but not of what a history records: that is kept beside the array."""
-    what = f"{word.name} of {called(atlas, span)}"
-    if span.kind == HISTORY and word.field.role == "data":
-        raise UdecError(10, f"{what} says what was recorded", "HISTORY defines another history")
-    if word.field.real:
-        return _judged(what, atlas.h.ra, (word.first - 1) // atlas.ratio, text)
-    return _judged(what, atlas.h.ia, word.first - 1, text)
-
-
-def _of_common(array: MainArray, field: Field, element: int, text: str) -> Patch:
-    """An element of a variable of the common block. No file could hold sizes that are not those of IA()."""
-    h = array.h
-    words = {"int": h.ci, "real": h.cr, "double": h.cd}[field.type]
-    index = getattr(g, field.name) + element
-    name = field.name + (f"({element + 1})" if field.count > 1 else "")
-    made = _judged(name, words, index, text)
-    limits = {g.MFREE: (1, len(h.ia) + 1), g.MTOP: (len(h.ia), len(h.ia))}
-    low, high = limits.get(index, (made.value, made.value)) if words is h.ci else (made.value, made.value)
-    if not low <= made.value <= high:
-        raise UdecError(28, f"{name} is {text}", f"IA() has {len(h.ia)} words")
+    if left.isdecimal() and not 1 <= int(left) < atlas.free:
+        raise UdecError(30, left, f"the words in use are 1 to {atlas.free - 1}")
+    try:
+        place = find_number(atlas, left)
+    except PlaceError as error:
+        raise UdecError(10, error.detail, error.advice) from None
+    if left.isdecimal() and place.field and place.field.real:
+        raise UdecError(10, f"{left} is in the real {place.name}", f"give {place.name} = VALUE")
+    if place.kind == HISTORY and place.field and place.field.role == "data":
+        raise UdecError(10, f"{place.name} states what was recorded", "HISTORY defines another history")
+    made = _judged(place, array.h, right)
+    _check_size(array, made)
     return made
 
 
-def _element(field: Field, found: re.Match[str]) -> int:
-    """The element of a field that is meant, counted from 0."""
-    if found["element"] is None and field.count > 1:
-        raise UdecError(10, f"{field.name} has {field.count} elements", f"give {field.name}(1), ...")
-    element = int(found["element"] or 1)
-    if not 1 <= element <= field.count:
-        raise UdecError(10, f"{field.name} has no element {element}", f"they are 1 to {field.count}")
-    return element - 1
+def _check_size(array: MainArray, made: Patch) -> None:
+    """Error 28 for sizes that are not those of IA(): no file could hold them."""
+    words = len(array.h.ia)
+    allowed = {g.MFREE: (1, words + 1), g.MTOP: (words, words)}
+    if made.words is array.h.ci and made.row in allowed:
+        low, high = allowed[made.row]
+        if not low <= made.value <= high:
+            raise UdecError(28, f"{made.what} is {made.value}", f"IA() has {words} words")
 
 
-def _judged(what: str, words: Any, row: int, text: str) -> Patch:
-    """A value for an element of `words`, if it can hold that."""
+def _judged(place: Place, h: Memory, text: str) -> Patch:
+    """A value for the number at `place`, if its word can hold it."""
+    what, words = place.name, getattr(h, place.part)
     if words.dtype.kind == "i":
         limits = np.iinfo(words.dtype)
         if not INTEGER.fullmatch(text):
             raise UdecError(10, f"{text!r} is not an integer, which {what} is")
         if len(text) > DIGITS or not limits.min <= int(text) <= limits.max:
             raise UdecError(28, f"{what} cannot be {text}", f"its word holds {limits.min} to {limits.max}")
-        return Patch(what, words, row, int(text))
+        return Patch(what, words, place.at, int(text))
     if not REAL.fullmatch(text):
         raise UdecError(10, f"{text!r} is not a number, which {what} is")
     value, largest = float(text.upper().replace("D", "E")), float(np.finfo(words.dtype).max)
     if abs(value) > largest:
         raise UdecError(28, f"{what} cannot be {text}", f"its word holds numbers up to {largest:.2g}")
-    return Patch(what, words, row, value)
+    return Patch(what, words, place.at, value)

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.counting import counted
-from udec_ia.heap_tools.all_pointers import Pointers, pointers
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas
+from udec_ia.heap_tools.heap_lookup import Pointers, pointers
+from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas, leads_to, names
 from udec_ia.reader.field_rows import COMMON
-from udec_ia.reader.group_names import leads_to, names
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 NODES = 40  # groups that a graph shows
 ASTRAY = "astray"  # kind of a node that is no group
@@ -51,11 +51,13 @@ class Graph(NamedTuple):
     left_out: int
 
 
-def neighbourhood(atlas: Atlas, address: int, depth: int = 1, limit: int = NODES) -> Graph:
-    """The pointers around the group at, or around, `address`: depth of them away, `limit` groups.
+def neighbourhood(atlas: Atlas, place: int | str, depth: int = 1, limit: int = NODES) -> Graph:
+    """The pointers around the group at, or around, a place: depth of them away, `limit` groups.
 
-    IndexError outside IA(), ValueError for what is no group, or no depth.
+    place: an address, or text such as block@88. IndexError outside IA(), ValueError for what is no group, or
+    no depth.
     """
+    address = address_of(atlas, place)
     span = atlas.span(address)
     if span.kind not in KINDS:
         raise ValueError(f"{address} is in words that are {span.kind}: only groups have pointers")
@@ -128,9 +130,9 @@ def _named(atlas: Atlas, depths: dict[int, int], edges: list[Edge]) -> dict[int,
     return found
 
 
-def graph(atlas: Atlas, address: int, depth: int = 1) -> Listing:
+def graph(atlas: Atlas, place: int | str, depth: int = 1) -> Listing:
     """The same as a list of pointers. Raises as `neighbourhood` does."""
-    found = neighbourhood(atlas, address, depth)
+    found = neighbourhood(atlas, place, depth)
     rows = [
         (found.nodes[edge.source].name, edge.field, edge.told)
         for edge in sorted(found.edges, key=lambda edge: (_depth(found, edge), edge))

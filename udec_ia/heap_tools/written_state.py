@@ -1,4 +1,9 @@
-"""A state as words that belong to a table and a word scheme, and what is said of words that find no place."""
+"""The words of a state that another table or word scheme has written, and where its groups lie and go.
+
+If no kind of group in use gets another size, every group keeps its address and the junk list stays. Else they
+are laid side by side in the order that they have, and there is no junk: a junk group has a size and no kind,
+and two kinds that are of one size in a scheme are not in another, so its new size would be unknown.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.heap.census import CHOICES, list_heads, reached
+from udec_ia.heap.junk_list import junk_chains
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import Scheme
-from udec_ia.layout.table import Table, read_table
+from udec_ia.layout.table import Table, lay_out, read_table
 
 JUNK, FREE, TOP = "JUNK", "MFREE", "MTOP"  # variables of the memory
 AT_FAULT = "IERAD"  # a note of an address, which is no pointer
@@ -77,3 +84,91 @@ class Faults:
         return [
             first + (f", and {many - 1} more" if many > 1 else "") for first, many in self._found.values()
         ]
+
+
+class Places:
+    """Old and new addresses of the groups of a state.
+
+    at: the old addresses of every kind, start: the new ones. old: the layouts of the kinds as they were.
+    stays: no group has a new address. used: words in use afterwards.
+    """
+
+    def __init__(self, state: Words, found: dict[str, Any] | None) -> None:
+        """found: addresses of the groups of every kind, if it is proved that they and junk fill the words,
+        and that all pointers lead to them.
+        """
+        table, self.ratio, self.words = state.table, state.scheme.ratio, len(state.ia)
+        self.old = {group.name: lay_out(group, self.ratio) for group in table.groups}
+        self.known, self.stays, self.used = found is not None, False, self.words
+        if found is None:
+            heads = ((str(one.target), state.integer(one.name)) for one in list_heads(table))
+            found = reached(table, self.ratio, state.ia, heads, strict=True)
+        self.at: dict[str, Any] = found
+        self.start: dict[str, Any] = {}
+        chains = [] if self.known else junk_chains(state.ia, state.integer(JUNK))
+        self.junk = np.array([one for chain in chains for one in chain], np.int64).reshape(-1, 2)
+
+    def move(self, sizes: dict[str, int], faults: Faults) -> None:
+        """Give every group its new address.
+
+        sizes: of the kinds in the new table. Faults are groups of other kinds, groups that lie in each other,
+        and, where groups move, words that are in none.
+        """
+        for kind, at in self.at.items():
+            if len(at) and kind not in sizes:
+                faults.add(f"{kind}@{at[0]} is of a kind that is not known here", len(at))
+        if not self.known:
+            junk = set(self.junk[:, 1].tolist())  # may be taken again if groups of its sizes can be
+            self.stays = junk <= {*sizes.values()} and all(
+                sizes.get(kind) == self.old[kind].size for kind, at in self.at.items() if len(at)
+            )
+            self._check_spans(faults)
+        if not faults:
+            self._lay_out(sizes)
+
+    def _check_spans(self, faults: Faults) -> None:
+        """Groups must not lie in each other; where they move, every word must be in one."""
+        spans = [np.full(len(at), self.old[kind].size) for kind, at in self.at.items()]
+        first = np.concatenate([*self.at.values(), self.junk[:, 0]])
+        after = first + np.concatenate([*spans, self.junk[:, 1]])
+        order = np.argsort(first, kind="stable")
+        after, first = np.append(1, after[order]), np.append(first[order], self.words + 1)
+        for k in np.flatnonzero(after > first)[:1]:
+            faults.add(f"word {first[k]} is in two groups")
+        for k in np.flatnonzero(after < first)[: 0 if self.stays else 1]:
+            faults.add(f"words {after[k]} to {first[k] - 1} are in no group")
+
+    def _lay_out(self, sizes: dict[str, int]) -> None:
+        """Side by side in the order of the old addresses, or where they are."""
+        counts = [len(at) for at in self.at.values()]
+        at = np.concatenate([*self.at.values()]).astype(np.int64)
+        start = at
+        if not self.stays:
+            size = np.repeat([sizes.get(kind, 0) for kind in self.at], counts)
+            order = np.argsort(at)
+            ends = np.cumsum(size[order])
+            start = np.empty_like(at)
+            start[order] = 1 + ends - size[order]
+            self.used = int(size.sum())
+        self.start = dict(zip(self.at, np.split(start, np.cumsum(counts)[:-1]), strict=True))
+        places = self.words // self.ratio + 2
+        self._moved = np.zeros(places, np.int32 if self.used < 2**31 else np.int64)
+        self._kind = np.zeros(places, np.min_scalar_type(len(self.at)))
+        for number, (kind, addresses) in enumerate(self.at.items(), 1):
+            here = self._places(addresses)
+            self._moved[here], self._kind[here] = self.start[kind], number
+
+    def _places(self, addresses: Any) -> Any:
+        """Numbers of the places, each of a real, at which the groups at `addresses` begin; 0 of 0."""
+        return (addresses.astype(np.int64) + (self.ratio - 1)) // self.ratio
+
+    def followed(self, pointers: Any, target: str) -> tuple[Any, Any]:
+        """The new addresses of what `pointers` lead to, and where they lead to no `target` (nor are 0)."""
+        if self.known:  # which was proved of all pointers
+            return self._moved[self._places(pointers)], np.broadcast_to(np.False_, pointers.shape)
+        kinds = list(self.at) if target == "any" else CHOICES.get(target, (target,))
+        leads = np.zeros(len(self.at) + 1, bool)
+        leads[[number for number, kind in enumerate(self.at, 1) if kind in kinds]] = True
+        begins = (pointers > 0) & (pointers <= self.words) & ((pointers - 1) % self.ratio == 0)
+        place = np.where(begins, self._places(pointers), 0)
+        return self._moved[place], ~leads[self._kind[place]] & (pointers != 0)

@@ -33,7 +33,7 @@ class HistoryRecorder:
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
     ) -> list[Series]:
         """New histories of `field`, every `n` cycles, of the groups at an address or at points."""
-        from udec_ia.reader.nearest_group import choose
+        from udec_ia.reader.group_positions import choose
 
         what = named(field)
         chosen = choose(array, what.group, field, address, at)

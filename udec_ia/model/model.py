@@ -18,7 +18,14 @@ from functools import update_wrapper, wraps
 from pathlib import Path
 from typing import Any, Concatenate, Generic, ParamSpec, Self, TextIO, TypeVar, Unpack, get_type_hints
 
-from udec_ia.advice.input_warnings import check_fraction, check_properties, check_tension
+from udec_ia.advice.input_warnings import (
+    check_fraction,
+    check_new_material,
+    check_properties,
+    check_spin,
+    check_tension,
+    describe_inertia,
+)
 from udec_ia.advice.step_warnings import describe_step
 from udec_ia.checker import check, unjudged
 from udec_ia.counting import counted
@@ -26,13 +33,13 @@ from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import Memory
+from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import Properties
-from udec_ia.layout.offsets import DTOL, MCTOT
+from udec_ia.layout.offsets import DTOL, KTD, MCTOT
 from udec_ia.model.model_runs import recording_of, run_cycles, solve_as_given, solve_statically
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.saved_states import restart_from, save_state
@@ -318,6 +325,8 @@ class Model:
         conditions = number_of_conditions(self.array.h)
         kind = None if type is None else str(type).lower()
         changed = change(self.array, (x1, x2, y1, y2), kind, material, constitutive)
+        if changed and material is not None:
+            self.session.remark(check_new_material(self.array, changed, material))
         self._warn_of_lost(conditions)
         return changed
 
@@ -345,6 +354,7 @@ class Model:
         triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
         conditions = number_of_conditions(self.array.h)
         ib = block_to_zone(self.array, (x1, x2, y1, y2))
+        spin = float(getr(self.array.h, ib, KTD))
         if mode.lower() == "manual":
             if not points or not triples:
                 raise UdecError(
@@ -367,6 +377,8 @@ class Model:
         else:
             raise UdecError(22, mode, "take manual or automatic", parameter="mode")
         self._warn_of_lost(conditions)
+        self.session.remark(describe_inertia(self.array, ib), self.session.inform)
+        self.session.remark(check_spin(self.array, ib, spin))
         return ib
 
     boundary = changes_array(on_shapes(bounds.boundary))
@@ -536,8 +548,8 @@ class Model:
         (running/static_relaxation.py).
         criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
-        The ratio: that force over the mean of those that are carried (drive.unbalanced); it is looked at
-        every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
+        The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
+        at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
         strain energy is not greater than `ratio` either. What is returned is true if that was reached.
         """
         session = self.session

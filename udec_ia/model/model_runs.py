@@ -11,7 +11,7 @@ from udec_ia.advice.rest_diagnosis import RestDiagnosis
 from udec_ia.advice.step_warnings import describe_step
 from udec_ia.compiling.interpreting import mode
 from udec_ia.errors import UdecError
-from udec_ia.heap_tools.memory_order import arrange
+from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.running.cycle import cycle, finish

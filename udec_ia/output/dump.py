@@ -14,6 +14,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, Atlas, Span, Word
 from udec_ia.reader.listing import LINES, Listing, Stream
+from udec_ia.reader.places import stretch
 
 POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
 HEAD_NAMES = {head.value: head.name for head in read_table().heads}
@@ -28,9 +29,14 @@ def dump(h: Memory, n: int, m: int) -> str:
     return "".join(f"{line.text}\n" for line in raw(Atlas(h), n, m).lines())
 
 
-def raw(atlas: Atlas, n: int = 1, m: int | None = None) -> Listing:
-    """The same line by line, however many there are; all words if none are named."""
+def raw(atlas: Atlas, n: int | str = 1, m: int | None = None) -> Listing:
+    """The same line by line, however many there are; all words if none are named.
+
+    n: an address, or both as text: 412-500, 412/20, block@88.
+    """
     h = atlas.h
+    if isinstance(n, str):
+        n, m = stretch(atlas, n)
     m = len(h.ia) if m is None else m
     if not 1 <= n <= m <= len(h.ia):
         advice = f"give two addresses in increasing order, from 1 to {len(h.ia)}"

@@ -15,7 +15,7 @@ import numpy as np
 from udec_ia.checker import check_links
 from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap_tools.heap_map import FINE, cover, stretch
+from udec_ia.heap_tools.memory_use import FINE, cover, stretch
 from udec_ia.layout import offsets as g
 from udec_ia.output.draw import INK, POINT, diameter, draw_outlines, limits, paper, scale_for, title
 from udec_ia.output.outline import Outlines, State, apex, domain_polygons

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.heap_tools.all_pointers import pointers
-from udec_ia.heap_tools.word_report import what
+from udec_ia.heap_tools.heap_lookup import pointers, what
 from udec_ia.layout import offsets as g
 from udec_ia.output.draw import INK, draw_addresses, draw_outlines, paper, scale_for, title
 from udec_ia.output.outline import Outlines
 from udec_ia.output.picture import picture_path, write_as
 from udec_ia.output.remains import is_near, outlines_left, part, points
-from udec_ia.reader.atlas import KINDS, Atlas, Span
-from udec_ia.reader.group_names import called
-from udec_ia.reader.group_place import homes
+from udec_ia.reader.atlas import KINDS, Atlas, Span, called
+from udec_ia.reader.group_positions import homes
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,15 +37,15 @@ MARGIN = 0.6  # around its blocks, as a share of their size
 FACE = "#efeae0"  # of the other blocks
 
 
-def draw(atlas: Atlas, address: int, out: str | Path) -> Listing:
-    """What the word at `address` is, and where its group lies drawn to the file `out`, PNG or SVG.
+def draw(atlas: Atlas, place: int | str, out: str | Path) -> Listing:
+    """What the word at a place is, and where its group lies drawn to the file `out`, PNG or SVG.
 
-    IndexError outside IA(), ValueError for what lies nowhere or another kind of file, error 31 if it cannot
-    be written.
+    place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place,
+    what lies nowhere or another kind of file, error 31 if it cannot be written.
     """
     from matplotlib import rc_context
 
-    path, span, found = picture_path(out), atlas.span(address), what(atlas, address)
+    path, span, found = picture_path(out), atlas.span(address_of(atlas, place)), what(atlas, place)
     o, _ = outlines_left(atlas)
     own = np.isin(o.address, homes(atlas, span))
     if not own.any():

@@ -30,15 +30,15 @@ DOT = ".dot"
 Place = tuple[float, float]
 
 
-def draw(atlas: Atlas, address: int, out: str | Path, depth: int = 1) -> Listing:
-    """Draw the pointers around the group at `address` to the file `out`, as PNG, SVG or DOT.
+def draw(atlas: Atlas, place: int | str, out: str | Path, depth: int = 1) -> Listing:
+    """Draw the pointers around the group at a place to the file `out`, as PNG, SVG or DOT.
 
     Raises as `pointer_graph.neighbourhood` does, ValueError for another kind of file, error 31 if it
     cannot be written.
     """
     from matplotlib import rc_context
 
-    path, found = picture_path(out, (DOT,)), neighbourhood(atlas, address, depth)
+    path, found = picture_path(out, (DOT,)), neighbourhood(atlas, place, depth)
     if path.suffix.lower() == DOT:
         put_in_place(path, dot(found).encode(), force=False)
     else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from udec_ia.compiling.compile_time import working_time
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.drive.unbalanced import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.running.critical_step import fraction_in_words

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import gather
 from udec_ia.heap.census import CHOICES
 from udec_ia.heap.main_array import MainArray
@@ -124,3 +125,19 @@ def in_words(field: Field) -> str:
         for low, high in field.allowed
     ]
     return " or ".join([", ".join(parts[:-1]), parts[-1]] if parts[:-1] else parts)
+
+
+ROOM = 100  # rows that are expected
+
+
+def told(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
+    """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
+
+    groups: how many it goes through; of: int or float.
+    """
+    found = room = ROOM
+    while found >= room:  # once more, if there are more than had room
+        room = found + 1
+        rows: Numbers = np.empty((room, columns), of)
+        found = kernel(groups, *args, rows)
+    return rows[:found]

@@ -13,9 +13,8 @@ import numpy as np
 
 from udec_ia.layout.codes import spelled
 from udec_ia.layout.table import Code, Field
-from udec_ia.reader.atlas import TABLE, Atlas, Span, Word
+from udec_ia.reader.atlas import TABLE, Atlas, Span, Word, leads_to
 from udec_ia.reader.field_reading import allowed, in_words
-from udec_ia.reader.group_names import leads_to
 
 COLUMNS = ("address", "words", "field", "value", "unit", "meaning")
 Row = tuple[Any, ...]

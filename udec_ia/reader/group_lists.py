@@ -22,8 +22,7 @@ from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.untrusted_lists import astray, chains
 from udec_ia.reader.block_rings import Boundaries, boundaries
-from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
-from udec_ia.reader.kernel_rows import told
+from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names, told
 from udec_ia.reader.list_walks import HEADS
 
 CHAINS = InterpretWhenSmall(chains, 2e7)  # places where a group could begin

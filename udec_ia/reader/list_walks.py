@@ -1,8 +1,7 @@
-"""Following the lists of the heap from Python: the three walks that everything else is made of.
+"""Following the lists of the heap from Python: main lists, lists around blocks, and loops around domains.
 
-The main lists (blocks, contacts, domains, histories), the clockwise list around a block, and the
-anticlockwise loop around a domain. Every walk is bounded and every address is tested before it is used,
-so that a damaged heap ends in Unsound and never in a hang.
+Every walk is bounded and every address is tested before it is used, so that a damaged heap ends in Unsound
+and never in a hang.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, read_table
 
 HISTORY = "history"
-QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.recording.MEASURED
+QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.history_recording.MEASURED
     "UNBalanced": ("N/m", "greatest unbalanced force"),
     "RATio": ("-", "unbalanced force ratio, as in SOLVE"),
     "KINetic": ("J/m", "kinetic energy"),

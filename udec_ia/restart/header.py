@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from udec_ia.checker.unjudged_parts import unfinished
+from udec_ia.checker.invariants import unfinished
 from udec_ia.counting import counted
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.main_array import variable

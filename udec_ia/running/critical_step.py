@@ -1,8 +1,8 @@
 """The critical time-step: the 1980 estimate, and a bound that no mode exceeds (report 4.6).
 
 Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stiffness), the internal modes of
-simply-deformable blocks and the grid-points (kernels.drive.timestep). It is only approximate: a mass on
-several springs has a shorter period than on one.
+simply-deformable blocks and the grid-points (kernels.drive.critical_stiffness). It is only approximate: a
+mass on several springs has a shorter period than on one.
 
 Bound: 2 min sqrt(m_i d_i / sum_j |K_ij| d_j), by the rows of the stiffness matrix (running.stiffness_bound).
 """
@@ -17,8 +17,8 @@ from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
-from udec_ia.kernels.drive.extremes import greatest_stiffness, smallest_mass
-from udec_ia.kernels.drive.timestep import addresses, soft_step
+from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness, smallest_mass, soft_step
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.running.mass_scaling import scale, scaled
 from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Limit, Rows, damped_step, rate_of, reals

@@ -12,7 +12,7 @@ from udec_ia.compiling.compile_time import working_time
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.masses import make_masses
+from udec_ia.kernels.body.mass_distribution import make_masses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default

@@ -18,7 +18,7 @@ from udec_ia.errors import (
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
-from udec_ia.kernels.drive.finite import not_finite
+from udec_ia.kernels.drive.finite_check import not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.corner_rounding import crowded

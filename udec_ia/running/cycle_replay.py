@@ -7,8 +7,7 @@ replay stops for as well.
 from __future__ import annotations
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.passes import TUNNELLING, passes
-from udec_ia.kernels.drive.watch import run_watched
+from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_watched
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget
-from udec_ia.kernels.links.owner import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
+from udec_ia.kernels.links.linked_lists import BLOCK, GRIDPOINT, NOBODY, STRAIN, owner
 from udec_ia.layout import offsets as g
 
 

@@ -1,6 +1,6 @@
 """The series of numbers that histories record, and the runs of cycles that fill them.
 
-A compiled loop fills a block of rows (kernels.drive.watch); between two pieces of a run the rows are handed
+A compiled loop fills a block of rows (kernels.drive.cycle); between two pieces of a run the rows are handed
 on to the series. Rows that were handed on before are passed over, so nothing is lost or doubled when Ctrl-C
 comes between the two.
 """
@@ -14,10 +14,8 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import has_to_judge
-from udec_ia.kernels.drive.passes import passes
-from udec_ia.kernels.drive.recording import measures, record
-from udec_ia.kernels.drive.watch import run_watched
+from udec_ia.kernels.drive.cycle import has_to_judge, passes, run_watched
+from udec_ia.kernels.drive.history_recording import measures, record
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions, places
 
@@ -31,7 +29,7 @@ NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
     """Up to `n` cycles of which nothing is recorded, by the same machine code; returns how many were done.
 
-    laws, marks: see kernels.drive.watch.run_watched.
+    laws, marks: see kernels.drive.cycle.run_watched.
     """
     called = passes(h, laws[0], (), NEVER, False, marks)
     return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
@@ -119,7 +117,7 @@ class Recording:
     """Runs cycles of `array` and adds what is recorded to `series`.
 
     ratio: to within which the model must be at rest to stop. mean: the mean unbalanced force counts, not the
-    greatest. marks: of contacts that open and close (kernels.drive.openings).
+    greatest. marks: of contacts that open and close (kernels.drive.cycle).
     reached: True when the model was at rest after a cycle of this run: forces are those of the present
     properties, loads and laws only when the contacts have been passed through with them.
     lost: those of `series` whose groups have disappeared since they were last looked at.
@@ -156,7 +154,7 @@ class Recording:
     def run(self, n: int, laws: Any) -> int:
         """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
 
-        laws: see kernels.drive.watch.run_watched.
+        laws: see kernels.drive.cycle.run_watched.
         """
         h, done, full = self.array.h, 0, True
         recorded = self._places, self._rows, self._count

@@ -22,8 +22,8 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.damping_modes import mode_of
-from udec_ia.kernels.drive.peaks import halt_block
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.drive.kinetic_damping import halt_block
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require

@@ -11,8 +11,14 @@ import numpy as np
 from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.unbalanced import at_rest, at_rest_in_mean, force_ratios, motion_ratio, unbalanced
-from udec_ia.kernels.energy.stored import liveliest
+from udec_ia.kernels.drive.unbalanced_force import (
+    at_rest,
+    at_rest_in_mean,
+    force_ratios,
+    motion_ratio,
+    unbalanced,
+)
+from udec_ia.kernels.energy.stored_energy import liveliest
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.remark import Remark
 from udec_ia.running.group_names import name_of

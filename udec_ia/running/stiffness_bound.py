@@ -3,9 +3,9 @@
 The safe bound of the time-step is 2 min sqrt(d_i m_i / sum_j |K_ij| d_j), with the row sums of the stiffness
 matrix over all degrees of freedom (Gershgorin): no mode is faster, whatever weights d > 0 are taken. With
 d = 1/sqrt(m) what is light is not charged for heavy neighbours. Contacts count as closed and sticking
-(kernels.drive.contact_stiffness). Degrees of freedom are x and y of blocks and grid-points, the rotation of a
-block and the three strains of a simply-deformable one along its principal axes, where its Euler tensor has no
-product, both times its radius of gyration. What is fixed has none.
+(kernels.drive.critical_stiffness). Degrees of freedom are x and y of blocks and grid-points, the rotation of
+a block and the three strains of a simply-deformable one along its principal axes, where its Euler tensor has
+no product, both times its radius of gyration. What is fixed has none.
 
 A viscous boundary takes the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
 negative eigenvalue, so that with w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
@@ -21,10 +21,10 @@ import numpy as np
 
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
-from udec_ia.kernels.drive.contact_stiffness import DOFS, add_contacts
+from udec_ia.kernels.drive.critical_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.damping_modes import mode_of
-from udec_ia.kernels.drive.timestep import addresses
-from udec_ia.kernels.geometry.tensor import ROUND
+from udec_ia.kernels.geometry.plane_tensors import ROUND
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 
 Array = Any  # of addresses, or of the reals found there

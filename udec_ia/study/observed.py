@@ -16,8 +16,8 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas, Word
+from udec_ia.reader.group_positions import choose
 from udec_ia.reader.group_tables import addresses
-from udec_ia.reader.nearest_group import choose
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
 

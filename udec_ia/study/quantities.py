@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.kernels.drive.recording import measured
+from udec_ia.kernels.drive.history_recording import measured
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy_account import balance
 from udec_ia.reader.conditions import satisfying

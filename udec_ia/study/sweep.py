@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple, TextIO
 
 from udec_ia.deck.command_monitor import names_a_file
+from udec_ia.deck.deck_statements import read_deck
 from udec_ia.deck.deck_variables import Value, Variables
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.study import standing
@@ -137,5 +138,5 @@ def _check_names(point: Mapping[str, Value], quantities: list[str]) -> None:
 def _read(deck: str | Path) -> tuple[str, str]:
     """The text of a deck and its name, "" if it is given as text."""
     if isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
-        return Path(deck).read_text(encoding="utf-8-sig", errors="replace"), Path(deck).name
+        return read_deck(deck), Path(deck).name
     return deck, ""

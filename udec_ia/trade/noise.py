@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 from udec_ia.reader.group_tables import addresses as listed

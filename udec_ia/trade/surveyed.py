@@ -18,7 +18,7 @@ import numpy as np
 from udec_ia.compiling.compile_time import compile_seconds
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.timestep import addresses
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.observer import Observer

@@ -17,8 +17,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
-from udec_ia.kernels.links.lists import corner_of
-from udec_ia.kernels.map.segments import on_arc
+from udec_ia.kernels.links.linked_lists import corner_of
+from udec_ia.kernels.map.domain_segments import on_arc
 from udec_ia.layout import offsets as g
 
 

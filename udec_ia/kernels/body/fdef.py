@@ -28,8 +28,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import INSIDE_OUT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.constitutive.block_laws import stress_increment
-from udec_ia.kernels.geometry.shape import round_anew
-from udec_ia.kernels.geometry.tensor import cayley, turned
+from udec_ia.kernels.geometry.block_shape import round_anew
+from udec_ia.kernels.geometry.plane_tensors import cayley, turned
 from udec_ia.layout import offsets as g
 
 

@@ -107,6 +107,11 @@ def joints_of_materials(h: Memory, materials: Any) -> Joint:
     return Joint(*(np.asarray(h.cr[k + m], np.float64) for k in (g.AKN, g.AKS, g.COH, g.AMU)))
 
 
+def materials_of(h: Memory, contacts: Any) -> Any:
+    """Material numbers of the contacts at the addresses `contacts`; not for kernels."""
+    return integers(h, contacts, g.KCM)
+
+
 def joints_of(h: Memory, contacts: Any) -> Joint:
     """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels."""
-    return joints_of_materials(h, integers(h, contacts, g.KCM))
+    return joints_of_materials(h, materials_of(h, contacts))

@@ -3,9 +3,13 @@
 Each contact in its turn: where it is; the relative velocity of its two blocks; its law (constitutive); and
 the forces on its blocks. That reads the map and writes to the contact alone, but for the forces on the
 blocks. Contacts that have to look at their neighbours, or to change the map, wait until all others have had
-their turn (changes.py).
+their turn (map_changes.py).
 
-The energy account is given the new forces while the contact still holds the old ones (energy/contacts.py).
+The energy account is given the new forces while the contact still holds the old ones
+(energy/work_account.py).
+
+The same forces are summed for all blocks after something other than the cycle has changed the map or the type
+of a block (`sum_all_forces`).
 """
 
 from __future__ import annotations
@@ -16,11 +20,13 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.outlined_calls import call_entry
 from udec_ia.compiling.prefetch import LEAD, fetch
 from udec_ia.errors import OVERLAP_TOO_GREAT
-from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
+from udec_ia.kernels.body.fdef import stand_still, zone_forces
+from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
-from udec_ia.kernels.contact.changes import is_still, opens
-from udec_ia.kernels.geometry.contact_geometry import coord
+from udec_ia.kernels.contact.map_changes import is_still, opens
+from udec_ia.kernels.geometry.contact_geometry import coord, coord_seldom
 from udec_ia.layout import offsets as g
 
 
@@ -106,8 +112,8 @@ def look_ahead(h: Memory, ic: int) -> int:
 def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, waiting: Any) -> None:
     """All contacts that are not virtual; the first whose overlap is too great raises error 15.
 
-    soft, joints: as in run_cycles. change_map: of changes.py. account: energy.contacts.note_contact, or 0 if
-    none is kept. waiting: room for the addresses of all contacts.
+    soft, joints: as in run_cycles. change_map: of map_changes.py. account: energy.work_account.note_contact,
+    or 0 if none is kept. waiting: room for the addresses of all contacts.
     """
     n = 0
     ic = h.ci[g.ICPNT]
@@ -127,3 +133,42 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     for k in range(n):
         if waiting[k] != 0:
             ford(h, abs(waiting[k]), soft, joints, account, True)
+
+
+@kernel
+def _inner_forces(h: Memory, ib: int) -> None:
+    """Applied stress of block `ib` := 0, or the force sums of its grid-points := those of its zones."""
+    zero = real(h, 0.0)
+    ie = iget(h, ib, g.KBEX)
+    if iget(h, ib, HEAD) == g.MSDEF:
+        reset_applied(h, ie)
+    elif iget(h, ib, HEAD) == g.MFDEF:
+        stand_still(h, ib)
+        iz = iget(h, ie, g.KFZ)
+        while iz != 0:
+            zone_forces(h, iz, zero, zero, zero)
+            iz = iget(h, iz, g.KZ)
+
+
+@kernel
+def sum_all_forces(h: Memory, soft: Any) -> None:
+    """Force sums from the forces stored in the contacts and the stresses in the zones."""
+    zero = real(h, 0.0)
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        putr(h, ib, g.KBFX, zero)
+        putr(h, ib, g.KBFY, zero)
+        putr(h, ib, g.KBFT, zero)
+        if soft is not None:
+            _inner_forces(h, ib)
+        ib = iget(h, ib, g.KB)
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        if getr(h, ic, g.KCFN) != zero:
+            nx, ny, _, _ = coord_seldom(h, ic)
+            fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
+            fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
+            x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+            putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
+            putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
+        ic = iget(h, ic, g.KC)

@@ -3,17 +3,19 @@
 The argument why two blocks never overlap by more than CTOL without a contact or an error:
 
 1.  After an update of a domain every two segments of its boundary that are nearer than ATOL have a contact,
-    or one near them that stands for both (search.py); two that overlap where none can be made are error 15.
+    or one near them that stands for both (contact_search.py); two that overlap where none can be made are
+    error 15.
 2.  Until the next update its points approach each other by at most ETOL in x and in y, so by ATOL at most:
     KUMAX sums their greatest relative displacement, and above ETOL the domain is updated in the same cycle
-    (domains.py). So without a contact nothing has come to touch before that cycle.
+    (domain_pass.py). So without a contact nothing has come to touch before that cycle.
 3.  A step of at most ETOL then makes an overlap of at most CTOL, with which a contact can be made.
 4.  In a longer step blocks may come to lie deeper in each other, or pass right through each other. So after a
     step of more than ETOL the ways of all corners of the domain are followed: none of them may have been
     deeper in another block of the domain than CTOL, nor have come in and gone out again when it was deeper
     than FTOL; and no edge may lie deeper than CTOL in another block. That is what this file does.
 5.  Contacts part domains like walls. One that is open is no wall any more as soon as another block comes
-    between the two (gaps.py); one that is closed ends the run if a tip is squeezed through it (changes.py).
+    between the two (occupied_gaps.py); one that is closed ends the run if a tip is squeezed through it
+    (map_changes.py).
 6.  Commands that change outlines flag all domains, which are updated before the next cycle; what is too
     deep then is refused, and nothing is changed (ops/commands/corner_rounding.py).
 
@@ -32,11 +34,11 @@ from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.kernels.body.boundary_point import lever
-from udec_ia.kernels.detect.depth import depth_in
-from udec_ia.kernels.detect.domains import relative_velocity
-from udec_ia.kernels.geometry.boxes import ABOVE, BELOW, LEFT, RIGHT, meeting
+from udec_ia.kernels.detect.domain_pass import relative_velocity
+from udec_ia.kernels.detect.point_depth import depth_in
+from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.geometry.contact_geometry import tangents
-from udec_ia.kernels.map.segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
+from udec_ia.kernels.map.domain_segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.layout import offsets as g
 
 POINTS = 3  # of an arc that are followed

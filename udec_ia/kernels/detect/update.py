@@ -24,11 +24,11 @@ from udec_ia.compiling.outlined_calls import entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.find_lose import room_for_two
-from udec_ia.kernels.detect.gaps import give_up_taken
-from udec_ia.kernels.detect.search import SMALL, STRAY, search
+from udec_ia.kernels.detect.contact_search import SMALL, STRAY, search
+from udec_ia.kernels.detect.occupied_gaps import give_up_taken
 from udec_ia.kernels.detect.tunnelling import edge_lies_in
 from udec_ia.kernels.map.bridge import bridge
-from udec_ia.kernels.map.segments import (
+from udec_ia.kernels.map.domain_segments import (
     ARC,
     BLOCK,
     COLUMNS,
@@ -40,7 +40,7 @@ from udec_ia.kernels.map.segments import (
     not_virtual,
     settle_loop,
 )
-from udec_ia.kernels.map.virtual import cut_among_pieces, rehook
+from udec_ia.kernels.map.virtual_contacts import cut_among_pieces, rehook
 from udec_ia.layout import offsets as g
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4

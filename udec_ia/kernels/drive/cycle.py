@@ -1,7 +1,21 @@
-"""The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts.
+"""The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts; between cycles, HISTORY and SOLVE.
 
-JPHASE says which pass comes next, so that a cycle that had to stop, because an update ran out of memory or
-a pass is not compiled yet, can be taken up again at that very point and goes on as if it had not stopped.
+JPHASE says which pass comes next, so that a cycle that had to stop, because an update ran out of memory or a
+pass is not compiled yet, can be taken up again at that very point and goes on as if it had not stopped.
+
+`soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code, and
+such a scene neither compiles nor tests anything about deformable blocks. What is long, and not needed in
+every cycle or scene, a cycle calls by its address (heap/apart.py): it is compiled once for a word scheme, and
+once it is needed, instead of in every kind of cycle. `passes` finds what a run needs.
+
+The compiled loop of `run_watched` runs from one cycle at which something is due to the next, writes what is
+due into the caller's arrays, and returns when these are full. What is due depends on the total number of
+cycles alone: a history with KHN 10 is recorded after the cycles 10, 20, 30 ... however the run is cut into
+commands.
+
+Contacts that open and close again and again are found by a look at all contacts every LOOK cycles. A mark
+holds whether its contact bore a force at the last look, and twice how often that differed from the look
+before. Two contacts are never so near to each other in IA() that they share a mark.
 """
 
 from __future__ import annotations
@@ -10,26 +24,129 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.compiling.outlined_calls import call_entry
-from udec_ia.heap.accessors import Memory, int64
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
+from udec_ia.compiling.outlined_calls import call_entry, entry, entry_if
+from udec_ia.compiling.prefetch import LEAD, fetch
+from udec_ia.errors import TOO_FAR
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.find_lose import room
-from udec_ia.kernels.body.blocks import move_all
+from udec_ia.kernels.body.boundary_conditions import apply_bounds
+from udec_ia.kernels.body.fdef import move_fdef
+from udec_ia.kernels.body.motion import motion
+from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.contact.ford import ford_all
-from udec_ia.kernels.detect.domains import accumulate
-from udec_ia.kernels.drive.passes import (
-    BOUNDS,
-    CHANGES,
-    CONTACT,
-    FORCES,
-    LOADS,
-    MOTION,
-    RELAX,
-    STRESSES,
-    TUNNELLING,
-    UPDATE,
+from udec_ia.kernels.contact.map_changes import NOBODY, change_map
+from udec_ia.kernels.detect.domain_pass import accumulate
+from udec_ia.kernels.detect.tunnelling import gone_through
+from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.damping_modes import mode_of
+from udec_ia.kernels.drive.dynamic_relaxation import relax
+from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
+from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
+from udec_ia.kernels.energy.work_account import (
+    note_contact,
+    note_forces,
+    note_loads,
+    note_rigid,
+    note_stresses,
 )
+from udec_ia.kernels.geometry.block_shape import keep_circles
 from udec_ia.layout import offsets as g
+
+KEEP = 16  # cycles from one time to the next that rigid blocks have their circles put back
+FINE = 1e-10  # reals that cannot tell 1 + FINE from 1 need that
+
+
+@inlined
+def check_place(h: Memory, ib: int) -> None:
+    """Error 36 if block `ib` is where reals no longer tell x from x + FTOL, or if its place is no number."""
+    x, y, tolerance = abs(getr(h, ib, g.KX)), abs(getr(h, ib, g.KY)), h.cr[g.FTOL]
+    if not (x + tolerance > x and y + tolerance > y) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = TOO_FAR
+        h.ci[g.IERAD] = ib
+
+
+@kernel
+def move_all(h: Memory, soft: Any, laws: Any) -> float:
+    """Move every block; returns a bound on the velocity, in x or in y, of any point.
+
+    Error 36 if a block has flown to where nothing can be calculated any more.
+    """
+    fastest = real(h, 0.0)
+    narrow = real(h, 1.0) + real(h, FINE) == real(h, 1.0)
+    keep = narrow and h.ci[g.MCTOT] % KEEP == 0
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        fetch(h, ib, g.NVBL, LEAD)
+        if soft is not None:
+            kind = iget(h, ib, HEAD)
+            if kind == g.MFDEF:
+                fastest = max(fastest, move_fdef(h, ib, laws))
+            elif kind == g.MSDEF:
+                fastest = max(fastest, move_sdef(h, ib, laws))
+            else:
+                fastest = max(fastest, motion(h, ib))
+        else:
+            fastest = max(fastest, motion(h, ib))
+        if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
+            keep_circles(h, ib)
+        check_place(h, ib)
+        ib = iget(h, ib, g.KB)
+    return fastest
+
+
+LOOK = 100  # cycles from one look to the next
+STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; behind the three sizes there may be more
+
+
+@outlined
+def note_openings(h: Memory, marks: Any) -> bool:
+    """Look at all contacts. marks: one byte for STRIDE words of IA(); none for those behind."""
+    ic = int64(h.ci[g.ICPNT])
+    while ic != 0:
+        k = ic // STRIDE
+        if k < len(marks):
+            closed = 1 if getr(h, ic, g.KCFN) != 0 else 0
+            if marks[k] % 2 != closed:
+                marks[k] += 3 if closed == 1 else 1
+        ic = iget(h, ic, g.KC)
+    return True
+
+
+UPDATE, TUNNELLING, BOUNDS, MOTION, RELAX, FORCES, LOADS, STRESSES = range(8)
+CONTACT, CHANGES, MEASURES, RECORD, REST, OPENINGS = range(8, 14)
+
+
+def passes(
+    h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float, mean: bool, marks: Any
+) -> tuple[Any, ...]:
+    """Addresses in the order above, 0 for what a run does not need; of MEASURES as many.
+
+    soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
+    ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
+    A run of slow blocks does not need TUNNELLING; one that does stops before it.
+    """
+    keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, mode_of(h)
+    asked = measures(h) if recorded else NOT_MEASURED
+    none = h.cr.dtype.type(0)
+    pair = none, none
+    return (
+        updating(h),
+        entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
+        entry(apply_bounds, h) if loaded else 0,
+        entry(mode.motion_pass, h) if mode and mode.motion_pass else 0,
+        entry(relax, h) if (mode and mode.changes_forces) or h.ci[g.LSCALE] else 0,
+        entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
+        entry(note_loads, h) if keeps and loaded else 0,
+        entry(note_stresses, h) if keeps and soft is not None else 0,
+        entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
+        entry(change_map, h, NOBODY, 0),
+        asked,
+        entry(record, h, *recorded, asked) if recorded else 0,
+        entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
+        entry(note_openings, h, marks) if len(marks) else 0,
+    )
+
 
 CONTACTS = 1000  # for each of which a safe time-step may wait a cycle to be judged again
 
@@ -52,7 +169,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if
     `soft` is. joints: None if no contact follows a law of the user's, else these (compiling.law_calls).
-    passes: see drive.passes. Stops early, too, when a safe time-step has to be judged.
+    passes: see drive.cycle. Stops early, too, when a safe time-step has to be judged.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
@@ -99,3 +216,52 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         if h.ci[g.NERR] != 0 or has_to_judge(h):
             return done
     return done
+
+
+CHECK = 10  # cycles between two looks at the force ratio
+
+
+@kernel
+def until_due(h: Memory, limit: int) -> int:
+    """Cycles until the next history is due, or `limit` if that comes first."""
+    cycles = int64(limit)
+    ih = int64(h.ci[g.IHPNT])
+    while ih != 0:
+        every = iget(h, ih, g.KHN)
+        cycles = min(cycles, every - h.ci[g.MCTOT] % every)
+        ih = iget(h, ih, g.KH)
+    return cycles
+
+
+@kernel
+def run_watched(
+    h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any, marks: Any, passes: Any
+) -> tuple[int, bool]:
+    """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
+
+    laws: three arguments of run_cycles. passes: see drive.cycle. places: without rows if nothing is
+    recorded. marks: of drive.cycle, without any if nobody looks at them.
+    Stops early when NERR is set, when `rows` is full, when a safe time-step has to be judged, and at rest,
+    which is looked at every CHECK cycles of the run; to within a negative ratio it never is.
+    """
+    recorded = len(places) > 0
+    done = 0
+    while done < n and count[0] < len(rows):
+        ahead = min(int64(n - done), CHECK - h.ci[g.MCTOT] % CHECK) if ratio >= 0 else int64(n - done)
+        if len(marks) > 0:
+            ahead = min(ahead, int64(LOOK - h.ci[g.MCTOT] % LOOK))
+        before = h.ci[g.MCTOT]
+        asked = until_due(h, ahead) if recorded else ahead
+        completed = run_cycles(h, asked, laws[0], laws[1], laws[2], passes)
+        done += completed
+        if recorded and h.ci[g.MCTOT] > before:
+            call_entry(passes[RECORD], h, places, rows, count, passes[MEASURES])
+        if len(marks) > 0 and h.ci[g.MCTOT] > before and h.ci[g.MCTOT] % LOOK == 0:
+            call_entry(passes[OPENINGS], h, marks)
+        if completed < asked or h.ci[g.NERR] != 0:
+            return done, False
+        if ratio >= 0 and h.ci[g.MCTOT] % CHECK == 0 and call_entry(passes[REST], h, ratio):
+            return done, True
+        if has_to_judge(h):
+            return done, False
+    return done, False

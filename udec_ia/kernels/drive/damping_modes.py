@@ -1,8 +1,8 @@
 """The damping modes that only lead to rest, in one table: LOCAL, COMBINED, KINETIC, ADAPTIVE.
 
 DAMPING, the passes of a run, the safe time-step, remarks and `udec info` read it. What a mode does to forces
-and velocities is in relax.py and peaks.py. At most one mode acts at a time (LREST, RESTF); Rayleigh damping
-(ALPHA, BETA) is none of them.
+and velocities is in dynamic_relaxation.py and kinetic_damping.py. At most one mode acts at a time (LREST,
+RESTF); Rayleigh damping (ALPHA, BETA) is none of them.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.drive.peaks import look_at_motion
+from udec_ia.kernels.drive.kinetic_damping import look_at_motion
 from udec_ia.layout import offsets as g
 
 
@@ -21,9 +21,9 @@ class DampingMode(NamedTuple):
     report: for the beginning of a run, with {f} for the fraction RESTF. fraction: name of the number that it
     takes, 0 to 1, "" if it takes none.
     motion_pass: kernel that looks at the motion of the whole model before each step; None if not needed.
-    changes_forces: kernels/drive/relax.py replaces the unbalanced forces. keeps_forces: it needs those of the
-    cycle before. stiffens: what turns about in every cycle feels joints 1 + f times as stiff, so the safe
-    step is shorter. sets_alpha: the mode finds ALPHA and ALPB itself.
+    changes_forces: kernels/drive/dynamic_relaxation.py replaces the unbalanced forces. keeps_forces: it needs
+    those of the cycle before. stiffens: what turns about in every cycle feels joints 1 + f times as stiff, so
+    the safe step is shorter. sets_alpha: the mode finds ALPHA and ALPB itself.
     """
 
     keyword: str

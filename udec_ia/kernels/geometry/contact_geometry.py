@@ -26,8 +26,8 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.kernels.geometry.shape import is_edge_point, zcs
-from udec_ia.kernels.links.lists import next_corner
+from udec_ia.kernels.geometry.block_shape import is_edge_point, zcs
+from udec_ia.kernels.links.linked_lists import next_corner
 from udec_ia.layout import offsets as g
 
 BLUNT = 8.0  # radius over D above which it matters where an arc ends: of a corner that turns by 14 degrees

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
-from udec_ia.kernels.geometry.shape import crad, span, zcs
+from udec_ia.kernels.geometry.block_shape import crad, span, zcs
 from udec_ia.layout import offsets as g
 
 

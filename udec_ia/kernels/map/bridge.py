@@ -13,11 +13,11 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.kernels.constitutive.joint_laws import no_force
 from udec_ia.kernels.constitutive.joint_properties import assign_material
+from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.geometry.contact_geometry import begin
-from udec_ia.kernels.geometry.shape import geo
-from udec_ia.kernels.links.flag import flag
-from udec_ia.kernels.links.lists import (
+from udec_ia.kernels.links.linked_lists import (
     dellst,
+    flag,
     insert_after,
     is_contact,
     is_corner,

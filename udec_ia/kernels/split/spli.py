@@ -17,9 +17,9 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
 from udec_ia.heap.find_lose import find
-from udec_ia.kernels.geometry.shape import density_of, geo, makeb
-from udec_ia.kernels.links.flag import flag
-from udec_ia.kernels.links.lists import (
+from udec_ia.kernels.geometry.block_shape import density_of, geo, makeb
+from udec_ia.kernels.links.linked_lists import (
+    flag,
     idomp,
     is_contact,
     is_corner,
@@ -31,7 +31,7 @@ from udec_ia.kernels.links.lists import (
     to_front,
 )
 from udec_ia.kernels.map.bridge import makec, maked
-from udec_ia.kernels.map.segments import on_arc
+from udec_ia.kernels.map.domain_segments import on_arc
 from udec_ia.layout import offsets as g
 
 

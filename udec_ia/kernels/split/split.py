@@ -20,16 +20,15 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.compiling.outlined_calls import call_entry, entry
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import room
-from udec_ia.kernels.body.masses import share_extension
-from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map, restart
+from udec_ia.kernels.body.mass_distribution import share_extension
+from udec_ia.kernels.contact.map_changes import ALL, NOBODY, change_map, restart
 from udec_ia.kernels.detect.update import updating
-from udec_ia.kernels.geometry.shape import crad, zcs
+from udec_ia.kernels.geometry.block_shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
-from udec_ia.kernels.links.flag import flag_all
-from udec_ia.kernels.links.lists import idomp, is_contact, is_corner, nextcp, prevcp
-from udec_ia.kernels.split.crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
-from udec_ia.kernels.split.shared_bounds import off_grid, share_bounds
+from udec_ia.kernels.links.linked_lists import flag_all, idomp, is_contact, is_corner, nextcp, prevcp
+from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.spli import corner_on_edge, spli
+from udec_ia.kernels.split.split_conditions import off_grid, share_bounds
 from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4

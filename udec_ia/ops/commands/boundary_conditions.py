@@ -1,4 +1,4 @@
-"""BOUNDARY: boundary conditions (kernels.body.bounds).
+"""BOUNDARY: boundary conditions (kernels.body.boundary_conditions).
 
 Velocities and forces act on the grid-points of fully-deformable blocks that lie in the range, and on rigid
 and simply-deformable blocks whose centroids do. Stresses and viscous resistance act on edges that have both
@@ -21,8 +21,8 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.timestep import addresses
-from udec_ia.kernels.geometry.ranges import edges_between, points_between
+from udec_ia.kernels.geometry.range_selection import edges_between, points_between
+from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, chain, check_range, why_nothing
@@ -98,6 +98,7 @@ def boundary(
     fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
     pressure = (stress, xgrad, ygrad) if presses else None
     loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
+    _check_free(array.h, [target[0] for target in loads if target[2] == 0], xvel=xvel, yvel=yvel)
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     signal = find_function(array.h, function) if function is not None else 0
     require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
@@ -140,6 +141,16 @@ def _check_asked(condition: bool, sine: bool, function: bool, free: bool) -> Non
         raise UdecError(10, "FUNCTION beside SINE", advice, parameter="function")
     if not (condition or free):
         raise UdecError(26, "no velocity, and no force or stress other than 0", "BOUNDARY 0 9 0 1 YVEL=0")
+
+
+def _check_free(h: Memory, blocks: Iterable[int], **velocity: float | None) -> None:
+    """Error 28 if a fixed block or its grid-points are to move."""
+    moving = next((name for name, v in velocity.items() if v), None)
+    fixed = next((ib for ib in blocks if moving and iget(h, ib, g.KBFIX) == g.FIXED), None)
+    if fixed is not None:
+        x, y = float(getr(h, fixed, g.KX)), float(getr(h, fixed, g.KY))
+        advice = f"FREE a range with its centroid ({x:g}, {y:g}) first; the velocity then holds the block"
+        raise UdecError(28, f"block@{fixed} is fixed and would not move", advice, parameter=moving or "")
 
 
 def _inside(where: Range, x: float, y: float) -> bool:

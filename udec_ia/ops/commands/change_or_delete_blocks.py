@@ -14,14 +14,14 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.bounds import push_loads
-from udec_ia.kernels.body.masses import share_mass, zone_means
+from udec_ia.kernels.body.boundary_conditions import push_loads
+from udec_ia.kernels.body.mass_distribution import share_mass, zone_means
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.constitutive.joint_properties import assign_material
-from udec_ia.kernels.geometry.shape import geo
-from udec_ia.kernels.links.lists import is_corner
-from udec_ia.kernels.map.remove import delb
+from udec_ia.kernels.geometry.block_shape import geo
+from udec_ia.kernels.links.linked_lists import is_corner
+from udec_ia.kernels.map.block_removal import delb
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_conditions import forget_blocks
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged

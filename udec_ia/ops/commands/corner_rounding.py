@@ -5,12 +5,12 @@ from __future__ import annotations
 from udec_ia.errors import OVERLAP_TOO_GREAT, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.contact.changes import ALL, NOBODY, change_map
-from udec_ia.kernels.detect.deep_overlap import deep_overlap
+from udec_ia.kernels.contact.map_changes import ALL, NOBODY, change_map
+from udec_ia.kernels.detect.contact_search import deep_overlap
 from udec_ia.kernels.detect.update import update_domains
-from udec_ia.kernels.geometry.shape import span, zcs
+from udec_ia.kernels.geometry.block_shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
-from udec_ia.kernels.links.flag import flag_all
+from udec_ia.kernels.links.linked_lists import flag_all
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spare
 from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, check_resolution, positive

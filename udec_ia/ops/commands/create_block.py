@@ -10,8 +10,8 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.boxes import meeting
-from udec_ia.kernels.geometry.shape import density_of, makeb
+from udec_ia.kernels.geometry.block_shape import density_of, makeb
+from udec_ia.kernels.geometry.box_sweep import meeting
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block

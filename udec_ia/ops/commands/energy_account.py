@@ -17,7 +17,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.energy.stored import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.common.number_limits import held

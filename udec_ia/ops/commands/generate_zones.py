@@ -22,10 +22,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.masses import share_mass
+from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import carry_corners
-from udec_ia.kernels.geometry.shape import crad
-from udec_ia.kernels.links.lists import is_corner
+from udec_ia.kernels.geometry.block_shape import crad, geo
+from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.split.spli import corner_on_edge
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
@@ -310,10 +310,10 @@ def _set_in_motion(h: Memory, ib: int) -> None:
     Masses at grid-points have a greater moment of inertia than the block had. In a run the angular velocity
     is less by as much, for the angular momentum to stay.
     """
-    x, y, xd, yd, td = (float(getr(h, ib, k)) for k in (g.KX, g.KY, g.KXD, g.KYD, g.KTD))
-    points = [(ig, float(getr(h, ig, g.KXG)) - x, float(getr(h, ig, g.KYG)) - y) for ig in _gridpoints(h, ib)]
+    xd, yd, td = (float(getr(h, ib, k)) for k in (g.KXD, g.KYD, g.KTD))
+    points = _arms(h, ib)
     if h.ci[g.MCTOT] > 0:
-        second = sum(float(getr(h, ig, g.KGPM)) * (rx * rx + ry * ry) for ig, rx, ry in points)
+        second = _lumped_inertia(h, ib)
         td *= float(getr(h, ib, g.KBI)) / second
         putr(h, ib, g.KTD, td)
         putr(h, ib, g.KBI, second)
@@ -321,6 +321,24 @@ def _set_in_motion(h: Memory, ib: int) -> None:
         putr(h, ig, g.KXDG, xd - td * ry)
         putr(h, ig, g.KYDG, yd + td * rx)
     carry_corners(h, ib)
+
+
+def _arms(h: Memory, ib: int) -> list[tuple[int, float, float]]:
+    """Grid-points of block `ib`, and where they are from its centroid."""
+    x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
+    return [(ig, float(getr(h, ig, g.KXG)) - x, float(getr(h, ig, g.KYG)) - y) for ig in _gridpoints(h, ib)]
+
+
+def _lumped_inertia(h: Memory, ib: int) -> float:
+    """Moment of inertia of the masses at the grid-points of block `ib`."""
+    return sum(float(getr(h, ig, g.KGPM)) * (rx * rx + ry * ry) for ig, rx, ry in _arms(h, ib))
+
+
+def inertia_ratio(h: Memory, ib: int) -> float:
+    """Moment of inertia of the masses at grid-points over that of block `ib` as a body; 1 without a mass."""
+    area, _, _, jxx, _, jyy = (float(n) for n in geo(h, ib))
+    exact = float(getr(h, ib, g.KBM)) * (jxx + jyy) / area
+    return _lumped_inertia(h, ib) / exact if exact else 1.0
 
 
 def _gridpoints(h: Memory, ib: int) -> list[int]:

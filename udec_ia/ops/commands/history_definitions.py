@@ -15,7 +15,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.recording import DOUBLE, INTEGER, REAL
+from udec_ia.kernels.drive.history_recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import whole

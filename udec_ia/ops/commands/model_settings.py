@@ -7,7 +7,7 @@ import math
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.masses import greatest_block
+from udec_ia.kernels.body.mass_distribution import greatest_block
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
@@ -82,7 +82,7 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> None:
     """DAMPING LOCAL f and the other modes of the table: what leads to rest instead of mass damping.
 
-    f: fraction of the unbalanced force, or of critical damping (kernels.drive.relax), up to 1.
+    f: fraction of the unbalanced force, or of critical damping (kernels.drive.dynamic_relaxation), up to 1.
     All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
     """
     not_negative(array, **{mode.argument: f})

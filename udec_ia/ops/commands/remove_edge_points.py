@@ -12,12 +12,18 @@ import math
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
 from udec_ia.heap.find_lose import lose
-from udec_ia.kernels.contact.changes import restart
-from udec_ia.kernels.detect.gaps import give_up
-from udec_ia.kernels.geometry.shape import crad, is_edge_point
-from udec_ia.kernels.links.flag import flag
-from udec_ia.kernels.links.lists import corner_of, is_corner, next_corner, set_corner_of, take_out
-from udec_ia.kernels.map.segments import on_arc
+from udec_ia.kernels.contact.map_changes import restart
+from udec_ia.kernels.detect.occupied_gaps import give_up
+from udec_ia.kernels.geometry.block_shape import crad, is_edge_point
+from udec_ia.kernels.links.linked_lists import (
+    corner_of,
+    flag,
+    is_corner,
+    next_corner,
+    set_corner_of,
+    take_out,
+)
+from udec_ia.kernels.map.domain_segments import on_arc
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.block_ranges import items
 

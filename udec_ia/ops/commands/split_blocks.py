@@ -11,7 +11,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.split.crossing import SHORTEST, X, Y, rounding_is_open
+from udec_ia.kernels.split.line_crossing import SHORTEST, X, Y, rounding_is_open
 from udec_ia.kernels.split.split import (
     DONE,
     NO_MEMORY,

@@ -7,8 +7,8 @@ from math import hypot
 
 from udec_ia.heap.accessors import Memory, Offset, getr, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.ranges import blocks_between
-from udec_ia.kernels.links.lists import nextcp
+from udec_ia.kernels.geometry.range_selection import blocks_between
+from udec_ia.kernels.links.linked_lists import nextcp
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.number_limits import finite
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.contact.force_sums import sum_all_forces
+from udec_ia.kernels.contact.ford import sum_all_forces
 from udec_ia.layout import offsets as g
 
 

@@ -1,0 +1,148 @@
+"""Places by name: what the grammar takes, what the heap must have, and that answers can be given back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from udec_ia import Model
+from udec_ia.cli import main
+from udec_ia.errors import UdecError
+from udec_ia.heap_tools.patch_words import patch
+from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.places import PlaceError, PlaceName, address_of, find_number, read_place, stretch
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    """A deformable block on a rigid one, with a group of every list."""
+    m = Model()
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5, bulk=1e9, g=6e8)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.split(-1, 1, 3, 1)
+    m.generate(0, 2, 1, 2, "automatic", edge=0.9)
+    m.fix(0, 2, 0, 1)
+    m.gravity(0, -10)
+    m.cycle(5)
+    return m
+
+
+@pytest.fixture(scope="module")
+def file(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return model.save(tmp_path_factory.mktemp("places") / "state.h5")
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("412", ("", 412, "", None)),
+        (" block@88 ", ("block", 88, "", None)),
+        ("Block@88.kxd", ("block", 88, "KXD", None)),
+        ("zone@9.KZG(2)", ("zone", 9, "KZG", 2)),
+        ("frac", ("", 0, "FRAC", None)),
+        ("AMU(1)", ("", 0, "AMU", 1)),
+    ],
+)
+def test_one_grammar(text: str, name: tuple[str, int, str, int | None]) -> None:
+    assert read_place(text) == PlaceName(*name)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "@", "block@", "@88", "block@88.", "block.KXD", "412.KXD", "block@88.KXD.KYD", "block@-1"),
+        *("block@88.KZG(a)", "block 88", "1" * 41, "block@88.KZG(1", "\x1b[31m", "block@1e3", "FRAC = 1"),
+    ],
+)
+def test_what_is_no_place(text: str) -> None:
+    with pytest.raises(PlaceError):
+        read_place(text)
+
+
+def test_every_group_and_field_is_found_by_its_name(model: Model) -> None:
+    atlas = Atlas(model.h)
+    for kind, at in atlas.groups.items():
+        for iad in at[:: max(len(at) // 5, 1)].tolist():
+            span = atlas.span(iad)
+            assert address_of(atlas, f"{kind}@{iad}") == iad == address_of(atlas, iad)
+            assert stretch(atlas, f"{kind}@{iad}") == (span.first, span.last)
+            for word in atlas.words(span):
+                name = f"{kind}@{iad}.{word.name}"
+                place = find_number(atlas, name)
+                assert (place.name, place.kind, place.field) == (name, kind, word.field)
+                assert place.value(model.h) == atlas.value(word)
+                assert stretch(atlas, name) == (word.first, word.last)
+                assert find_number(atlas, str(word.last)) == place
+
+
+def test_variables(model: Model) -> None:
+    atlas = Atlas(model.h)
+    assert find_number(atlas, "FRAC").value(model.h) == model.h.cr[g.FRAC]
+    assert find_number(atlas, "akn(1)").value(model.h) == 1e8
+    assert find_number(atlas, "AKN(1)").unit == "N/m2"
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("contact@{block}", ("no contact at {block}", "block@{block}")),
+        ("block@{inner}", ("no block at {inner}", "in block@{block}")),
+        ("block@99999999", ("no block at 99999999", "1 to ")),
+        ("block@0", ("no block at 0",)),
+        ("brick@{block}", ("brick is not a kind of group",)),
+        ("block@{block}.KXX", ("KXX is not a field of a block", "KXD")),
+        ("block@{block}.KXD(2)", ("KXD has no element 2",)),
+        ("block@{block}.KXD(0)", ("KXD has no element 0",)),
+        ("zone@{zone}.KZG", ("KZG has 3 elements",)),
+        ("AKN(0)", ("AKN has no element 0",)),
+        ("KXD", ("KXD is not a variable", "block@88.KXD")),
+        ("block@{block}", ("whole group",)),
+    ],
+)
+def test_what_the_heap_does_not_have(model: Model, text: str, parts: tuple[str, ...]) -> None:
+    atlas = Atlas(model.h)
+    block, zone = int(atlas.groups["block"][0]), int(atlas.groups["zone"][0])
+    names = {"block": block, "inner": block + 1, "zone": zone}
+    with pytest.raises(PlaceError) as refused:
+        find_number(atlas, text.format(**names))
+    for part in parts:
+        assert part.format(**names) in str(refused.value)
+    before = model.h.ia.copy()
+    with pytest.raises(UdecError) as error:
+        patch(model.array, text.format(**names) + " = 1")
+    assert error.value.number == 10
+    assert np.array_equal(before, model.h.ia)
+
+
+def test_a_variable_has_no_address(model: Model) -> None:
+    for ask in (address_of, stretch):
+        with pytest.raises(PlaceError):
+            ask(Atlas(model.h), "FRAC")
+
+
+@pytest.mark.parametrize("kind", ["contact", "block", "zone", "domain"])
+def test_what_the_commands_print_they_take(
+    model: Model, file: Path, kind: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def udec(*args: object) -> tuple[int, str, str]:
+        status = main([*map(str, args)])
+        said = capsys.readouterr()
+        return status, said.out, said.err
+
+    iad = int(Atlas(model.h).groups[kind][-1])
+    asked: list[tuple[str, ...]] = [("what",), ("who",), ("dump",), ("graph",), ("find", "--points-to")]
+    if kind != "zone":
+        asked.append(("walk", kind) if kind in ("block", "domain") else ("walk", "KC"))
+    for verb, *before in asked:
+        by_name, by_address = (udec(verb, file, *before, place) for place in (f"{kind}@{iad}", iad))
+        assert by_name[0] == by_address[0] == 0
+        if verb == "dump":
+            assert len(by_name[1].splitlines()) > len(by_address[1].splitlines())
+        else:
+            assert by_name[1] == by_address[1]
+        status, _, said = udec(verb, file, *before, f"corner@{iad}")
+        assert status == 2
+        assert f"there is no corner at {iad}" in " ".join(said.split())

@@ -1,0 +1,47 @@
+"""`udec debug DECK`: run a deck under the debugger."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from udec_ia.command_line.command_options import MISUSE, given, variables, word_scheme
+from udec_ia.deck.deck_statements import read_deck
+
+VERBS = ("debug",)
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    text = "run a deck under the debugger: stop it, look at every word, go back"
+    parser = commands.add_parser("debug", help=text, description=text)
+    parser.add_argument("deck", type=Path, help="file of commands")
+    word_scheme(parser)
+    parser.add_argument("--out", type=Path, default=Path(), help="folder for the files of the deck")
+    parser.add_argument("--constitutive", action="append", metavar="LAW", help="as for udec run")
+    parser.add_argument(
+        "--commands",
+        type=Path,
+        metavar="FILE",
+        help="take the debugger's commands from a file, and end after them",
+    )
+    variables(parser)
+    parser.set_defaults(action=_debug)
+
+
+def _debug(args: argparse.Namespace) -> int:
+    from udec_ia.debug import debug
+    from udec_ia.model import Model
+
+    try:
+        values = given(args.set)
+    except ValueError as error:
+        print(f"udec debug: {error}", file=sys.stderr)
+        return MISUSE
+    script = None if args.commands is None else read_deck(args.commands).splitlines()
+    model = Model(build=args.build, out=args.out, constitutive=args.constitutive, name=args.deck.stem)
+    text = read_deck(args.deck)
+    debug(model, text, sys.stdout, script, str(args.deck), values)
+    return 0

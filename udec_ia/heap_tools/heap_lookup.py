@@ -1,0 +1,225 @@
+"""What a word is, what points to a group, and the groups along a list: `udec what`, `who` and `walk`."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator
+from difflib import get_close_matches
+from itertools import repeat
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.counting import counted
+from udec_ia.heap.main_array import variable
+from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
+from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
+from udec_ia.reader.group_positions import places
+from udec_ia.reader.list_walks import Unsound, boundary, groups, loop
+from udec_ia.reader.listing import Listing
+from udec_ia.reader.places import address_of
+
+
+class Pointers(NamedTuple):
+    """One pointer field of groups of a kind: their addresses (n,), and where it leads (n,).
+
+    target: kind of group it should lead to. word: None for a pointer of the common block, called `name`.
+    """
+
+    name: str
+    target: str
+    word: Word | None
+    at: Any
+    to: Any
+
+
+def pointers(atlas: Atlas) -> Iterator[Pointers]:
+    """Every pointer of the common block, and every pointer field of every kind of group."""
+    for field in TABLE.common:
+        if field.target:
+            yield Pointers(field.name, field.target, None, np.zeros(1, np.int64), variable(atlas.h, field))
+    for kind in KINDS:
+        at = atlas.groups[kind]
+        for word in atlas.shapes[kind]:
+            if word.field.target:
+                yield Pointers(word.name, word.field.target, word, at, atlas.gather(word, at))
+
+
+def pointing(atlas: Atlas, address: int) -> Iterator[Pointers]:
+    """Those whose value is `address`."""
+    for one in pointers(atlas):
+        found = one.to == address
+        yield one._replace(at=one.at[found], to=one.to[found])
+
+
+def pointer_rows(atlas: Atlas, found: Iterable[Pointers], limit: int | None = None) -> list[tuple[Any, ...]]:
+    """Address, group and field of some pointers; those of the common block have no address."""
+    rows: list[tuple[Any, ...]] = []
+    for name, _, word, at, _ in found:
+        at = at if limit is None else at[: limit - len(rows)]
+        if word is None:
+            rows += [("", COMMON, name)] * len(at)
+        else:
+            rows += zip((at + word.first).tolist(), names(atlas, at), repeat(name), strict=False)
+    return rows
+
+
+def who(atlas: Atlas, place: int | str) -> Listing:
+    """All words that point to the group at, or around, a place, by field.
+
+    place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place.
+    """
+    span = atlas.span(address_of(atlas, place))
+    rows = pointer_rows(atlas, pointing(atlas, span.first))
+    said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
+    return Listing([said], ("address", "group", "field"), rows)
+
+
+def what(atlas: Atlas, place: int | str) -> Listing:
+    """What the word at a place is, and the whole group that it is part of.
+
+    place: an address, or text such as block@88.KXD. IndexError outside IA(), ValueError for no such place.
+    """
+    address = address_of(atlas, place)
+    span, word = atlas.word_at(address)
+    size, place = span.last - span.first + 1, address - span.first + 1
+    said = [f"{address} is word {place} of {size} of {called(atlas, span)}"]
+    if span.kind == JUNK:
+        return Listing([f"{said[0]}, free to be used again"])
+    if span.kind not in KINDS:
+        return Listing([f"{address} is word {place} of {size} that are {span.kind}"])
+    if word is None:
+        said.append("no field: it fills the group up to a whole number of reals")
+    else:
+        told = meaning(atlas, span, word)
+        more = f", {told}" if told != word.field.text else ""
+        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}{more}")
+    return Listing(said + places(atlas, span), COLUMNS, span_rows(atlas, span))
+
+
+def _value(atlas: Atlas, word: Word) -> str:
+    unit = word.field.unit.strip("-")
+    return f"{atlas.value(word)}{' ' if unit else ''}{unit}"
+
+
+LINKS = {  # fields that lead along a list, with the kind of group that has them
+    field.name: group.name
+    for group in TABLE.groups
+    for field in group.fields
+    if field.role in ("next", "back", "anticlockwise")
+}
+MAIN = {group.name: group.list_head for group in TABLE.groups if group.list_head}
+AROUND = ("block", "domain")  # groups with a list around them
+
+
+def walk(
+    atlas: Atlas,
+    along: str,
+    start: int | str | None = None,
+    field: str | None = None,
+    limit: int | None = None,
+) -> Listing:
+    """A list, group by group, until it ends, comes round or leads astray.
+
+    along: the kind of the groups of a main list; or "block" or "domain" with the place of one, for the list
+    around it; or the name of a field that links groups, with the place at which to begin. field: what to
+    show of each group that has it, such as KXD or KZG(2). limit: groups to show. ValueError for what is no
+    list, no field or no limit.
+    """
+    if limit is not None and limit < 1:
+        raise ValueError(f"limit {limit}: give the number of groups to show, 1 or more")
+    shown = _having(atlas, field) if field else {}
+    way, addresses = _way(atlas, along, None if start is None else address_of(atlas, start))
+    found, broken = list[int](), ""
+    try:
+        for iad in addresses:
+            found.append(iad)
+    except Unsound as error:
+        broken = f", and then it breaks: {error.detail}"
+    said = f"{way}: {counted(len(found), 'group')}{broken}"
+    if limit is not None and limit < len(found):
+        said += f"; the first {limit}:"
+    at = np.array(found[:limit], np.int64)
+    columns: list[Any] = [range(1, len(at) + 1), at.tolist(), names(atlas, at)]
+    if field:
+        columns.append(_values(atlas, shown, at))
+    rows = list(zip(*columns, strict=True))
+    return Listing([said], ("place", "address", "group", *([field] if field else [])), rows)
+
+
+def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
+    """A list in words, and the addresses of its groups; these raise Unsound where it leads astray."""
+    if along in MAIN and start is None:
+        return f"the {along} list", _once(along, ((iad, iad) for iad in groups(atlas.h, along)))
+    if along in AROUND and start is not None:
+        if not atlas.holds(along, start):
+            raise ValueError(f"{start} is {leads_to(atlas, along, np.array([start]))[0]}")
+        if along == "block":
+            return f"around block@{start}", _once("item", ((iad, iad) for iad in boundary(atlas.h, start)))
+        return f"around domain@{start}", _once("item", (((iad, ib), iad) for iad, ib in loop(atlas.h, start)))
+    if along in LINKS and start is not None:
+        return f"from {start} along {along}", _linked(atlas, along, start)
+    if along in LINKS:
+        raise ValueError(f"a list along {along} begins at a {LINKS[along]}: give its ADDRESS as well")
+    if along in MAIN:
+        raise ValueError(
+            f"the {along} list begins at {MAIN[along]}: give no ADDRESS, or a field that links them"
+        )
+    around = " and ".join(f"{kind} ADDRESS" for kind in AROUND)
+    raise ValueError(
+        f"no list {along}: there are {', '.join(MAIN)}; "
+        f"{around} for the list around one; and from an ADDRESS along {', '.join(LINKS)}"
+    )
+
+
+def _once(kind: str, steps: Iterable[tuple[Hashable, int]]) -> Iterator[int]:
+    """The addresses of some steps, each with a key; Unsound when a key comes again: the list does not end."""
+    seen: set[Hashable] = set()
+    for key, iad in steps:
+        if key in seen:
+            raise Unsound(f"it leads back to {kind}@{iad}, where it did not begin")
+        seen.add(key)
+        yield iad
+
+
+def _linked(atlas: Atlas, link: str, start: int) -> Iterator[int]:
+    """Groups from `start` along a field; Unsound where it leads astray or into itself."""
+    kind, iad, source = LINKS[link], start, "the address given"
+    (word,) = (word for word in atlas.shapes[kind] if word.field.name == link)
+    seen: set[int] = set()
+    while iad and not (iad == start and seen):
+        if iad in seen:
+            raise Unsound(f"{source} leads back to {kind}@{iad}, where the list did not begin")
+        if not atlas.holds(kind, iad):
+            raise Unsound(f"{source} points to {iad}: {leads_to(atlas, kind, np.array([iad]))[0]}")
+        seen.add(iad)
+        yield iad
+        source = f"{link} of {kind}@{iad}"
+        iad = int(atlas.gather(word, np.int64(iad)))
+
+
+def _having(atlas: Atlas, name: str) -> dict[str, Word]:
+    """The field of a name, KXD or KZG(2), by the kinds of group that have it. ValueError if none has."""
+    found = {kind: word for kind, shape in atlas.shapes.items() for word in shape if word.name == name}
+    if not found:
+        known = {one.name: one.field.name for shape in atlas.shapes.values() for one in shape}
+        several = [one for one, field in known.items() if field == name]
+        meant = get_close_matches(name, known, 1)
+        advice = (
+            f": it is {several[0]} to {several[-1]}"
+            if several
+            else f": did you mean {meant[0]}?"
+            if meant
+            else ""
+        )
+        raise ValueError(f"no group has a field {name}{advice}")
+    return found
+
+
+def _values(atlas: Atlas, shown: dict[str, Word], at: Any) -> list[Any]:
+    """What the groups at some addresses hold in a field; "" where they have none."""
+    found = np.full(len(at), "", object)
+    for kind, word in shown.items():
+        here = np.flatnonzero(atlas.holding(kind, at))
+        found[here] = atlas.gather(word, at[here]).tolist()
+    values: list[Any] = found.tolist()
+    return values

@@ -1,0 +1,326 @@
+"""Changes of the map in the contact pass: contacts get another code or place, and contacts are deleted.
+
+The force of a contact needs the contact alone, its two blocks and its material. Whatever looks at its
+neighbours, or changes the map, waits until all others have their forces (ford.py): then the contacts that had
+to wait are brought up to date here, one after the other in list order, and get their forces at last. So what
+the others feel does not depend on the order in which they are visited.
+
+A contact waits if it is no longer where its code and its corners say, if its corner has no arc any more, if
+it has no force and is to look at its neighbours (domain_pass.py) or is open too far, or if it overlaps so
+much that its tip may have been squeezed through.
+
+In a notch a corner touches both edges: it gets its contact with the second from ETOL before that on
+(detect/contact_search.py), and for a while it holds both. Out of the notch, by more than D, the contact with
+the edge that it has left has no place. It goes if it carries nothing; or its force goes over to the other
+contact. In a slight notch the places at which a corner touches the two edges may be nearer than FTOL. Then it
+has one contact, which goes from edge to edge where their bisector is, as at a straight corner. A contact with
+a law of its own, whose memory only that law knows, stays until it opens.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
+from udec_ia.errors import OVERLAP_TOO_GREAT
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
+from udec_ia.kernels.constitutive.joint_laws import is_idle, no_force
+from udec_ia.kernels.constitutive.joint_properties import twice_stored
+from udec_ia.kernels.detect.occupied_gaps import gap_taken
+from udec_ia.kernels.detect.point_depth import do_not_meet
+from udec_ia.kernels.geometry.contact_geometry import ce, faces, has_no_arc, meet, past
+from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.map.bridge import delc, to_virtual
+from udec_ia.kernels.map.contact_reclassification import mvbak, mvfor, settle
+from udec_ia.kernels.map.domain_segments import ahead_by, same_segment
+from udec_ia.layout import offsets as g
+
+
+@kernel
+def arc_and_edge(h: Memory, ic: int) -> tuple[int, int]:
+    """The corner whose arc is at contact `ic` on an edge, and the corner at which that edge ends."""
+    ip, iq = iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if iget(h, ic, g.KCCOD) == g.EDGE_CORNER:
+        return iq, ip
+    return ip, iq
+
+
+@kernel
+def out_of_notch(h: Memory, ic: int) -> bool:
+    """True if contact `ic`, on an edge, is more than D beyond a notch at one end of it."""
+    arc, edge = arc_and_edge(h, ic)
+    notched, before = getr(h, edge, g.KRAD) < 0, getr(h, iget(h, edge, g.KR), g.KRAD) < 0
+    if not (notched or before):
+        return False
+    _, _, _, along, z = ce(h, arc, edge)
+    return (notched and along > z + h.cr[g.DTOL]) or (before and along < -h.cr[g.DTOL])
+
+
+@kernel
+def has_no_place(h: Memory, ic: int) -> bool:
+    """True if the corner of a contact on an edge has no arc any more, or has slid out of a notch."""
+    if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
+        return False
+    arc, _ = arc_and_edge(h, ic)
+    if has_no_arc(h, arc):
+        return getr(h, ic, g.KCFN) == 0
+    return out_of_notch(h, ic)
+
+
+@inlined
+def is_heir(h: Memory, jc: int, ib: int, jb: int, arc: int) -> bool:
+    """True if item `jc` of block `ib` is a contact of its corner `arc` with block `jb`."""
+    if not is_contact(h, jc) or iget(h, jc, g.KCCOD) == g.VIRTUAL or other(h, ib, jc) != jb:
+        return False
+    on_edge = iget(h, jc, g.KCCOD) == (g.EDGE_CORNER if iget(h, jc, g.KB1) == ib else g.CORNER_EDGE)
+    return corner_of(h, ib, jc) == arc and not on_edge
+
+
+@kernel
+def heir(h: Memory, ic: int) -> int:
+    """A contact of the same corner beside contact `ic`, which has left a notch; 0 if there is none."""
+    arc, edge = arc_and_edge(h, ic)
+    ib, jb = iget(h, arc, g.KNB), iget(h, edge, g.KNB)
+    after, before = nextcp(h, ib, ic), prevcp(h, ib, ic)
+    if is_heir(h, after, ib, jb, arc):
+        return after
+    return before if is_heir(h, before, ib, jb, arc) else int64(0)
+
+
+@inlined
+def held(h: Memory, ic: int) -> float:
+    """Energy in the springs of contact `ic`."""
+    normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
+    return (normal + shear) * real(h, 0.5)
+
+
+@kernel
+def hand_over(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
+    """Contact `jc` takes the force of contact `ic`, of the normal (nx, ny); ENERGY notes what is lost."""
+    fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
+    fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
+    if iget(h, ic, g.KB1) != iget(h, jc, g.KB1):
+        fx, fy = -fx, -fy
+    before = held(h, ic) + held(h, jc)
+    mx, my, _, _, _, _ = meet(h, iget(h, jc, g.KCCOD), iget(h, jc, g.KCP1), iget(h, jc, g.KCP2))
+    putr(h, jc, g.KCFN, getr(h, jc, g.KCFN) + (fx * mx + fy * my))
+    putr(h, jc, g.KCFS, getr(h, jc, g.KCFS) + (fx * my - fy * mx))
+    no_force(h, ic)
+    h.cd[g.WFRIC] += before - held(h, jc)
+
+
+@kernel
+def over_bisector(h: Memory, ic: int, ib: int) -> bool:
+    """Let contact `ic` go on to the next edge of block `ib`, if its corner is past a bisector there."""
+    arc, edge = arc_and_edge(h, ic)
+    code, ia = iget(h, ic, g.KCCOD), iget(h, edge, g.KR)
+    if getr(h, edge, g.KRAD) < 0 and past(h, edge, arc) > h.cr[g.GTOL]:
+        return mvfor(h, ic, ib, code)
+    return getr(h, ia, g.KRAD) < 0 and past(h, ia, arc) < -h.cr[g.GTOL] and mvbak(h, ic, ib, code)
+
+
+@kernel
+def leave_notch(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """Contact `ic`, of the normal (nx, ny), has a force; if it is out of a notch, that goes where it belongs.
+
+    True if the contact is on another edge now.
+    """
+    if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
+        return False
+    jc = heir(h, ic)
+    if jc == 0:
+        _, edge = arc_and_edge(h, ic)
+        return over_bisector(h, ic, iget(h, edge, g.KNB))
+    if out_of_notch(h, ic):
+        hand_over(h, ic, jc, nx, ny)
+    return False
+
+
+ALL, NOBODY = -1, np.zeros(0, np.int64)  # all contacts, whoever waits
+TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
+
+
+@kernel
+def restart(h: Memory, ic: int) -> tuple[float, float, float]:
+    """Settle contact `ic` in a changed geometry, its forces as they are; normal (x, y) and overlap."""
+    nx, ny, overlap = settle(h, ic)
+    putr(h, ic, g.KCN, overlap)
+    return nx, ny, overlap
+
+
+@inlined
+def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
+    """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
+    if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
+        return False
+    dx, dy = getr(h, jc, g.KXC) - getr(h, ic, g.KXC), getr(h, jc, g.KYC) - getr(h, ic, g.KYC)
+    return dx * dx + dy * dy < h.cr[g.FTOL] * h.cr[g.FTOL] and iget(h, jc, g.KCCOD) != g.VIRTUAL
+
+
+@inlined
+def has_twin(h: Memory, ic: int) -> bool:
+    """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
+    ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    return is_twin(h, ic, iget(h, ic, g.KL1), ib, jb) or is_twin(h, ic, iget(h, ic, g.KLB1), ib, jb)
+
+
+@inlined
+def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: float, ny: float) -> bool:
+    """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other.
+
+    (nx, ny): normal of the contact, away from the block of the corner.
+    """
+    x, y, tolerance = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
+    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -tolerance:
+        return True
+    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > tolerance
+
+
+@inlined
+def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if contact `ic`, of the normal (nx, ny), and a neighbour on the same segment are past each other.
+
+    If it is open, something has slipped through its gap.
+    """
+    code = iget(h, ic, g.KCCOD)
+    after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
+    if passed(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
+        return True
+    after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
+    return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
+
+
+@inlined
+def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
+    """True if the arc of a corner on an edge has turned away from it by more than TURNED.
+
+    The circle of a blunt corner reaches far beyond its arc, even beyond its block. (nx, ny) is the contact's
+    normal.
+    """
+    code = iget(h, ic, g.KCCOD)
+    if code == g.CORNER_EDGE:
+        return not faces(h, iget(h, ic, g.KCP1), nx, ny, real(h, TURNED))
+    return code == g.EDGE_CORNER and not faces(h, iget(h, ic, g.KCP2), -nx, -ny, real(h, TURNED))
+
+
+@inlined
+def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
+    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+        return True
+    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+
+
+@kernel
+def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """True if contact `ic` overlaps by more than a narrow tip can stand.
+
+    Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
+    arc's centre is in the other block and the contact has passed a neighbour: the tip is squeezed out between
+    two blocks that touch.
+    """
+    gap = nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    if do_not_meet(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), gap):
+        return True
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    if (code == g.EDGE_CORNER or getr(h, ip, g.KRAD) >= overlap) and (
+        code == g.CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
+    ):
+        return False
+    return overtaken(h, ic, nx, ny)
+
+
+@inlined
+def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+    """Delete contact `ic` if it is open too far or no wall any more, or idle beside a twin.
+
+    A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
+    """
+    if overlap > 0 and getr(h, ic, g.KCFN) != 0:
+        return False
+    is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
+    if overlap >= -h.cr[g.BTOL]:
+        gone = has_no_place(h, ic) or (overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap))
+        if not gone and (is_bridge or not has_twin(h, ic)):
+            return False
+    h.ci[g.NBROKE] += 1
+    if is_bridge:
+        to_virtual(h, ic)
+    else:
+        delc(h, ic)
+    return True
+
+
+@inlined
+def opens(h: Memory, ic: int) -> None:
+    """Contact `ic` overlaps no more, and loses what its springs held."""
+    lose_shear(h, ic, getr(h, ic, g.KCFS))
+    no_force(h, ic)
+
+
+@inlined
+def loses(h: Memory, ic: int, overlap: float) -> float:
+    """Energy that goes with contact `ic`, open by now to `overlap`: by a law of the user's it may hold some.
+
+    That is what its springs hold, and what its normal force has done in half of this step.
+    """
+    fn = getr(h, ic, g.KCFN)
+    if fn == 0:
+        return real(h, 0.0)
+    normal, shear = twice_stored(h, ic, fn, getr(h, ic, g.KCFS))
+    return (normal + shear + fn * (overlap - getr(h, ic, g.KCN))) * real(h, 0.5)
+
+
+@inlined
+def is_still(h: Memory, overlap: float) -> bool:
+    """True if a contact without a force need not look at its neighbours, nor go, with that overlap."""
+    return h.cr[g.ULOOK] < h.cr[g.HTOL] and overlap >= -h.cr[g.BTOL]
+
+
+@kernel
+def change(h: Memory, ic: int, own: bool) -> bool:
+    """Bring contact `ic` up to date; False if it goes. own: whether it follows a law of the user's."""
+    nx, ny, overlap = settle(h, ic)
+    if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
+        nx, ny, overlap = settle(h, ic)
+    if is_idle(h, ic, own, overlap) and (not is_still(h, overlap) or has_no_place(h, ic)):
+        if overlap <= 0 and not own:
+            opens(h, ic)
+        lost = loses(h, ic, overlap)
+        if drop(h, ic, nx, ny, overlap):
+            h.cd[g.WFRIC] += lost
+            return False
+    if overlap > h.cr[g.FTOL] and squeezed(h, ic, nx, ny, overlap) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = OVERLAP_TOO_GREAT
+        h.ci[g.IERAD] = ic
+    return True
+
+
+@kernel
+def settle_all(h: Memory) -> None:
+    """Bring every contact up to date with a changed geometry, its force as it is; it may go."""
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        following = iget(h, ic, g.KC)
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            nx, ny, overlap = restart(h, ic)
+            drop(h, ic, nx, ny, overlap)
+        ic = following
+
+
+@outlined
+def change_map(h: Memory, waiting: Any, n: int) -> bool:
+    """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
+
+    waiting: their addresses; negative if they follow a law of the user's. ALL for `n`: a command has
+    changed the geometry, and all contacts follow it.
+    """
+    if n == ALL:
+        settle_all(h)
+    for k in range(n):
+        if not change(h, abs(waiting[k]), waiting[k] < 0):
+            waiting[k] = 0
+    return True

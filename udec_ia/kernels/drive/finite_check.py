@@ -1,0 +1,78 @@
+"""Check that all reals of a model are finite numbers.
+
+A force or a velocity that is infinite, or no number at all, moves its block out of the world in the next
+cycle, and error 36 ends the run there. After the last cycle there is no next one: so all reals of blocks,
+of what belongs to them and of contacts are looked through once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import read_table
+
+# Offsets of all reals of a kind of group, from the field table, and how many; 0 fills tuples of one length.
+LISTED = {
+    group.name: [getattr(g, field.name) for field in group.fields if field.real]
+    for group in read_table().groups
+}
+LONGEST = max(len(fields) for fields in LISTED.values())
+REALS = {name: ((*fields, *(LONGEST - len(fields)) * [HEAD]), len(fields)) for name, fields in LISTED.items()}
+OF_BLOCK, OF_CORNER, OF_CONTACT = REALS["block"], REALS["corner"], REALS["contact"]
+OF_SDEF, OF_FDEF, OF_POINT, OF_ZONE = REALS["sdef"], REALS["fdef"], REALS["gridpoint"], REALS["zone"]
+
+
+@kernel
+def _finite(h: Memory, iad: int, reals: tuple[tuple[Offset, ...], int]) -> bool:
+    """True if those fields of the group at `iad` are finite."""
+    fields, n = reals
+    finite = True
+    for i in range(n):
+        finite = finite and bool(np.isfinite(getr(h, iad, fields[i])))
+    return finite
+
+
+@kernel
+def _all_finite(h: Memory, iad: int, following: Offset, reals: tuple[tuple[Offset, ...], int]) -> bool:
+    """True if those fields are finite in all groups of the list that begins at `iad`, or of the ring."""
+    first = iad
+    while iad != 0:
+        if not _finite(h, iad, reals):
+            return False
+        iad = iget(h, iad, following)
+        if iad == first:
+            break
+    return True
+
+
+@kernel
+def _body_finite(h: Memory, ib: int) -> bool:
+    """True if block `ib`, its corners and its extension hold finite numbers."""
+    if not (_finite(h, ib, OF_BLOCK) and _all_finite(h, iget(h, ib, g.KP), g.KR, OF_CORNER)):
+        return False
+    kind, ie = iget(h, ib, HEAD), iget(h, ib, g.KBEX)
+    if kind == g.MSDEF:
+        return _finite(h, ie, OF_SDEF)
+    if kind == g.MFDEF:
+        points = _all_finite(h, iget(h, ie, g.KFG), g.KG, OF_POINT)
+        return points and _all_finite(h, iget(h, ie, g.KFZ), g.KZ, OF_ZONE) and _finite(h, ie, OF_FDEF)
+    return True
+
+
+@kernel
+def not_finite(h: Memory) -> int:
+    """A block, or else a contact, with a number that is not finite; 0 if there is none."""
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        if not _body_finite(h, ib):
+            return ib
+        ib = iget(h, ib, g.KB)
+    ic = h.ci[g.ICPNT]
+    while ic != 0:
+        if not _finite(h, ic, OF_CONTACT):
+            return ic
+        ic = iget(h, ic, g.KC)
+    return int64(0)

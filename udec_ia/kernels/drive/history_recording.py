@@ -1,0 +1,119 @@
+"""Recording of histories after a cycle (HISTORY): a number of a group, the common block, the whole model."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.compiling.kernel_decorators import kernel, outlined
+from udec_ia.compiling.outlined_calls import call_entry, entry
+from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
+from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced
+from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.layout import offsets as g
+
+INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
+
+
+@outlined
+def measure_unbalanced(h: Memory, row: Any, i: int) -> bool:
+    """Put the greatest unbalanced force into `row`, at `i`."""
+    row[i] = unbalanced(h, True)[0]
+    return True
+
+
+@outlined
+def measure_ratio(h: Memory, row: Any, i: int) -> bool:
+    """The same for the force ratio."""
+    row[i] = force_ratio(h, True)
+    return True
+
+
+@outlined
+def measure_kinetic(h: Memory, row: Any, i: int) -> bool:
+    """The same for the kinetic energy."""
+    row[i] = kinetic(h, True)
+    return True
+
+
+@outlined
+def measure_strain(h: Memory, row: Any, i: int) -> bool:
+    """The same for the strain energy."""
+    row[i] = strain_of_contacts(h) + strain_of_blocks(h, True)
+    return True
+
+
+@outlined
+def measure_potential(h: Memory, row: Any, i: int) -> bool:
+    """The same for the potential of gravity against that at ENERGY ON."""
+    row[i] = height(h) - h.cd[g.EREF]
+    return True
+
+
+# Of the whole model, in the order of reader.recordable_numbers.QUANTITIES.
+MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
+NOT_MEASURED = (0,) * len(MEASURED)
+
+
+def measures(h: Memory) -> tuple[Any, ...]:
+    """Addresses of these (compiling.outlined_calls), 0 for those that no history asks for."""
+    asked, ih = set(), h.ci[g.IHPNT]
+    while ih != 0:
+        if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+            asked.add(int(iget(h, ih, g.KHF)))
+        ih = iget(h, ih, g.KH)
+    row = np.empty(0)
+    return tuple(entry(one, h, row, 0) if k in asked else 0 for k, one in enumerate(MEASURED))
+
+
+def measured(h: Memory, which: int) -> float:
+    """Quantity `which` of the whole model, in that order."""
+    row = np.empty(1)
+    MEASURED[which](h, row, 0)
+    return float(row[0])
+
+
+@kernel
+def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
+    """The number of a group or of the common block that history `ih` records.
+
+    Not a number if its group has gone.
+    """
+    kind, group = iget(h, ih, g.KHK), iget(h, ih, g.KHG)
+    if kind == g.COMMON_BLOCK:
+        if type_code == DOUBLE:
+            return float(h.cd[offset])
+        return float(h.cr[offset]) if type_code == REAL else float(h.ci[offset])
+    if group == 0:
+        return np.nan
+    k = at_offset(offset, kind, g.KHG)
+    return float(getr(h, group, k)) if type_code == REAL else float(iget(h, group, k))
+
+
+@outlined
+def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool:
+    """Add a row with what is due after this cycle: cycle, time, and NaN for what is not due.
+
+    Returns True if anything was. places: see ops.commands.history_definitions.places.
+    count: number of rows, in an array.
+    measures: addresses of what measures the whole model, as `measures` gives them.
+    """
+    row = rows[count[0]]
+    due = False
+    i = 0
+    ih = int64(h.ci[g.IHPNT])
+    while ih != 0:
+        row[2 + i] = np.nan
+        if h.ci[g.MCTOT] % iget(h, ih, g.KHN) == 0:
+            if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+                call_entry(measures[places[i, 0]], h, row, int64(2 + i))
+            else:
+                row[2 + i] = number_now(h, ih, places[i, 0], places[i, 1])
+            due = True
+        i += 1
+        ih = iget(h, ih, g.KH)
+    if due:
+        row[0], row[1] = h.ci[g.MCTOT], h.cd[g.TIME]
+        count[0] += 1
+    return due

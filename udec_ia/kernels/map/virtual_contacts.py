@@ -1,0 +1,160 @@
+"""Virtual contacts: how blocks that have parted stay in the map (report 4.6).
+
+A contact whose removal would make the map fall apart stays as a virtual contact when it opens. The
+boundary of its domain is then really several loops, pieces that only virtual contacts tie together; a
+virtual contact may stand anywhere on the two pieces that it ties. So, when a piece touches another:
+
+- pieces tied by virtual contacts meet: the new contact takes the place of a virtual contact between
+  them, wherever that one stood (`rehook`);
+- a piece touches itself and thereby cuts the domain: all virtual contacts of the domain are taken out,
+  the piece's own loop is cut, and every other piece is hooked to that side of the cut on which it
+  really lies (`cut_among_pieces`).
+
+That is the logic the report found "quite straightforward" but had no time to write: a block thrown over
+others lands where it lands.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
+from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_properties import assign_material
+from udec_ia.kernels.geometry.contact_geometry import begin
+from udec_ia.kernels.links.linked_lists import insert_after, is_corner, prevcp, take_out
+from udec_ia.kernels.map.bridge import (
+    cut_domain,
+    is_outline,
+    left_is_shorter,
+    makec,
+    nextd,
+    relabel,
+)
+from udec_ia.kernels.map.domain_segments import not_virtual
+from udec_ia.layout import offsets as g
+
+MINE = 2  # column of the pieces
+
+
+@kernel
+def take_contact_out(h: Memory, ic: int) -> None:
+    """Take contact `ic` out of the lists of both its blocks."""
+    take_out(h, iget(h, ic, g.KB1), ic)
+    take_out(h, iget(h, ic, g.KB2), ic)
+
+
+@kernel
+def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> None:
+    """Let contact `ic` join block `ib` (after its item `iad`) and block `jb` (after its item `jad`)."""
+    puti(h, ic, g.KB1, ib)
+    puti(h, ic, g.KB2, jb)
+    insert_after(h, ib, iad, ic)
+    insert_after(h, jb, jad, ic)
+
+
+@kernel
+def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) -> None:
+    """Virtual contact `iv` becomes a contact of code `icod` of blocks `ib` and `jb`.
+
+    It ties the same two parts of the map at another place, so no domain changes.
+    """
+    if iad == iv:
+        iad = prevcp(h, ib, iv)
+    if jad == iv:
+        jad = prevcp(h, jb, iv)
+    take_contact_out(h, iv)
+    put_contact(h, iv, ib, iad, jb, jad)
+    assign_material(h, iv)
+    puti(h, iv, g.KCCOD, icod)
+    no_force(h, iv)
+    begin(h, iv)
+    h.ci[g.NVIRT] -= 1
+    h.ci[g.NMADE] += 1
+
+
+@kernel
+def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
+    """How often the loop through (iad, ib) winds around the point (x, y), anticlockwise."""
+    turns = 0
+    start = int64(iad)
+    item, block = int64(iad), int64(ib)
+    if is_corner(h, item):
+        ax, ay = getr(h, item, g.KXP) - x, getr(h, item, g.KYP) - y
+    else:
+        ax, ay = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
+    while True:
+        item, block = nextd(h, item, block)
+        if is_corner(h, item):
+            bx, by = getr(h, item, g.KXP) - x, getr(h, item, g.KYP) - y
+        else:
+            bx, by = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
+        side = ax * by - bx * ay
+        if ay <= 0 and by > 0 and side > 0:
+            turns += 1
+        elif ay > 0 and by <= 0 and side < 0:
+            turns -= 1
+        ax, ay = bx, by
+        if item == start and block == ib:
+            return turns
+
+
+@kernel
+def lies_in(h: Memory, iad: int, ib: int, jb: int) -> bool:
+    """True if block `jb` lies in the region bounded by the loop through (iad, ib)."""
+    ip = iget(h, jb, g.KP)
+    iq = iget(h, ip, g.KR)  # the middle of an edge: a tip may stick into another block
+    x, y = getr(h, ip, g.KXP) + getr(h, iq, g.KXP), getr(h, ip, g.KYP) + getr(h, iq, g.KYP)
+    turns = winding(h, iad, ib, x * real(h, 0.5), y * real(h, 0.5))
+    return turns == 0 if is_outline(h, iad, ib) else turns > 0
+
+
+@kernel
+def hook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, idm: int) -> None:
+    """Put virtual contact `iv` between two pieces on the boundary of domain `idm`."""
+    put_contact(h, iv, ib, iad, jb, jad)
+    puti(h, iv, g.KD1, idm)
+    puti(h, iv, g.KD2, idm)
+    putr(h, iv, g.KXC, getr(h, iget(h, jb, g.KP), g.KXP))
+    putr(h, iv, g.KYC, getr(h, iget(h, jb, g.KP), g.KYP))
+    putr(h, iv, g.KCN, real(h, 0.0))
+
+
+@kernel
+def cut_among_pieces(
+    h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int, ties: Any, pieces: Any
+) -> int:
+    """Make a contact that cuts domain `idm` while other pieces hang in the domain on virtual contacts.
+
+    ties: the virtual contacts of the domain. pieces: one row (block, item, mine) a piece; the exposure
+    after the item lies on the piece; mine is 1 for the piece that the new contact belongs to, else 0, and
+    becomes 2 if the piece lies in the new domain. There is one piece more than there are ties. Returns
+    the new domain.
+    """
+    iad = not_virtual(h, ib, iad)
+    jad = not_virtual(h, jb, jad)
+    for k in range(len(pieces)):
+        pieces[k, 1] = not_virtual(h, pieces[k, 0], pieces[k, 1])
+    for k in range(len(ties)):
+        take_contact_out(h, ties[k])
+    ic = makec(h, ib, jb, icod, idm, idm)
+    insert_after(h, ib, iad, ic)
+    insert_after(h, jb, jad, ic)
+    begin(h, ic)
+    new_is_left = left_is_shorter(h, ic)
+    idnew = cut_domain(h, ic, idm)
+    inner, outer = (jb, ib) if new_is_left else (ib, jb)
+    for k in range(len(pieces)):
+        pieces[k, MINE] = pieces[k, MINE] or (2 if lies_in(h, ic, inner, pieces[k, 0]) else 0)
+    tie = 0
+    for k in range(len(pieces)):
+        pb, item = pieces[k, 0], pieces[k, 1]
+        if pieces[k, MINE] == 2:
+            relabel(h, item, pb, idnew)
+            hook(h, ties[tie], inner, ic, pb, item, idnew)
+        elif pieces[k, MINE] == 0:
+            hook(h, ties[tie], outer, ic, pb, item, idm)
+        if pieces[k, MINE] != 1:
+            tie += 1
+    return idnew

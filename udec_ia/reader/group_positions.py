@@ -1,0 +1,175 @@
+"""Where groups lie in the rock, and which group is nearest to a point.
+
+A block is where its centroid is, a corner where it is sharp, a contact at its contact point; a zone in the
+middle of its grid-points, a domain in the middle of the contacts around it. An extension is where the group
+is that it belongs to, a boundary condition where its grid-point, edge or block is. The outer domain, virtual
+contacts, signals and their points are nowhere.
+
+In a damaged heap the corners of a block are those that name it as their host, wherever the lists lead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from udec_ia.counting import counted
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, integers
+from udec_ia.heap.main_array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.reader.atlas import KINDS, Atlas, Span
+from udec_ia.reader.group_tables import table
+
+POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
+OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
+SUBJECTS = (("block", "KUB"), ("corner", "KUP"), ("gridpoint", "KUG"))  # of a boundary condition, last counts
+
+
+class Chosen(NamedTuple):
+    """A group, 0 for none. place: where it is, if it was chosen by a point."""
+
+    address: int
+    place: str = ""
+
+
+def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any) -> list[Chosen]:
+    """The groups of `kind` meant by an address or by points, one pair or several; none for the kind "".
+
+    field: what is wanted of them, for the messages. Errors 7, 8 and 10 for what is given wrongly, 26 and 30
+    if there is no such group.
+    """
+    if len(at) and address is not None:
+        raise UdecError(10, "an address and a point", "give one of them", parameter="at")
+    if not kind:
+        if len(at) or address is not None:
+            detail = f"{field} belongs to no group"
+            raise UdecError(10, detail, "omit address and point", parameter="at" if len(at) else "address")
+        return [Chosen(0)]
+    if address is not None:
+        if address not in table(array, kind)["address"]:
+            detail = f"{address} is not the address of a {kind} in use"
+            raise UdecError(30, detail, f"{field} belongs to a {kind}", parameter="address")
+        return [Chosen(address)]
+    if not len(at):
+        detail = f"{field} of which {kind}?"
+        raise UdecError(7, detail, "give its address, or a point near it", parameter="field")
+    return _nearest(array, kind, _points(array, at))
+
+
+def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
+    values = np.asarray(at, float).ravel().tolist()
+    if len(values) % 2:
+        raise UdecError(
+            8, f"{counted(len(values), 'coordinate')} given", "a point is x and y", parameter="at"
+        )
+    largest = float(np.finfo(array.scheme.real_type).max)
+    for value in values:
+        if not abs(value) <= largest:
+            advice = f"{array.scheme.real_bits}-bit reals hold numbers up to {largest:.2g}"
+            raise UdecError(28, f"at is {value:g}", advice, parameter="at")
+    return list(zip(values[::2], values[1::2], strict=True))
+
+
+def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Chosen]:
+    """The groups of `kind` nearest to the points; of several as near the first in the list."""
+    address, place = _places(array, kind)
+    if not len(address):
+        if len(table(array, kind)):
+            raise UdecError(26, f"no {kind} has a position", "give its address", parameter="field")
+        raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
+    nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
+    return [Chosen(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
+
+
+def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
+    """Addresses of the groups of `kind` that are somewhere, and where."""
+    rows = table(array, kind)
+    if kind in POINTS:
+        return rows["address"], np.column_stack([rows[name] for name in POINTS[kind]])
+    if kind == "contact":
+        rows = rows[rows["KCCOD"] != g.VIRTUAL]
+        return rows["address"], np.column_stack([rows["KXC"], rows["KYC"]])
+    if kind == "zone":
+        return rows["address"], _middles(array, rows)
+    if kind == "domain":
+        return _domains(array, rows["address"])
+    if kind == "bound":
+        return rows["address"], _subjects(array, rows)
+    return _extensions(array, rows["address"])
+
+
+def _middles(array: MainArray, zones: Any) -> Any:
+    address, place = _places(array, "gridpoint")
+    order = np.argsort(address)
+    return place[order][np.searchsorted(address[order], zones["KZG"])].mean(axis=1)
+
+
+def _subjects(array: MainArray, bounds: Any) -> Any:
+    found = np.empty((len(bounds), 2))
+    for kind, pointer in SUBJECTS:
+        address, place = _places(array, kind)
+        order, has = np.argsort(address), bounds[pointer] != 0
+        found[has] = place[order][np.searchsorted(address[order], bounds[pointer][has])]
+    return found
+
+
+def _domains(array: MainArray, address: Any) -> tuple[Any, Any]:
+    contacts = table(array, "contact")
+    contacts = contacts[contacts["KCCOD"] != g.VIRTUAL]
+    order = np.argsort(address)
+    count, total = np.zeros(len(address)), np.zeros((len(address), 2))
+    for side in ("KD1", "KD2"):
+        row = order[np.searchsorted(address[order], contacts[side])]
+        np.add.at(count, row, 1)
+        np.add.at(total, row, np.column_stack([contacts["KXC"], contacts["KYC"]]))
+    inner = (count > 0) & (address != array.h.ci[g.IODPNT])
+    return address[inner], total[inner] / count[inner, np.newaxis]
+
+
+def _extensions(array: MainArray, address: Any) -> tuple[Any, Any]:
+    found, where = [], []
+    for owner, pointer in OWNERS:
+        owners = table(array, owner)
+        hosts, place = _places(array, owner)
+        extension = dict(zip(owners["address"].tolist(), owners[pointer].tolist(), strict=True))
+        for host, at in zip(hosts.tolist(), place, strict=True):
+            if extension[host] in address:
+                found.append(extension[host])
+                where.append(at)
+    return np.array(found, np.int64), np.array(where).reshape(-1, 2)
+
+
+NEIGHBOURS = ("loop", "watched")  # roles of pointers to a group that lies where a group without a block does
+
+
+def homes(atlas: Atlas, span: Span) -> list[int]:
+    """The blocks that a group belongs to; of a domain those at one of its contacts, for instance."""
+    blocks = atlas.owners(span)
+    if not blocks and span.kind in KINDS:
+        near = [int(atlas.value(word)) for word in atlas.words(span) if word.field.role in NEIGHBOURS]
+        blocks = [block for iad in near if atlas.holds("any", iad) for block in atlas.owners(atlas.span(iad))]
+    return [block for block in dict.fromkeys(blocks) if atlas.holds("block", block)]
+
+
+def corners_of(atlas: Atlas, block: int) -> Any:
+    """Places (n, 2) in m of the corners that name a block as theirs, by rising address."""
+    at = atlas.groups["corner"]
+    at = at[integers(atlas.h, at, g.KNB) == block]
+    return np.stack([getr(atlas.h, at, g.KXP), getr(atlas.h, at, g.KYP)], axis=-1)
+
+
+def places(atlas: Atlas, span: Span) -> list[str]:
+    """A sentence for each block that a group belongs to."""
+    said = []
+    for block in homes(atlas, span):
+        x, y = (float(getr(atlas.h, block, k)) for k in (g.KX, g.KY))
+        corners = corners_of(atlas, block)
+        here = f"block@{block}: centroid ({x:.6g}, {y:.6g}) m"
+        if len(corners):
+            (x1, y1), (x2, y2) = corners.min(axis=0), corners.max(axis=0)
+            here += f", {len(corners)} corners in x {x1:.6g} to {x2:.6g} m, y {y1:.6g} to {y2:.6g} m"
+        said.append(here)
+    return said
