@@ -18,7 +18,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import Limit, bound, estimate
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 D = 0.05
 JOINTS = (3e8, 1e8)
