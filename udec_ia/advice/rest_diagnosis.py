@@ -107,7 +107,7 @@ class RestDiagnosis(Observer):
 
     def end(self, array: MainArray) -> None:
         """See Observer."""
-        if self.record is not None:
+        if self.record is not None and between_cycles(array.h):
             self.record.add(array.h)
 
     def complete(self, array: MainArray, solution: Solution) -> Solution:
