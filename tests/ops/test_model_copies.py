@@ -62,8 +62,9 @@ def test_a_copy_continues_bit_for_bit(copied: Callable[[Model], Model], tmp_path
     assert m.deck() == other.deck()
 
 
-def test_a_copy_is_independent(copied: Callable[[Model], Model]) -> None:
+def test_a_copy_is_independent(copied: Callable[[Model], Model], tmp_path: Path) -> None:
     m = every_kind()
+    m.out = tmp_path
     m.cycle(5)
     before = state(m)
     other = copied(m)
@@ -75,8 +76,11 @@ def test_a_copy_is_independent(copied: Callable[[Model], Model]) -> None:
     assert m.name == "udec"
 
 
-def test_words_that_were_written_are_proved_by_the_copy(copied: Callable[[Model], Model]) -> None:
+def test_words_that_were_written_are_proved_by_the_copy(
+    copied: Callable[[Model], Model], tmp_path: Path
+) -> None:
     m = every_kind()
+    m.out = tmp_path
     m.h.ci[IBPNT] = 10**6
     with pytest.raises(UdecError) as caught:
         copied(m).cycle(1)
