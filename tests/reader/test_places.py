@@ -14,6 +14,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.places import PlaceError, PlaceName, address_of, find_number, read_place, stretch
+from udec_ia.study.reading import read
 
 
 @pytest.fixture(scope="module")
@@ -146,3 +147,32 @@ def test_what_the_commands_print_they_take(
         status, _, said = udec(verb, file, *before, f"corner@{iad}")
         assert status == 2
         assert f"there is no corner at {iad}" in " ".join(said.split())
+
+
+@pytest.mark.parametrize("text", ["x = block(1e999,0).KXD", "block(0, -1e999).KX"])
+def test_a_point_that_no_real_holds(text: str) -> None:
+    with pytest.raises(ValueError, match="1e999 is more than a real holds") as wrong:
+        read([text])
+    line, caret = str(wrong.value).splitlines()[-2:]
+    assert line[caret.index("^") :].lstrip("-").startswith("1e999")
+
+
+def test_names_of_files_cannot_steer_a_terminal(
+    model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = "a\x1b[31m"
+    model.save(tmp_path / f"{name}.h5")
+    for words in (
+        ["map", f"{name}.h5", "--out", f"{name}.png"],
+        ["graph", f"{name}.h5", "1", "--out", f"{name}.dot"],
+        ["what", f"{name}.h5", "1", "--out", f"{name}.svg"],
+        ["view", f"{name}.h5", "--out", f"{name}.html"],
+        ["check", f"{name}.h5"],
+        ["info", f"{name}.h5"],
+        ["what", f"{name}.h5", f"{name}@1"],
+    ):
+        main(words)
+        said = capsys.readouterr()
+        assert "\x1b" not in said.out + said.err, words
+        assert said.out + said.err

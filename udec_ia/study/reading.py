@@ -14,6 +14,7 @@ NAME = QUANTITY gives it a name of its own. A rule is a quantity, a comparison a
 
 from __future__ import annotations
 
+import math
 import operator
 import re
 from collections.abc import Callable, Iterable
@@ -109,6 +110,9 @@ def _quantity(text: str, start: int) -> Quantity:
     start += len(text[start:]) - len(text[start:].lstrip())
     if found := AT_PLACE.fullmatch(text, start):
         kind = _kind(text, found, 1)
+        for part in (2, 3):
+            if not math.isfinite(float(found[part])):
+                raise Wrong(text, found.start(part), f"{found[part]} is more than a real holds")
         return forms.AtPlace(kind, float(found[2]), float(found[3]), _field(text, found, 4, kind))
     if found := HISTORY.fullmatch(text, start):
         number = int(found[2])
