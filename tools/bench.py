@@ -6,6 +6,7 @@
     commands   every command of the deck language, at models of growing size
     scale      the commands that read and write restart files, at models of growing size
     first      the first run of each feature, which compiles it, and the second one
+    gains      what each part of the compilation of kernels gains
     debugger   recording a run and going back in it
 
 `python tools/bench.py COMMAND --help` lists the options.
@@ -22,6 +23,7 @@ COMMANDS = {
     "commands": "speed.command_speed",
     "scale": "speed.large_files",
     "first": "speed.first_runs",
+    "gains": "speed.compiling_gains",
     "debugger": "speed.debugger_speed",
 }
 

@@ -13,7 +13,7 @@ from udec_ia.version import __version__
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
-    from udec_ia.study.sweep import sweep
+    from udec_ia.studies.sweep import sweep
 
 __all__ = ["Model", "UdecError", "__version__", "sweep"]
 
@@ -25,7 +25,7 @@ def __getattr__(name: str) -> Any:
 
         return Model
     if name == "sweep":
-        from udec_ia.study.sweep import sweep
+        from udec_ia.studies.sweep import sweep
 
         return sweep
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

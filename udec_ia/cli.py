@@ -18,8 +18,8 @@ from threading import current_thread, main_thread
 from typing import Any
 
 import udec_ia
-from udec_ia.command_line import LOOKS, add_commands
 from udec_ia.command_line import VERBS as WORKSHOP
+from udec_ia.command_line import add_commands
 from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
 from udec_ia.files import takes_files
@@ -163,8 +163,6 @@ def _main(argv: Sequence[str]) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     line = completed(argv)
-    if line[0] in LOOKS:  # NumPy asks it when it is loaded; the system takes long to clear large pages
-        os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
     args = arguments().parse_args(line)
     if args.checked and not _checked():
         print(

@@ -44,3 +44,8 @@ def _folded(line: str) -> str:
     first = " " * (len(line) - len(bare))
     words = TextWrapper(WIDTH, first, first + INDENT, break_long_words=False, break_on_hyphens=False)
     return words.fill(bare)
+
+
+def counted(n: int, what: str, form: str = "") -> str:
+    """`n` and the noun `what`, with an s unless `n` is 1. form: of the number, such as "," for thousands."""
+    return f"{n:{form}} {what}" + ("" if n == 1 else "s")

@@ -8,7 +8,7 @@ weight comes at once. FRACTION 0.5 SAFE. In the last 1000 cycles:
 
 - changes: contacts that open or close from one cycle to the next, in the mean. They bear a force or do not.
 - closed: contacts that bear a force in the last cycle.
-- chatter: the share of contacts that chatter by the program's own watch, and, if it has told of chatter, the
+- chatter: the share of contacts that chatter by the program's own monitor, and, if it has warned of chatter, the
   cycle by which it first did.
 - ratio: the greatest unbalanced force over the mean of those that are carried, in the last cycle.
 - moved: the longest way of a brick since the beginning, in m.

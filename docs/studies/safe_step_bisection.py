@@ -30,7 +30,7 @@ from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
 from udec_ia.ops.common.block_ranges import chain  # noqa: E402
 from udec_ia.running.critical_step import bound, estimate  # noqa: E402
-from udec_ia.verify.grids import fan  # noqa: E402
+from udec_ia.studies.verification_tools import fan  # noqa: E402
 
 CYCLES, LOOKS, GROWN, SHAKE, FINE = 800, 40, 1e6, 1e-7, 1 / 500
 BULK, SHEAR, KN = 1e9, 6e8, 1e9

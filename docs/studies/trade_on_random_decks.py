@@ -4,8 +4,8 @@
 
 Random decks of six kinds: a block slides down a slope, a stack settles, a wall comes to rest by SOLVE,
 blocks slide on a joint, a deformable column is loaded, a block falls on another one. For each a tolerance
-is drawn, the price list made, and then judged against a truth that it has not seen: 64-bit reals and steps
-of an eighth and a sixteenth of the finest that the price list has used, extrapolated. The cheapest setting
+is drawn, the study list made, and then judged against a truth that it has not seen: 64-bit reals and steps
+of an eighth and a sixteenth of the finest that the study list has used, extrapolated. The cheapest setting
 is looked for on a ladder of steps that is three times as fine, in both word schemes; costs are those of
 cycles, without preparing.
 """
@@ -17,15 +17,13 @@ import io
 import math
 import random
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from udec_ia.trade.candidates import BEYOND, rounded
-from udec_ia.trade.levers import Setting
-from udec_ia.trade.limit import limit
-from udec_ia.trade.shop import Options, Shop
-from udec_ia.trade.steps import share_of_bound
-from udec_ia.trade.trade import Price, trade
+from udec_ia.studies.accuracy_study import AccuracyStudy, study_accuracy
+from udec_ia.studies.extrapolation import extrapolate
+from udec_ia.studies.setting_runner import Options, SettingRunner
+from udec_ia.studies.settings import BEYOND, Setting, rounded, share_of_bound
 
 FINE = 2 ** (1 / 4)
 TOLERANCES = (1e-2, 3e-3, 1e-3)
@@ -147,15 +145,14 @@ KINDS = (slope, stack, wall, shove, column, fall)
 # ---- judging
 
 
-def truth(price: Price, shop: Shop) -> dict[str, float]:
+def truth(study: AccuracyStudy, runner: SettingRunner) -> dict[str, float]:
     """The quantities, as well as can be had."""
-    finest = price.levels[-1].setting
-    rows = [shop.row(Setting(finest.build, finest.step / k, ratio=finest.ratio / 10)) for k in (2, 8, 16)]
-    shop.left = math.inf
-    shop.do(rows)
-    values = [[row.result.quantities[name] for row in rows if row.result] for name in price.known]
-    found = [limit(one, 12.0) for one in values]
-    return {name: one.value for name, one in zip(price.known, found, strict=True) if one}
+    finest = study.levels[-1].setting
+    rows = [runner.row(Setting(finest.build, finest.step / k, ratio=finest.ratio / 10)) for k in (2, 8, 16)]
+    runner.run_rows(rows)
+    values = [[row.result.quantities[name] for row in rows if row.result] for name in study.known]
+    found = [extrapolate(one, 12.0) for one in values]
+    return {name: one.value for name, one in zip(study.known, found, strict=True) if one}
 
 
 def error(quantities: dict[str, float], true: dict[str, float]) -> float:
@@ -163,39 +160,39 @@ def error(quantities: dict[str, float], true: dict[str, float]) -> float:
     return max(abs(quantities[name] - value) / abs(value) if value else 0.0 for name, value in true.items())
 
 
-def over_cheapest(price: Price, shop: Shop, true: dict[str, float]) -> tuple[float, str]:
+def over_cheapest(study: AccuracyStudy, runner: SettingRunner, true: dict[str, float]) -> tuple[float, str]:
     """Seconds of what is recommended over those of the cheapest within the tolerance, and its name."""
     steps = [rounded(FINE**k) for k in range(-8, 17)]
-    settings = [Setting(build, step) for build in shop.builds for step in steps]
-    settings = [one for one in settings if share_of_bound(shop.survey, one) <= BEYOND]
-    settings += [row.setting for row in price.rows if row.ran and row.setting.step >= steps[0]]
-    assert price.best is not None
-    rows = [shop.row(one) for one in dict.fromkeys([price.best.setting, *settings])]
-    shop.do(rows)
+    settings = [Setting(build, step) for build in runner.builds for step in steps]
+    settings = [one for one in settings if share_of_bound(runner.survey, one) <= BEYOND]
+    settings += [row.setting for row in study.rows if row.ran and row.setting.step >= steps[0]]
+    assert study.best is not None
+    rows = [runner.row(one) for one in dict.fromkeys([study.best.setting, *settings])]
+    runner.run_rows(rows)
     costs = [row.cost for row in rows]
     within = [
         (cost, row.setting.name)
         for row, cost in zip(rows, costs, strict=True)
-        if row.ran and row.result and error(row.result.quantities, true) <= price.tolerance
+        if row.ran and row.result and error(row.result.quantities, true) <= study.tolerance
     ]
     return (costs[0] / min(within)[0], min(within)[1]) if within else (math.nan, "")
 
 
-def study(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
+def judge_deck(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
     """The verdict on one deck."""
     options = Options(tolerance=tolerance, jobs=0, stream=io.StringIO())
-    price = trade(text, f"{kind}.dat", {}, folder, options)
-    best = price.best
+    found = study_accuracy(text, f"{kind}.dat", {}, folder, options)
+    best = found.best
     if best is None or best.result is None:
-        reason = "nothing comparable" if not price.known else "none within"
-        return Verdict(kind, tolerance, reason if price.rows else price.said[-1])
-    shop = Shop(price.deck, options, folder)
-    shop.rehearse()
-    shop.look()
-    true = truth(price, shop)
-    times, cheapest = over_cheapest(price, shop, true)
+        reason = "nothing comparable" if not found.known else "none within"
+        return Verdict(kind, tolerance, reason if found.rows else found.notes[-1])
+    with SettingRunner(found.deck, replace(options, budget=math.inf), folder) as runner:
+        runner.rehearse()
+        runner.survey_deck()
+        true = truth(found, runner)
+        times, cheapest = over_cheapest(found, runner, true)
     ratios = [
-        row.predicted / row.result.seconds for row in price.rows if row.result and row.result.seconds > 0.02
+        row.predicted / row.result.seconds for row in found.rows if row.result and row.result.seconds > 0.02
     ]
     close = sum(2 / 3 <= ratio <= 1.5 for ratio in ratios) / len(ratios) if ratios else math.nan
     return Verdict(
@@ -219,7 +216,7 @@ def main() -> int:
             folder = (args.out or Path(temporary)) / f"{k}"
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "random.dat").write_text(text)
-            one = study(kind.__name__, text, tolerance, folder)
+            one = judge_deck(kind.__name__, text, tolerance, folder)
             found.append(one)
             print(
                 f"{k:3d} {one.kind:7s} {one.tolerance:7.0e} {one.recommended:32s} error {one.error:8.1e} "

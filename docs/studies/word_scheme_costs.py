@@ -128,7 +128,7 @@ def loss(name: str, text: str, wide: Run, narrow: Run) -> str:
     ends = [rest(text, one) for one in (wide, narrow)]
     cells = [f"{way(wide):.2g} m", *(f"{part:.0e}" for part in (places, most, every))]
     parts = f"cycle {parted:,}" if parted else "-"
-    return row(name, *cells, parts, ", ".join(dict.fromkeys(ends)), narrow.told)
+    return row(name, *cells, parts, ", ".join(dict.fromkeys(ends)), narrow.warned)
 
 
 def price(name: str, runs: dict[str, Run]) -> str:
@@ -154,7 +154,7 @@ def prices(parted: Curves) -> Iterator[str]:
     parted: takes how places part, by scene.
     """
     names = "places", "greatest force", "all forces", "part", "force ratio at the end, 64 and 32 bits"
-    yield head("32-bit reals lose", "way", *names, "told")
+    yield head("32-bit reals lose", "way", *names, "warned")
     taken = []
     for name, made in SCENES.items():
         text = made()

@@ -23,23 +23,16 @@ PARTED = 0.01  # of the farthest way that a block has gone: two runs have parted
 TURNS, SLICE = 7, 0.04  # of each scheme, by turns, and how long one takes at least, in s
 
 
-TOLD = {  # by words that tell it
-    "the last digit of coordinates": "before",
-    "may have moved places": "after",
-    "too short for the strides": "after",
-}
-
-
 class Run(NamedTuple):
     """One scene in one scheme.
 
     model: None if IA() was too small. looks: of each, cycle and the centroids of all blocks, (n, 2).
-    told: whether CYCLE or SOLVE warns of the last digits, one of TOLD; "no" if it does not.
+    warned: "yes" if CYCLE warns that the reals are too coarse, else "no".
     """
 
     model: Model | None
     looks: list[tuple[int, np.ndarray]]
-    told: str
+    warned: str
 
 
 def wall() -> str:
@@ -130,7 +123,7 @@ def run(text: str, build: str) -> Run:
     return Run(
         m,
         looks,
-        next((when for words, when in TOLD.items() if words in " ".join("".join(said).split())), "no"),
+        "yes" if "the last digit of coordinates" in " ".join("".join(said).split()) else "no",
     )
 
 

@@ -29,8 +29,8 @@ from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for
 
 BLOCKS = ("rigid",)
 G, DENSITY, K, R, N, D = 10.0, 2000.0, 2e10, 10.0, 28, 0.02

@@ -26,8 +26,8 @@ Appendix II-1; the formulas are those of any textbook of mechanics.
 from math import atan, cos, exp, hypot, sin, sqrt
 
 from udec_ia.layout.offsets import ALPHA
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block, now
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, now
 
 BLOCKS = ("rigid",)
 G, R, KN = 10.0, 1.115, 1e8

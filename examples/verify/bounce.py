@@ -21,8 +21,8 @@ from math import asin, log, pi, sqrt
 import numpy as np
 
 from udec_ia.layout.offsets import ALPHA, BETA
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import step
 
 BLOCKS = ("rigid",)
 G, KN, MASS = 10.0, 1e8, 2000.0

@@ -20,8 +20,8 @@ extrapolation.
 
 from math import sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, rectangle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import generate, rectangle
 
 BLOCKS = ("fdef",)
 REALS = 64  # strains are some 1e-5

@@ -16,8 +16,8 @@ Source: equilibrium, and the definition of KN (report of 1980, 2.6).
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.scenes import on_base, settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import on_base, settle
 
 BLOCKS = ("rigid", "sdef", "fdef")
 G, DENSITY, KN, SIDE, N = 10.0, 2000.0, 1e9, 2.0, 5

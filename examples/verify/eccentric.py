@@ -15,8 +15,8 @@ overlaps over a, moves the centroid by that times its height; last digits of the
 Source: Archimedes, On the equilibrium of planes; report of 1980, 2.3, for the place of the contacts.
 """
 
-from udec_ia.verify import Answer
-from udec_ia.verify.scenes import settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import settle
 
 BLOCKS = ("rigid", "sdef")
 REALS = 64  # overlaps are 0.1 mm at 4 m

@@ -21,8 +21,8 @@ Min. Metall. 50 (1941), for the beam of blocks in a roof.
 
 from math import cos, pi, sin, sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block
 
 BLOCKS = ("rigid",)
 REALS = 64  # the blocks wait at rest until they have fallen by more than a last digit

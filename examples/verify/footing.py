@@ -21,9 +21,8 @@ Plasticity (1950).
 
 from math import pi, sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, rectangle
-from udec_ia.verify.measure import cycle_for
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, generate, rectangle
 
 BLOCKS = ("fdef",)
 WIDE, HIGH, HALF, N, COHESION, V = 10.0, 5.0, 2.0, 30, 1e5, 4e-3

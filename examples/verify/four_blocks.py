@@ -22,8 +22,8 @@ from math import atan, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block, cycle_for, now, row, straight_line
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, cycle_for, now, row, straight_line
 
 BLOCKS = ("rigid",)
 REALS = 64  # joints lean by 1e-4, overlaps are 0.5 mm at 20 m

@@ -17,8 +17,8 @@ from math import pi
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block, push, row, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, push, row, step
 
 BLOCKS = ("rigid", "sdef", "fdef")
 G, U, V, SPIN, CYCLES = 10.0, 20.0, 40.0, 3.0, 2000

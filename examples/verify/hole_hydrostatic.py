@@ -22,8 +22,8 @@ from math import sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, outline, polar, quarter_ring
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import generate, outline, polar, quarter_ring
 
 BLOCKS = ("fdef",)
 A, B, P, BULK, SHEAR, DENSITY, AROUND, ACROSS = 1.0, 12.0, 1e6, 1e9, 6e8, 2000.0, 20, 32

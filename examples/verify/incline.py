@@ -22,9 +22,8 @@ Source: C. A. Coulomb, Theorie des machines simples (1785); any textbook of mech
 
 from math import cos, pi, radians, sin, sqrt, tan
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for, now, row, straight_line
-from udec_ia.verify.scenes import on_base, settle, tilt
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, now, on_base, row, settle, straight_line, tilt
 
 BLOCKS = ("rigid", "sdef", "fdef")
 REALS = 64  # it gives way by 13 micrometres

@@ -22,9 +22,8 @@ from math import cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import fan
-from udec_ia.verify.measure import block
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, fan
 
 BLOCKS = ("rigid", "sdef", "fdef")
 REALS = 64  # overlaps are some micrometres

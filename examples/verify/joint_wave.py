@@ -23,9 +23,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, rectangle
-from udec_ia.verify.measure import cycle_for, now, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, generate, now, rectangle, step
 
 BLOCKS = ("fdef",)
 HALF, N, DENSITY, BULK, SHEAR = 5.0, 30, 2000.0, 2e8, 1e8

@@ -21,7 +21,7 @@ from math import sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
+from udec_ia.studies.verification import Answer
 
 BLOCKS = ("sdef", "fdef")
 REALS = 64  # strains are 1e-4 and less

@@ -25,9 +25,8 @@ from math import pi, radians, sqrt, tan
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import now, row, step
-from udec_ia.verify.scenes import on_base, settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import now, on_base, row, settle, step
 
 BLOCKS = ("rigid", "sdef", "fdef")
 G, MU, A, K, DENSITY, PULSE = 10.0, tan(radians(20)), 6.0, 4e9, 2000.0, 0.3

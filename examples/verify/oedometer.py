@@ -22,7 +22,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
+from udec_ia.studies.verification import Answer
 
 BLOCKS = ("sdef", "fdef")
 BULK, SHEAR, KN, DENSITY, B, H, STRESS = 2e9, 1e9, 4e9, 2000.0, 2.0, 1.5, 1e5

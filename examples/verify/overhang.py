@@ -21,8 +21,8 @@ Source: R. Sutton, A problem of balancing, Am. J. Phys. 23 (1955) 547; in textbo
 
 from math import cosh, pi, sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for
 
 BLOCKS = ("rigid",)
 G, DENSITY, K, LONG, HIGH, D, N = 10.0, 2000.0, 1e9, 4.0, 0.5, 0.05, 4

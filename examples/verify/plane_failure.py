@@ -20,9 +20,8 @@ Source: E. Hoek and J. Bray, Rock Slope Engineering (1974), plane failure.
 
 from math import pi, radians, sin, sqrt, tan
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for, row
-from udec_ia.verify.scenes import on_base, settle, tilt
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, on_base, row, settle, tilt
 
 BLOCKS = ("rigid", "sdef", "fdef")
 G, DENSITY, K, D = 10.0, 2000.0, 1e9, 0.1

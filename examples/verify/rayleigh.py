@@ -24,9 +24,8 @@ from math import log, pi, sqrt
 import numpy as np
 
 from udec_ia.layout.offsets import ALPHA, BETA
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import push, row, step
-from udec_ia.verify.scenes import on_base
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import on_base, push, row, step
 
 BLOCKS = ("rigid",)
 REALS = 64  # a swing is 10 micrometres

@@ -21,8 +21,8 @@ from math import exp, pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block, now, push, row, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, now, push, row, step
 
 BLOCKS = ("rigid",)
 REALS = 64  # a step is some micrometres

@@ -20,8 +20,8 @@ Source: C. A. Coulomb, Essai sur une application des regles de maximis et minimi
 
 from math import cos, pi, radians, sin, sqrt, tan
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block
 
 BLOCKS = ("rigid",)
 REALS = 64  # overlaps are 0.1 mm at 8 m, and rest is to be to 1e-8

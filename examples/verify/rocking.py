@@ -28,9 +28,8 @@ from math import atan, pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import now, push, row, step
-from udec_ia.verify.scenes import on_base, settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import now, on_base, push, row, settle, step
 
 BLOCKS = ("rigid",)
 G, DENSITY, K, B, H, D = 10.0, 2000.0, 1e10, 1.0, 4.0, 0.05

@@ -19,8 +19,8 @@ Source: any textbook of mechanics, as E. Routh, Dynamics of a System of Rigid Bo
 
 from math import cos, pi, radians, sin, sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for, now, row
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, now, row
 
 BLOCKS = ("rigid",)
 G, MU, L, K, DENSITY = 10.0, 0.3, 1.0, 1e8, 2000.0

@@ -23,8 +23,8 @@ Source: B. Brady and E. Brown, Rock Mechanics for Underground Mining (1985), cha
 
 from math import cos, pi, radians, sin, sqrt, tan
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import block, row, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import block, row, step
 
 BLOCKS = ("rigid",)
 REALS = 64  # overlaps are 0.5 mm at 4 m, and rest is to be to 1e-5

@@ -25,9 +25,8 @@ from math import radians, sin, sqrt, tan
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, outline, polar, quarter_ring
-from udec_ia.verify.measure import cycle_for
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, generate, outline, polar, quarter_ring
 
 BLOCKS = ("fdef",)
 A, B, P, COHESION, PHI = 1.0, 12.0, 30e6, 3.45e6, radians(30)

@@ -21,8 +21,8 @@ from math import asin, pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import period, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import period, step
 
 BLOCKS = ("sdef",)
 LENGTH, HEIGHT, DENSITY, SHEAR = 2.0, 1.0, 2000.0, 1e9

@@ -20,9 +20,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, rectangle
-from udec_ia.verify.measure import now, period, step
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import generate, now, period, rectangle, step
 
 BLOCKS = ("fdef",)
 H, N, DENSITY, BULK, SHEAR, V = 10.0, 20, 2000.0, 2e8, 1e8, 1e-3

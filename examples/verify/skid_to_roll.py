@@ -20,8 +20,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import now, push, row
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import now, push, row
 
 BLOCKS = ("rigid",)
 G, MU, L, K, DENSITY, V0 = 10.0, 0.3, 1.0, 1e8, 2000.0, 3.0

@@ -22,9 +22,8 @@ from math import asin, pi
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import period, push, row, step
-from udec_ia.verify.scenes import on_base, settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import on_base, period, push, row, settle, step
 
 BLOCKS = ("rigid",)
 REALS = 64  # a swing is a micrometre

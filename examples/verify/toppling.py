@@ -24,9 +24,8 @@ Imperial College (1971); R. Goodman and J. Bray (1976).
 
 from math import atan, cos, cosh, hypot, pi, sin, sqrt
 
-from udec_ia.verify import Answer
-from udec_ia.verify.measure import cycle_for, row
-from udec_ia.verify.scenes import on_base, settle
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import cycle_for, on_base, row, settle
 
 BLOCKS = ("rigid", "sdef", "fdef")
 REALS = 64  # an overlap is 20 micrometres

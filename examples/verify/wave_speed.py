@@ -23,9 +23,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from udec_ia.verify import Answer
-from udec_ia.verify.grids import generate, rectangle
-from udec_ia.verify.measure import now
+from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import generate, now, rectangle
 
 BLOCKS = ("fdef",)
 LENGTH, N, DENSITY, BULK, SHEAR, STRESS = 10.0, 60, 2000.0, 2e8, 1e8, 1e4

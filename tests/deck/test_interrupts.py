@@ -184,15 +184,17 @@ def test_ctrl_c_in_a_short_command_ends_the_run_after_it(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     side_by_side(tmp_path).run(line)  # where a command has to wait for the compiler, Ctrl-C ends it at once
-    m, make = side_by_side(tmp_path), Undo.keep
+    m, make = side_by_side(tmp_path), Undo.save_words
 
     def keep(self: Undo, array: MainArray) -> None:
         interrupt()
         make(self, array)
 
-    monkeypatch.setattr(Undo, "keep", keep)
+    monkeypatch.setattr(Undo, "save_words", keep)
     if line == "SAVE":
-        monkeypatch.setattr("udec_ia.restart.writer._now", lambda: interrupt() or "2000-01-01T00:00:00Z")
+        monkeypatch.setattr(
+            "udec_ia.restart.restart_writer._now", lambda: interrupt() or "2000-01-01T00:00:00Z"
+        )
     with pytest.raises(KeyboardInterrupt, match=r"rescue\.h5") as caught:
         run_deck(m, f"{line}\nCYCLE 10\n", io.StringIO())
     monkeypatch.undo()

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from support.mechanics_scenes import side_by_side
 
 from udec_ia import Model, UdecError
+from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.layout.offsets import JPHASE, KX, MTOP, TDEL
 from udec_ia.model.model_session import Session
@@ -86,3 +88,51 @@ def test_other_ways_to_write_are_refused() -> None:
     own = h.ia.copy()
     own[:] = 0
     assert h.ia.any()
+
+
+@pytest.mark.parametrize(
+    "view",
+    [
+        lambda h: h.ia,
+        lambda h: h.ra[3:],
+        lambda h: np.asarray(h.ia),
+        lambda h: h.cr.view(np.ndarray),
+        lambda h: np.frombuffer(h.ci.data, h.ci.dtype),
+        lambda h: h.cd.base,
+    ],
+)
+def test_no_view_can_be_made_writeable(view: Callable[[Memory], Any]) -> None:
+    words = np.asarray(view(side_by_side().h))
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        words.setflags(write=True)
+
+
+def lose_words(m: Model) -> None:
+    """MFREE is larger than what FIND has handed out."""
+    m.h.ci[g.MFREE] += 1000
+
+
+def lose_junk(m: Model) -> None:
+    """The junk list is empty, and groups that were given back are in no list."""
+    m.delete(2, 4, 0, 2)
+    assert m.h.ci[g.JUNK]
+    m.h.ci[g.JUNK] = 0
+
+
+@pytest.mark.parametrize("lose", [lose_words, lose_junk])
+def test_all_commands_refuse_words_that_are_in_no_group(lose: Callable[[Model], None]) -> None:
+    """CYCLE and commands do what SAVE does."""
+    for follow in (
+        lambda m: m.cycle(1),
+        lambda m: m.split(-1, 2, 5, 2),
+        lambda m: m.save("never.h5"),
+        lambda m: m.property(1, density=1.0),
+    ):
+        m = side_by_side()
+        m.cycle(5)
+        lose(m)
+        with pytest.raises(UdecError) as caught:
+            follow(m)
+        assert caught.value.number == 20
+        assert "in no group" in caught.value.detail
+    assert not Path("never.h5").exists()

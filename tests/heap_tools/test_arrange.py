@@ -15,7 +15,7 @@ from udec_ia import Model
 from udec_ia.heap.relocation import relocate
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MFREE
-from udec_ia.output.outline import snapshot
+from udec_ia.output.drawn_outlines import snapshot
 
 UNKNOWN = {"next", "back"}  # the lists may run in another order
 

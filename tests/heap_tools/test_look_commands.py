@@ -22,7 +22,7 @@ from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
 from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
-from udec_ia.output.dump import raw
+from udec_ia.output.word_dump import raw
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.listing import Listing, Stream
 from udec_ia.restart import save

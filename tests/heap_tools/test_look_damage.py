@@ -25,7 +25,7 @@ from udec_ia.heap_tools.pointer_graph import graph
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.output import heap_picture, place_picture, pointer_picture
-from udec_ia.output.dump import raw
+from udec_ia.output.word_dump import raw
 from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, UNUSED, Atlas
 from udec_ia.reader.listing import Listing
 from udec_ia.restart import look_into, save

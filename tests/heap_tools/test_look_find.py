@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
-from udec_ia.counting import counted
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, NOTHING, TABLE, Atlas
 from udec_ia.reader.conditions import LONGEST
 

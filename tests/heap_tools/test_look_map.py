@@ -21,8 +21,8 @@ from udec_ia.heap_tools.memory_use import ACROSS, DOWN, cover, heap_map, stretch
 from udec_ia.heap_tools.pointer_graph import NODES, dot, graph, neighbourhood
 from udec_ia.layout import offsets as g
 from udec_ia.output import heap_picture, place_picture, pointer_picture
-from udec_ia.output.outline import outlines
-from udec_ia.output.remains import outlines_left
+from udec_ia.output.drawn_outlines import outlines
+from udec_ia.output.place_picture import outlines_left
 from udec_ia.reader.atlas import NAMES, UNUSED, Atlas
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
 

@@ -9,7 +9,7 @@ from udec_ia.compiling.outlined_calls import entry
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.detect.tunnelling import gone_through
-from udec_ia.kernels.drive import passes
+from udec_ia.kernels.drive import cycle as passes
 from udec_ia.layout import offsets as g
 from udec_ia.running import history_series
 

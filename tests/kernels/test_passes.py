@@ -10,7 +10,7 @@ from support.mechanics_scenes import on_base
 
 from udec_ia import Model
 from udec_ia.kernels.drive import cycle as module
-from udec_ia.kernels.drive import recording
+from udec_ia.kernels.drive import history_recording
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 
@@ -81,6 +81,6 @@ def test_of_histories_of_the_whole_model_those_are_measured_that_there_are(
     m = rigid()
     m.history(5, "KXD", at=(1, 1.5))
     m.history(5, "kinetic")
-    monkeypatch.setattr(recording, "entry", lambda kernel, *_: asked.append(kernel.__name__) or 1)
-    assert recording.measures(m.array.h) == (0, 0, 1, 0, 0)
+    monkeypatch.setattr(history_recording, "entry", lambda kernel, *_: asked.append(kernel.__name__) or 1)
+    assert history_recording.measures(m.array.h) == (0, 0, 1, 0, 0)
     assert asked == ["measure_kinetic"]

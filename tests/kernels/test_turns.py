@@ -11,14 +11,14 @@ import pytest
 from support.mechanics_scenes import G
 
 from udec_ia import Model, UdecError
-from udec_ia.output.turns import Turns
+from udec_ia.output.history_files import GrowingFile
 
 
 class Text:
     """Lines to be kept in a file; how often the whole was written."""
 
     def __init__(self, path: Path) -> None:
-        self.turns = Turns(path)
+        self.turns = GrowingFile(path)
         self.lines: list[str] = []
         self.wholes = 0
 

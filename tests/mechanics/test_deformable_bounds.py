@@ -14,7 +14,7 @@ from support.mechanics_scenes import box, push, sound
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.verify.grids import generate, rectangle
+from udec_ia.studies.verification_tools import generate, rectangle
 
 EPS = float(np.finfo(float).eps)
 

@@ -15,7 +15,7 @@ from support.mechanics_scenes import block, box, model, sound
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 
 @pytest.mark.parametrize("kind", ["rigid", "sdef"])

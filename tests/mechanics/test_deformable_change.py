@@ -24,7 +24,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 KINDS = ("rigid", "sdef", "fdef", "zoned")
 CHANGES = [(old, new) for old in KINDS for new in KINDS if (old, new) != ("zoned", "zoned")]

@@ -11,7 +11,7 @@ import pytest
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
-from udec_ia.verify.grids import generate, rectangle
+from udec_ia.studies.verification_tools import generate, rectangle
 
 RHO, K, G = 2000.0, 2e8, 1e8
 CP = math.sqrt((K + 4 * G / 3) / RHO)

@@ -14,7 +14,7 @@ from support.mechanics_scenes import block, box, model, push, sound
 from udec_ia import Model
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 TYPES = ("rigid", "sdef", "zoned")
 PAIRS = list(combinations_with_replacement(TYPES, 2))

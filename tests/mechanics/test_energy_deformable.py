@@ -16,7 +16,7 @@ from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy_account import Balance
-from udec_ia.verify.grids import generate, rectangle
+from udec_ia.studies.verification_tools import generate, rectangle
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BULK, SHEAR = 1e7, 5e6

@@ -15,10 +15,10 @@ import pytest
 from support.mechanics_scenes import box, model
 
 from udec_ia import Model
-from udec_ia.advice.damping_report import damped
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import bound
 from udec_ia.running.mass_scaling import scale_anew
+from udec_ia.running.stiffness_bound import damped_step
 
 DAMPINGS: dict[str, dict[str, Any]] = {
     "local": {"local": 0.8},
@@ -87,9 +87,9 @@ def test_the_critical_step_is_that_of_an_oscillator(how: str, f: float) -> None:
         middle = (low + high) / 2
         low, high = (low, middle) if grows(force, middle) else (middle, high)
     m = column([1.0], **{how: f})
-    assert damped(m.h, 2.0) == pytest.approx(2 / sqrt(1 + f), rel=1e-12)
-    assert damped(m.h, 2.0) <= low + 1e-4
-    assert damped(m.h, 2.0) > 0.98 * low
+    assert damped_step(m.h, 2.0) == pytest.approx(2 / sqrt(1 + f), rel=1e-12)
+    assert damped_step(m.h, 2.0) <= low + 1e-4
+    assert damped_step(m.h, 2.0) > 0.98 * low
 
 
 @pytest.mark.parametrize("share", [0.5, 0.9, 0.99])
@@ -124,4 +124,4 @@ def test_masses_that_are_scaled_anew_suit_the_damping(how: str, beta: float) -> 
     assert len(before) > 2
     for name in ("KRXM", "KRXI"):
         np.testing.assert_allclose(after[name], before[name], rtol=1e-9)
-    assert float(m.h.cr[g.TDEL]) <= 0.9 * damped(m.h, bound(m.array).step) * (1 + 1e-9)
+    assert float(m.h.cr[g.TDEL]) <= 0.9 * damped_step(m.h, bound(m.array).step) * (1 + 1e-9)

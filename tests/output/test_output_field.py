@@ -12,10 +12,9 @@ from matplotlib import colormaps
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.output.field import field, measure
-from udec_ia.output.outline import snapshot
-from udec_ia.output.plot import Frame, What
-from udec_ia.verify.grids import generate, rectangle
+from udec_ia.output.drawn_outlines import field, measure, snapshot
+from udec_ia.output.plot_frames import Frame, What
+from udec_ia.studies.verification_tools import generate, rectangle
 
 STRESSES = [(-3e5, 1e5, -1e5), (2e5, -5e4, -4e5), (-1e5, 0.0, -1e5), (0.0, 3e5, 0.0)]
 

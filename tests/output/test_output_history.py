@@ -12,7 +12,7 @@ from support.mechanics_scenes import block, push, standing_block
 
 from udec_ia import UdecError
 from udec_ia.layout import offsets as g
-from udec_ia.output.graph import figure
+from udec_ia.output.history_graph import figure
 
 
 def test_files_say_what_was_recorded(tmp_path: Path) -> None:

@@ -23,9 +23,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
-from udec_ia.output.animate import MAX_STATES, Animation
-from udec_ia.output.draw import LARGEST, limits, moved_blocks, scale_for, to_draw
-from udec_ia.output.outline import (
+from udec_ia.output.animation import MAX_STATES, Animation
+from udec_ia.output.block_drawing import LARGEST, limits, moved_blocks, scale_for, to_draw
+from udec_ia.output.drawn_outlines import (
     ARC_POINTS,
     CLOSE,
     CURVE,
@@ -38,7 +38,7 @@ from udec_ia.output.outline import (
     outlines,
     snapshot,
 )
-from udec_ia.output.plot import Frame, Plots, What
+from udec_ia.output.plot_frames import Frame, Plots, What
 from udec_ia.reader.list_walks import corners, groups
 
 ROUNDED_AREA = 1.0 - (4.0 - np.pi) * ROUNDING**2
@@ -378,9 +378,8 @@ def test_only_two_kinds_of_plot(tmp_path: Path) -> None:
 
 def test_matplotlib_is_loaded_only_to_draw() -> None:
     """Starting the program must not pay for matplotlib."""
-    code = (
-        "import sys, json, udec_ia.output.plot, udec_ia.output.animate; print(json.dumps(list(sys.modules)))"
-    )
+    code = "import sys, json\nimport udec_ia.output.plot_frames, udec_ia.output.animation\n"
+    code += "print(json.dumps(list(sys.modules)))"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert not {"matplotlib", "PIL"} & set(json.loads(out.stdout))
 

@@ -9,9 +9,8 @@ import pytest
 from support.handmade_map import two_blocks
 
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.output import progress
-from udec_ia.output.progress import LINES, Progress, summary
-from udec_ia.output.report import Report
+from udec_ia.output import run_progress as progress
+from udec_ia.output.run_progress import LINES, Progress, Report, summary
 
 
 class Terminal(io.StringIO):

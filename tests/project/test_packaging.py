@@ -97,7 +97,8 @@ def test_what_is_in_the_wheel(built: tuple[Path, Path]) -> None:
         if path.is_file() and "__pycache__" not in path.parts
     }
     problems = {
-        f"udec_ia/verify/problems/{path.name}" for path in (ROOT / "examples" / "verify").glob("*.py")
+        f"udec_ia/studies/verification_problems/{path.name}"
+        for path in (ROOT / "examples" / "verify").glob("*.py")
     }
     info = f"udec_ia-{udec_ia.__version__}.dist-info/"
     assert {name for name in names if not name.startswith(info)} == sources | problems

@@ -16,15 +16,16 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
+from udec_ia.advice.step_warnings import describe_step
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.memory_use import heap_map
 from udec_ia.layout import offsets as g
-from udec_ia.output import histories
-from udec_ia.output.outline import snapshot
-from udec_ia.output.plot import Frame, What
+from udec_ia.output import history_files as histories
+from udec_ia.output.drawn_outlines import snapshot
+from udec_ia.output.plot_frames import Frame, What
 from udec_ia.reader.atlas import Atlas
-from udec_ia.running.critical_step import bound, describe
+from udec_ia.running.critical_step import bound
 
 ALL = (-1.0, 1e6, -1.0, 1e6)
 WORSE = 9  # times the time for four times the size: 4 in proportion, 16 for the square
@@ -147,7 +148,7 @@ def test_explaining_the_time_step_is_cheap_beside_cycles() -> None:
     explained, cycles = [], []
     for _ in range(5):
         start = process_time()
-        describe(model.array, bound(model.array))
+        describe_step(model.array, bound(model.array))
         between = process_time()
         model.cycle(30)
         explained.append(between - start)

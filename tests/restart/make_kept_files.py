@@ -18,7 +18,7 @@ from pathlib import Path
 from udec_ia import Model
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.restart import save
-from udec_ia.restart.seal import VERSION
+from udec_ia.restart.file_seal import VERSION
 
 DECK = """\
 START

@@ -21,8 +21,8 @@ from udec_ia.errors import UdecError
 from udec_ia.layout.table import TABLE
 from udec_ia.printable import printable
 from udec_ia.restart import info
-from udec_ia.restart.layout import text
-from udec_ia.restart.seal import SIZE, seal
+from udec_ia.restart.file_seal import SIZE, seal
+from udec_ia.restart.file_tables import text
 
 TOOL = Path(__file__).parents[2] / "tools" / "damaged_files.py"
 

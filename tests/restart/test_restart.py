@@ -26,7 +26,7 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import lay_out, read_table
 from udec_ia.restart import info, load, save
-from udec_ia.restart import writer as writing
+from udec_ia.restart import restart_writer as writing
 
 SCHEMES = tuple(ALL_SCHEMES)
 DECK = ["START", "* a comment with \u00e9 and a stray byte \udcff", "", "CYCLE 100"]

@@ -12,7 +12,7 @@ from support.resealed_files import ARRAYS, SCHEMES, refusal
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.restart import info, load, save
-from udec_ia.restart.seal import SIZE
+from udec_ia.restart.file_seal import SIZE
 
 SETTINGS = settings(
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True

@@ -17,8 +17,8 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.layout.table import COMMON_TYPES, TABLE, parse
 from udec_ia.restart import info, load, save
-from udec_ia.restart.layout import text
-from udec_ia.restart.seal import SIZE, seal
+from udec_ia.restart.file_seal import SIZE, seal
+from udec_ia.restart.file_tables import text
 
 
 @pytest.fixture

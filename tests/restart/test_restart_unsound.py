@@ -15,7 +15,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import groups
 from udec_ia.restart import load, save
-from udec_ia.restart.layout import text
+from udec_ia.restart.file_tables import text
 
 
 def commons(array: MainArray, **values: int) -> Edit:

@@ -10,7 +10,7 @@ import numpy as np
 
 from support.mechanics_scenes import model
 from udec_ia import Model
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 RHO, K, G, D = 2000.0, 2e8, 1e8, 0.05
 CP, CS = sqrt((K + 4 * G / 3) / RHO), sqrt(G / RHO)

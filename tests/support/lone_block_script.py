@@ -13,7 +13,7 @@ from udec_ia import Model
 from udec_ia.compiling.kernel_decorators import outlined
 from udec_ia.compiling.outlined_calls import entry
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.drive import passes
+from udec_ia.kernels.drive import cycle as passes
 
 
 @outlined

@@ -13,7 +13,7 @@ from support.handmade_map import two_blocks
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.restart import load
-from udec_ia.restart.seal import SIZE, seal
+from udec_ia.restart.file_seal import SIZE, seal
 
 SCHEMES = tuple(ALL_SCHEMES)
 ARRAYS = {name: two_blocks(name) for name in SCHEMES}

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia import Model, UdecError
-from udec_ia.verify.grids import fan
+from udec_ia.studies.verification_tools import fan
 
 KINDS = ("rigid", "deformable")
 MANY = 40  # blocks

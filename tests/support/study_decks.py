@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from time import monotonic, sleep
 
-from udec_ia.study.runs import Run
+from udec_ia.studies.study_run import StudyRun
 
 ROOT = Path(__file__).parents[2]
 PILE = """START
@@ -34,9 +34,9 @@ def clj2(fn, fs, dun, dus, un, us, m):
 """
 
 
-def piles(*frictions: float, cycles: int = 200) -> list[Run]:
+def piles(*frictions: float, cycles: int = 200) -> list[StudyRun]:
     """A run of PILE for each friction."""
-    return [Run(f"F={f}", PILE, "pile.dat", {"F": f, "N": cycles}) for f in frictions]
+    return [StudyRun(f"F={f}", PILE, "pile.dat", {"F": f, "N": cycles}) for f in frictions]
 
 
 def started(*arguments: str, cwd: Path) -> subprocess.Popen[str]:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from udec_ia.reader.atlas import NAMES
-from udec_ia.view.page import WEB
+from udec_ia.view.view_page import WEB
 
 SEEN_AS = {
     "all": np.eye(3),

@@ -15,7 +15,7 @@ import numpy as np
 from damage.storage_edits import TEXTS, File, Rng, one, take
 
 from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, TableError, parse, read_table
-from udec_ia.restart.layout import text
+from udec_ia.restart.file_tables import text
 
 WORDS = [
     "\x1b[2J\x1b]0;mine\x07",

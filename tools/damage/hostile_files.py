@@ -32,7 +32,7 @@ from damage.storage_edits import Rng
 from udec_ia.errors import UdecError
 from udec_ia.model import Model
 from udec_ia.restart import info, save
-from udec_ia.restart.seal import SIZE, seal
+from udec_ia.restart.file_seal import SIZE, seal
 
 BATCH = 200  # cases to a process
 MEMORY = 32 * 2**20, 20  # bytes that reading may take: so many, and so many for each byte of the file

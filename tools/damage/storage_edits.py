@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 from h5py import h5d, h5p, h5s, h5t
 
-from udec_ia.restart.layout import text
+from udec_ia.restart.file_tables import text
 
 DATA = ["heap/IA", "deck", "layout/table", "common/AKN", "common/MFREE", "volatile/date", "volatile/host"]
 DATA += ["recorded/1/cycle", "recorded/1/time", "recorded/1/value"]

@@ -35,9 +35,9 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model
 from udec_ia.ops.commands.corner_rounding import STRAINED
-from udec_ia.output.plot import Plots
+from udec_ia.output.plot_frames import Plots
 from udec_ia.restart import save
-from udec_ia.restart.seal import SIZE, seal
+from udec_ia.restart.file_seal import SIZE, seal
 from udec_ia.running.solve_result import Solution
 
 TOOL = Path(__file__).parents[1] / "robustness.py"

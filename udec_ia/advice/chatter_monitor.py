@@ -43,7 +43,7 @@ class ChatterMonitor:
         self.tell = tell
         self.share = 0.0
         self._judged = 0  # cycle at the end of the last window
-        self._said = False
+        self._warned = False
         self._marks = np.zeros(0, np.uint8)
 
     def marks(self, h: Memory, n: int) -> Any:
@@ -71,12 +71,12 @@ class ChatterMonitor:
         bore, many = int((self._marks > 0).sum()), int(often.sum())
         before, self.share = self.share, many / max(bore, 1) if many >= FEWEST else 0.0
         if self.share >= SHARE:
-            if before >= SHARE and safe and not self._said:
-                self._said = True
+            if before >= SHARE and safe and not self._warned:
+                self._warned = True
                 text = f"contacts chatter: {many} of {bore} {self._what(h, self._worst(h))}"
                 self.tell(Remark("contacts-chatter", text))
         elif self.share < SHARE / 2:
-            self._said = False
+            self._warned = False
         self._marks &= 1
 
     def _worst(self, h: Memory) -> int:

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
@@ -23,6 +22,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.generate_zones import inertia_ratio
 from udec_ia.ops.common.number_limits import NMAT, last_digit
+from udec_ia.printable import counted
 from udec_ia.remark import Remark
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")

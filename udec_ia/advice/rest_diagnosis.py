@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
@@ -20,6 +19,7 @@ from udec_ia.kernels.energy.stored_energy import strain_of_blocks, strain_of_con
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.printable import counted
 from udec_ia.remark import Remark
 from udec_ia.running.group_names import contact_name
 from udec_ia.running.observer import Observer, between_cycles
@@ -107,7 +107,7 @@ class RestDiagnosis(Observer):
 
     def end(self, array: MainArray) -> None:
         """See Observer."""
-        if self.record is not None:
+        if self.record is not None and between_cycles(array.h):
             self.record.add(array.h)
 
     def complete(self, array: MainArray, solution: Solution) -> Solution:

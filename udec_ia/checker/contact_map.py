@@ -21,11 +21,11 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.counting import counted
 from udec_ia.errors import DISORDERED
 from udec_ia.heap.untrusted_lists import ill_linked, place_items
 from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
+from udec_ia.printable import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names, told
 
 PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages

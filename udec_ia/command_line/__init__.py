@@ -13,17 +13,26 @@ from udec_ia.command_line import (
     check_command,
     debug_command,
     diff_command,
-    diverge,
+    diverge_command,
     info_command,
     look_commands,
-    sweep,
-    trade,
-    verify,
+    sweep_command,
+    trade_command,
+    verify_command,
     view_command,
 )
 
 READ_ONLY = (check_command, look_commands, diff_command, change_commands)  # commands that run nothing
-PARTS = (info_command, *READ_ONLY, debug_command, diverge, sweep, trade, view_command, verify)
+PARTS = (
+    info_command,
+    *READ_ONLY,
+    debug_command,
+    diverge_command,
+    sweep_command,
+    trade_command,
+    view_command,
+    verify_command,
+)
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 LOOKS = tuple(verb for part in READ_ONLY for verb in part.VERBS)
 

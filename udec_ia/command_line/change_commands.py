@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from udec_ia.checker import Violation
     from udec_ia.heap.main_array import MainArray
     from udec_ia.reader.listing import Listing
-    from udec_ia.restart.reader import Restored
+    from udec_ia.restart.restart_reader import Restored
 
 VERBS = ("convert", "renumber", "patch")
 MOVED = "addresses differ from here on"  # what the deck says of them

@@ -9,7 +9,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, file
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing
@@ -34,12 +34,10 @@ def add_commands(commands: Any) -> None:
 def _look(args: argparse.Namespace) -> Listing:
     """All violations in a file, sound or not, and what was not judged."""
     from udec_ia.checker import check, unjudged
-    from udec_ia.heap.freed_memory import keep_freed
     from udec_ia.printable import printable
     from udec_ia.reader.listing import Listing
     from udec_ia.restart import see
 
-    keep_freed()
     seen = see(args.file)
     found = check(seen.array)
     many = counted(len(found), "violation")

@@ -64,12 +64,10 @@ def _called(args: argparse.Namespace) -> tuple[str, str]:
 
 
 def _diff(args: argparse.Namespace) -> Listing | Tables:
-    from udec_ia.heap.freed_memory import keep_freed
     from udec_ia.heap_tools.comparison_report import diff, raw
     from udec_ia.restart import see
 
     given = _given(args)
-    keep_freed()
     try:
         seen = [see(path) for path in (args.file, args.other)]
     except UdecError as error:

@@ -15,7 +15,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol, TextIO, TypeVar
 
-from udec_ia.counting import counted
 from udec_ia.deck.command_forms import RUNS, Counts, match
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import WORD, Statement, at, limited, open_deck, statements
@@ -24,7 +23,7 @@ from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.printable import printable
+from udec_ia.printable import counted, printable
 from udec_ia.signals import hold, passing, poll
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
@@ -268,7 +267,7 @@ def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
-        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional)}"
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
 

@@ -417,8 +417,8 @@ COMMANDS = (
         RUNS,
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
         "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
-        "carry; and until kinetic over strain energy is no more either. At its end it says what still moves, "
-        "and whether joints slipped. LIMIT: cycles after which to give up, "
+        "carry; and until kinetic over strain energy is no more either. At its end it reports which blocks "
+        "moved most, which have fallen, and whether joints slipped. LIMIT: cycles after which to give up, "
         "100000 if it is left off. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, "
         "whatever DAMPING and FRACTION say; all stands still at its end.",
         "SOLVE 1E-3 LIMIT 20000",

@@ -1,9 +1,10 @@
-"""What a model lends of its memory: arrays that anybody may read, and that notice what is written into them.
+"""Arrays that show the memory of a model to a user, and note what is written into them.
 
-Kernels follow the addresses in IA() without a further test, so a word that somebody has changed must be known
-to be changed before the next of them runs. A lent array takes assignments, `h.ia[7] = 1` and
+Kernels follow the addresses in IA() without a further test, so a word that a user has changed must be known
+to be changed before the next of them runs. A tracked array takes assignments, `h.ia[7] = 1` and
 `h.cr[3:5] *= 2`, and notes them. To all other ways of writing, through another view of the same memory or by
-a method such as `fill`, it is read-only, and NumPy says so.
+a method such as `fill`, it is read-only, and NumPy refuses them. It shows the memory through a buffer that is
+read-only itself, so that NumPy does not make any view of it writeable again.
 """
 
 from __future__ import annotations
@@ -16,54 +17,49 @@ from udec_ia.compiling.kernel_memory import Memory
 
 
 class Writes:
-    """made: true once something was written into what was lent, until it is looked at."""
+    """made: True once something was written into a tracked array, until a command looks at it."""
 
     def __init__(self) -> None:
         self.made = False
 
 
-class Lent(np.ndarray):
-    """A read-only view of `own` that writes to it by assignment and notes that in `writes`."""
+class TrackedArray(np.ndarray):
+    """A read-only view of the array `_own` that writes to it by assignment and notes that in `_writes`."""
 
-    own: Any
-    writes: Any
+    _own: Any
+    _writes: Any
 
     def __array_finalize__(self, source: Any) -> None:
-        self.own, self.writes = getattr(source, "own", None), getattr(source, "writes", None)
+        self._own, self._writes = getattr(source, "_own", None), getattr(source, "_writes", None)
 
     def __setitem__(self, where: Any, value: Any) -> None:
         self._to_write()[where] = value
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = (), **named: Any) -> Any:
-        """Results are ordinary arrays, or in the lent ones that are to take them."""
-        given = [_plain(one) for one in inputs]
-        if method == "at" and isinstance(inputs[0], Lent):
+        """Results are ordinary arrays, or go into tracked ones that are given as `out`."""
+        given = [one.view(np.ndarray) if isinstance(one, TrackedArray) else one for one in inputs]
+        if method == "at" and isinstance(inputs[0], TrackedArray):
             given[0] = inputs[0]._to_write()
         if out:
-            named["out"] = tuple(one._to_write() if isinstance(one, Lent) else one for one in out)
+            named["out"] = tuple(one._to_write() if isinstance(one, TrackedArray) else one for one in out)
         result = getattr(ufunc, method)(*given, **named)
         return out[0] if len(out) == 1 else out or result
 
     def _to_write(self) -> Any:
-        """The same words to be written; those of a copy are nobody else's."""
+        """The same words as an ordinary array to be written; a copy of a tracked array is the user's own."""
         if self.flags.writeable:
             return self.view(np.ndarray)
-        self.writes.made = True
-        first = self.ctypes.data - self.own.ctypes.data
-        return np.ndarray(self.shape, self.dtype, self.own, first, self.strides)
+        self._writes.made = True
+        first = self.ctypes.data - self._own.ctypes.data
+        return np.ndarray(self.shape, self.dtype, self._own, first, self.strides)
 
 
-def _plain(one: Any) -> Any:
-    return one.view(np.ndarray) if isinstance(one, Lent) else one
+def track(h: Memory, writes: Writes) -> Memory:
+    """The memory `h` in tracked arrays, which note in `writes` what is written into them."""
+    return Memory(*(_tracked(array, writes) for array in h))
 
 
-def lend(h: Memory, writes: Writes) -> Memory:
-    """`h` for others: what they write is noted in `writes`."""
-    return Memory(*(_lend(array, writes) for array in h))
-
-
-def _lend(array: Any, writes: Writes) -> Lent:
-    lent: Lent = array.view(Lent)
-    lent.own, lent.writes = array, writes
-    lent.flags.writeable = False
-    return lent
+def _tracked(array: Any, writes: Writes) -> TrackedArray:
+    view: TrackedArray = np.asarray(memoryview(array).toreadonly()).view(TrackedArray)
+    view._own, view._writes = array, writes
+    return view

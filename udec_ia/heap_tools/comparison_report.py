@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.heap_tools.state_comparison import tolerance as limits
 from udec_ia.layout.codes import spelled
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, NAMES, NOTHING, TABLE, Atlas, names
 from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
 from udec_ia.reader.listing import Listing, Tables

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.advice.input_warnings import check_laws, check_loads
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.damping_modes import MODES, mode_of
@@ -22,6 +21,7 @@ from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.model_settings import PROPERTIES
 from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.common.number_limits import NMAT
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.listing import Listing
 

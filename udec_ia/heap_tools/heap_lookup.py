@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import variable
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
 from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
 from udec_ia.reader.group_positions import places

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.heap_lookup import pointer_rows, pointing
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas, leads_to, names
 from udec_ia.reader.conditions import ADDRESS, satisfying
 from udec_ia.reader.field_rows import COMMON

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.counting import counted
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED, Atlas
 from udec_ia.reader.kind_colours import LETTERS
 from udec_ia.reader.listing import Listing

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.heap_tools.heap_lookup import Pointers, pointers
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas, leads_to, names
 from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.kind_colours import COLOURS

@@ -25,7 +25,6 @@ import numpy as np
 
 from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import UdecError
-from udec_ia.heap.freed_memory import give_back
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.field_translation import Fit, Translation
@@ -117,7 +116,6 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     of `to` end before the groups do, and 28 if its integers or reals cannot hold all numbers.
     """
     found = movable(array)
-    give_back()
     _check_addresses(found, to)
     work = Translation(words_of(array), TABLE, to, found)
     work.move()

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap.freed_memory import give_back
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.group_matching import Matching
 from udec_ia.layout.table import Field
@@ -167,7 +166,6 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     """
     wanted = chosen(only)
     matching = Matching(one, two)
-    give_back()
     fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
     fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
     alone = {kind: matching.left(kind) for kind in KINDS if not only or (kind, "") in wanted}

@@ -13,7 +13,7 @@ from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
 
 if TYPE_CHECKING:
-    from udec_ia.output.histories import Files
+    from udec_ia.output.history_files import Files
 
 
 class HistoryRecorder:
@@ -48,7 +48,7 @@ class HistoryRecorder:
         """Write what was recorded to base.csv and base.h5, and report which groups have gone."""
         if not self.series:
             return []
-        from udec_ia.output.histories import Files
+        from udec_ia.output.history_files import Files
 
         recording.look()
         for one in recording.lost:
@@ -68,7 +68,7 @@ class HistoryRecorder:
 
         Error 26 if nothing was recorded yet.
         """
-        from udec_ia.output.graph import draw
+        from udec_ia.output.history_graph import draw
 
         if not any(one.last_cycle >= 0 for one in self.series):
             raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")

@@ -28,7 +28,6 @@ from udec_ia.advice.input_warnings import (
 )
 from udec_ia.advice.step_warnings import describe_step
 from udec_ia.checker import check, unjudged
-from udec_ia.counting import counted
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
@@ -57,8 +56,9 @@ from udec_ia.ops.commands.split_blocks import split, why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import not_negative, real, reals, rows, whole
 from udec_ia.ops.laws.law_file import Given
-from udec_ia.output.dump import dump
-from udec_ia.output.printout import printout
+from udec_ia.output.printed_tables import printout
+from udec_ia.output.word_dump import dump
+from udec_ia.printable import counted
 from udec_ia.reader.group_tables import table
 from udec_ia.running.critical_step import bound
 from udec_ia.running.history_series import SOLVE_LIMIT, Series
@@ -654,7 +654,7 @@ class Model:
         `history`, which stands alone, what was recorded is drawn instead. A frame of more than ten states is
         written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
         """
-        from udec_ia.output.plot import What
+        from udec_ia.output.plot_frames import What
 
         what = What(
             contacts, domains, addresses, stresses, velocities, displacements, contour.lower(), window

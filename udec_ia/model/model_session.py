@@ -23,7 +23,7 @@ from udec_ia.errors import UdecError
 from udec_ia.files import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.tracked_arrays import Writes, lend
+from udec_ia.heap.tracked_arrays import Writes, track
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import CommandLog, Step
@@ -43,9 +43,9 @@ from udec_ia.running.solve_result import in_short
 from udec_ia.signals import hold
 
 if TYPE_CHECKING:
-    from udec_ia.output.animate import Animation
-    from udec_ia.output.plot import Plots, What
-    from udec_ia.output.report import Report
+    from udec_ia.output.animation import Animation
+    from udec_ia.output.plot_frames import Plots, What
+    from udec_ia.output.run_progress import Report
 
 log = logging.getLogger("udec_ia")
 
@@ -58,7 +58,7 @@ NOT_COPIED = (
     "observers",
     "undo",
     "writes",
-    "_lent",
+    "_tracked",
     "_clock",
     "_compiled",
 )
@@ -117,7 +117,7 @@ class Session:
         self.observers: Sequence[Observer] = ()
         self.undo = Undo()
         self.writes = Writes()
-        self._lent: tuple[Memory, Memory] | None = None  # memory of IA(), and what was lent for it
+        self._tracked: tuple[Memory, Memory] | None = None  # memory of IA(), and its tracked arrays
         self._clock, self._compiled = perf_counter(), compile_seconds()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -142,9 +142,9 @@ class Session:
     @property
     def h(self) -> Memory:
         """The memory of the array, lent: what is written to it is noticed."""
-        if self._lent is None or self._lent[0] is not self.array.h:
-            self._lent = self.array.h, lend(self.array.h, self.writes)
-        return self._lent[1]
+        if self._tracked is None or self._tracked[0] is not self.array.h:
+            self._tracked = self.array.h, track(self.array.h, self.writes)
+        return self._tracked[1]
 
     def parts(self) -> Iterator[object]:
         """The objects that hold what is not in the main array."""
@@ -221,24 +221,20 @@ class Session:
             return False
         return True
 
-    def prove(self, whole: bool = False) -> None:
-        """Error 20 with the first violation of links, numbers or outlines that could mislead a routine.
+    def prove(self) -> None:
+        """Error 20 with the first violation of links, numbers, outlines, or the use of memory.
 
         All of a state from a file is proved, as RESTART does, unless an error has ended a run of it.
-        whole: with the first of all violations; else words that are lost for good are left to SAVE.
         """
         proof = check if self.unproved and not self.array.h.ci[g.NSPOIL] else check_shapes
-        broken = proof(self.array)
-        for one in broken:
-            if whole or one.misleads:
-                advice = "undo the change, or RESTART from a sound file"
-                raise UdecError(20, str(one), advice)
-        self.written, self.unproved = bool(broken), False
+        for broken in proof(self.array):
+            raise UdecError(20, str(broken), "undo the change, or RESTART from a sound file")
+        self.written = self.unproved = False
 
     def prove_before_save(self) -> None:
         """Error 20 unless the state is sound, as far as it was written to or not yet proved."""
         if self.written or (self.unproved and not self.array.h.ci[g.NSPOIL]):
-            self.prove(whole=True)
+            self.prove()
 
     # ---- the log
 
@@ -283,7 +279,7 @@ class Session:
 
     def summary(self) -> str:
         """The line that sums up the run until now, of files that are written by now."""
-        from udec_ia.output.progress import summary
+        from udec_ia.output.run_progress import summary
 
         try:
             forces = table(self.array, "contact")["KCFN"]
@@ -318,10 +314,10 @@ class Session:
 
     def report(self, n: int) -> Report:
         """Shows the progress of `n` cycles, and takes pictures of them on request."""
-        from udec_ia.output.report import Report
+        from udec_ia.output.run_progress import Report
 
         if self.animate and self.animation is None:
-            from udec_ia.output.animate import Animation
+            from udec_ia.output.animation import Animation
 
             self.animation = Animation(self.name)
         return Report(lambda: self.array.h, n, self.progress, self.animation)
@@ -333,7 +329,7 @@ class Session:
 
     def draw(self, n: int, what: What) -> list[Path]:
         """Start a frame (0) or draw over the last one (1); the files written."""
-        from udec_ia.output.plot import Plots
+        from udec_ia.output.plot_frames import Plots
 
         if self.plots is None:
             self.plots = Plots(self.out, self.name, self._last_picture("-plot"))

@@ -6,13 +6,12 @@ import os
 from pathlib import Path
 
 from udec_ia.checker import check
-from udec_ia.counting import counted
 from udec_ia.deck.command_monitor import RESTART_FILE
 from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.array_growth import refit
-from udec_ia.printable import printable
+from udec_ia.printable import counted, printable
 
 
 def save_state(session: Session, path: str | Path | None, force: bool) -> Path:

@@ -29,7 +29,6 @@ import numpy as np
 
 from udec_ia.compiling.build_choice import CHECKED, forget_kinds
 from udec_ia.compiling.interpreting import mode
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError, WrongAddress
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
@@ -37,6 +36,7 @@ from udec_ia.heap.tracked_arrays import Writes
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
+from udec_ia.printable import counted
 from udec_ia.signals import hold, passing
 
 P = ParamSpec("P")

@@ -13,14 +13,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.checker import check_links
-from udec_ia.counting import counted
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.memory_use import FINE, cover, stretch
 from udec_ia.layout import offsets as g
-from udec_ia.output.draw import INK, POINT, diameter, draw_outlines, limits, paper, scale_for, title
-from udec_ia.output.outline import Outlines, State, apex, domain_polygons
-from udec_ia.output.picture import picture_path, write_as
-from udec_ia.output.remains import is_near, outlines_left, points
+from udec_ia.output.block_drawing import (
+    INK,
+    POINT,
+    diameter,
+    draw_outlines,
+    limits,
+    paper,
+    picture_path,
+    scale_for,
+    title,
+    write_as,
+)
+from udec_ia.output.drawn_outlines import Outlines, State, apex, domain_polygons
+from udec_ia.output.place_picture import is_near, outlines_left, points
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, NAMES, Atlas
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.files import put_in_place
 from udec_ia.heap_tools.pointer_graph import Edge, Graph, Node, colour, dot, neighbourhood, said
-from udec_ia.output.draw import INK
-from udec_ia.output.picture import picture_path, write_as
+from udec_ia.output.block_drawing import INK, picture_path, write_as
 from udec_ia.reader.atlas import NOTHING, Atlas
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.listing import Listing

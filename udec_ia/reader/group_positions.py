@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import KINDS, Atlas, Span
 from udec_ia.reader.group_tables import table
 

@@ -12,10 +12,10 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from udec_ia.counting import counted
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field
+from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word, called
 
 GROUP = re.compile(r"(?:([A-Za-z]+)@)?(\d{1,40})")

@@ -6,9 +6,8 @@ seal, a short text that holds the checksum of the rest: a file that is foreign, 
 any byte is refused before a word of it is believed. `docs/restart-format.md` is the full description.
 """
 
-from udec_ia.restart.changing import load_to_change, save_changed
-from udec_ia.restart.header import info
-from udec_ia.restart.reader import deck_in, load, look_into, see
-from udec_ia.restart.writer import save
+from udec_ia.restart.file_summary import info
+from udec_ia.restart.restart_reader import deck_in, load, look_into, see
+from udec_ia.restart.restart_writer import load_to_change, save, save_changed
 
 __all__ = ["deck_in", "info", "load", "load_to_change", "look_into", "save", "save_changed", "see"]

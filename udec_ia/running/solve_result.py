@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.unbalanced_force import (
@@ -20,6 +19,7 @@ from udec_ia.kernels.drive.unbalanced_force import (
 )
 from udec_ia.kernels.energy.stored_energy import liveliest
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
+from udec_ia.printable import counted
 from udec_ia.remark import Remark
 from udec_ia.running.group_names import name_of
 

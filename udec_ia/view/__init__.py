@@ -1,10 +1,10 @@
 """A page that shows a heap beside the blocks that it holds, for any browser: `udec view`, Model.view.
 
-Python writes down what is in the array (states.py) and what the field table says of it (tables.py), and puts
-both into one file with the style and the scripts of web/ (page.py). The page itself turns words into numbers,
-groups and pictures, with nothing from elsewhere.
+Python writes the array as JSON (view_states.py) and the field table (view_tables.py), and puts both into one
+file with the style and the scripts of web/ (view_page.py). The page itself turns words into numbers, groups
+and pictures, with nothing from elsewhere.
 """
 
-from udec_ia.view.page import Page
+from udec_ia.view.view_page import Page
 
 __all__ = ["Page"]

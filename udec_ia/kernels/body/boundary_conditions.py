@@ -10,8 +10,8 @@ A condition acts on a grid-point, on a block at its centroid, or at a corner of 
 f is 1, a sine or a FUNCTION of time, calculated with 64 bits in every word scheme and then rounded once.
 Loads keep the direction and the size that they had when they were given. The work of conditions is summed in
 WBOUND if an account of the energy is kept (kernels.energy.stored_energy). WDRIVE sums up what they put in,
-and not what they take: it tells a run that is driven from one that gains energy from nowhere
-(ops.run.runaway).
+and not what they take: it distinguishes a driven run from one that gains energy from nowhere
+(advice.energy_monitor).
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@ The 1980 estimate is 2 sqrt(M/K) with a mass and the stiffness that acts on it (
     simply-deformable    M least principal value of the Euler tensor, K = A (K + 4G/3), the uniaxial mode
     fully-deformable     M mass of a grid-point, K stiffness of its zones and of the contacts that act on it
 
-The safe bound needs the row sums of the stiffness matrix (ops.run.rows). A contact adds to them: it has KN
-along its normal n and KS along its tangent t. With the displacement u = sum_j s_j q_j of its point, q_j the
-degrees of freedom of both sides and s_j how far a unit of each moves the point, it has
+The safe bound needs the row sums of the stiffness matrix (running.stiffness_bound). A contact adds to them:
+it has KN along its normal n and KS along its tangent t. With the displacement u = sum_j s_j q_j of its point,
+q_j the degrees of freedom of both sides and s_j how far a unit of each moves the point, it has
 
     K_ij = KN (s_i n)(s_j n) + KS (s_i t)(s_j t)
 

@@ -5,7 +5,7 @@ pass is not compiled yet, can be taken up again at that very point and goes on a
 
 `soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code, and
 such a scene neither compiles nor tests anything about deformable blocks. What is long, and not needed in
-every cycle or scene, a cycle calls by its address (heap/apart.py): it is compiled once for a word scheme, and
+every cycle or scene, a cycle calls by its address: it is compiled once for a word scheme, and
 once it is needed, instead of in every kind of cycle. `passes` finds what a run needs.
 
 The compiled loop of `run_watched` runs from one cycle at which something is due to the next, writes what is

@@ -17,7 +17,7 @@ that follows takes half of the force: with the whole of it all would swing farth
 0.4 of the critical one on were unstable.
 
 The motion on the way is not that of the model: only where it comes to rest, and only as far as that does not
-depend on the way. The factors s stand in relaxations (links.relaxations); ops/run/scaling.py finds them.
+depend on the way. The factors s stand in relaxations (links.relaxations); running/mass_scaling.py finds them.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ they change.
 Two passes over the model stand before and after the block pass. The contact pass reports each contact when
 its new forces are known and it still holds the old ones (`note_contact`). All are compiled once ENERGY ON is
 given. What sliding takes is summed by the joint laws themselves: a run that gains energy from nowhere is
-found by it as well (ops/run/runaway.py).
+found by it as well (advice/energy_monitor.py).
 """
 
 from __future__ import annotations

@@ -17,7 +17,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from udec_ia.counting import counted
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
@@ -35,6 +34,7 @@ from udec_ia.ops.commands.triangulation import Mesh, mesh
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items, why_no_block
 from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.printable import counted
 
 Point = tuple[float, float]
 Triple = tuple[int, int, int]

@@ -1,0 +1,99 @@
+"""Who waits for a kernel that is being compiled is told, and the rate of a run leaves the time out."""
+
+from __future__ import annotations
+
+import io
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numba.core import config
+from support.handmade_map import two_blocks
+
+from udec_ia.compiling import compile_time
+from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.model import Model
+from udec_ia.output.run_progress import Report
+
+SAYS = "compiling once for this machine, up to a minute ..."
+
+
+def thrice(x: Any) -> Any:
+    return x * 3
+
+
+@pytest.fixture
+def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
+    """The account, as if nothing had ever been compiled."""
+
+    class Account(compile_time._Account):
+        seconds = 0.0
+
+    monkeypatch.setattr(compile_time, "_Account", Account)
+    Account.ended = float("-inf")
+    return Account
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
+    """A clock that goes when it is told to."""
+    now = [100.0]
+    monkeypatch.setattr(compile_time, "monotonic", lambda: now[0])
+    return now
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_what_is_compiled_is_told_and_what_is_found_on_disk_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, quiet: type
+) -> None:
+    """Once for all that is compiled one after the other, and again after a while without."""
+    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    first: Any = kernel(thrice)
+    assert [first(x) for x in (np.int32(2), np.float64(2), np.int32(3))] == [6, 6, 9]
+    assert caplog.messages == [SAYS]
+    spent = compile_time.compile_seconds()
+    assert spent > 0
+    quiet.ended -= 2 * compile_time.STRETCH  # type: ignore[attr-defined]
+    again: Any = kernel(thrice)
+    assert [again(x) for x in (np.int32(2), np.float64(2))] == [6, 6]
+    assert (caplog.messages, compile_time.compile_seconds()) == ([SAYS], spent)
+    assert again(np.float32(2)) == 6
+    assert caplog.messages == [SAYS, SAYS]
+    assert compile_time.compile_seconds() > spent
+
+
+def test_the_clock_of_a_run_stands_still_meanwhile(clock: list[float]) -> None:
+    start = compile_time.working_time()
+    clock[0] += 1
+    with compile_time.compiling():
+        clock[0] += 30
+        assert compile_time.working_time() - start == 1
+    with suppress(KeyboardInterrupt), compile_time.compiling():
+        clock[0] += 5
+        raise KeyboardInterrupt
+    clock[0] += 2
+    assert compile_time.working_time() - start == 3
+    assert compile_time.compile_seconds() == 35
+
+
+def test_the_rate_is_that_of_the_cycles(clock: list[float]) -> None:
+    h, out = two_blocks().h, io.StringIO()
+    report = Report(lambda: h, 4000, out, None)
+    with compile_time.compiling():
+        clock[0] += 60
+    clock[0] += 4
+    report(4000)
+    report.close()
+    assert out.getvalue().startswith("cycle 4000 of 4000: 1,000 cycles/s, ")
+
+
+def test_the_summary_says_what_went_into_compiling(clock: list[float]) -> None:
+    with compile_time.compiling():
+        clock[0] += 7
+    model = Model()
+    assert "compiling" not in model.summary()
+    with compile_time.compiling():
+        clock[0] += 12.34
+    assert model.summary().endswith(" s, 12.3 s of it compiling")

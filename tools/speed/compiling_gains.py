@@ -1,0 +1,125 @@
+"""What each part of the compilation of kernels gains: the same command with it and without it.
+
+    python tools/bench.py gains
+    python tools/bench.py gains "rare garbage collection" --turns 3
+
+Each line is a command that runs with one part left out, against the same command with all of them. Cold runs
+begin with nothing compiled. Times are user CPU times of whole processes, as medians. docs/compiling.md
+describes the parts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+ROOT = Path(__file__).parents[2]
+BALL = ["run", str(ROOT / "examples" / "ball-rolling.dat"), "--out", "out"]
+COLD, WARM, CHECK = "cold run of the ball", "warm run of the ball", "check of a small file"
+START = "import sys\nfrom udec_ia.cli import main\n{change}\nsys.exit(main(sys.argv[1:]))\n"
+SLAB = """
+from udec_ia import Model
+m, n = Model(), 4
+m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5)
+m.block(0, 0, 0, n, n, n, n, 0)
+for i in range(1, n):
+    m.split(-1, i, n + 1, i)
+for i in range(1, n):
+    m.split(i, -1, i, n + 1)
+m.save("slab.h5")
+"""
+PARTS = {  # of each: the command, what leaves it out, and the environment that does
+    "linking": (COLD, "", {"UDEC_LINK": "plain"}),
+    "signatures found once": (
+        COLD,
+        "from udec_ia.compiling import linking\nlinking._Remembering = lambda knows: knows",
+        {},
+    ),
+    "no search for closures": (
+        COLD,
+        "from udec_ia.compiling import linking\nlinking.NOT_IN_KERNELS = ()",
+        {},
+    ),
+    "rare garbage collection": (
+        COLD,
+        "from udec_ia.compiling import compile_time\ncompile_time.RARELY = 10",
+        {},
+    ),
+    "outlined calls": (
+        COLD,
+        "from udec_ia.compiling import outlined_calls as o\nfrom udec_ia.kernels.drive import passes\n"
+        "passes.entry_if = lambda wanted, kernel, *args: o.entry(kernel, *args)",
+        {},
+    ),
+    "code cache": (WARM, "import shutil, os\nshutil.rmtree(os.environ['UDEC_CACHE'])", {}),
+    "cache without compiler": (
+        WARM,
+        "from numba.core.caching import FunctionCache\nfrom udec_ia.compiling import code_cache\n"
+        "code_cache._Cache.load_overload = FunctionCache.load_overload",
+        {},
+    ),
+    "interpreting when small": (
+        CHECK,
+        "from udec_ia.compiling.interpreting import InterpretWhenSmall\n"
+        "InterpretWhenSmall.always_compiled = True",
+        {},
+    ),
+    "numba loaded when needed": (CHECK, "from udec_ia.compiling.numba_loading import load\nload()", {}),
+}
+
+
+def seconds(command: list[str], change: str, env: dict[str, str], folder: Path) -> float:
+    """User CPU time in s of `udec` with the arguments `command`, after the lines `change`."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    subprocess.run(
+        [sys.executable, "-c", START.format(change=change), *command],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **env},
+        check=False,
+        capture_output=True,
+    )
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+def measure(part: str, turns: int, folder: Path) -> tuple[float, float]:
+    """Median times without `part` and with it, by turns."""
+    name, change, env = PARTS[part]
+    command = BALL if name in (COLD, WARM) else ["check", "slab.h5"]
+    if name == CHECK:
+        seconds([], f"exec({SLAB!r})", {}, folder)
+    times: dict[bool, list[float]] = {False: [], True: []}
+    for turn in range(turns + (name != COLD)):  # the first turn of a warm command compiles
+        for whole in (False, True):
+            cache = folder / f"cache{whole}"
+            if name == COLD:
+                shutil.rmtree(cache, ignore_errors=True)
+            out = {} if whole else env
+            time = seconds(command, "" if whole else change, {"UDEC_CACHE": str(cache), **out}, folder)
+            if name == COLD or turn:
+                times[whole].append(time)
+    return median(times[False]), median(times[True])
+
+
+def main() -> None:
+    """Print a line for each part."""
+    parser = argparse.ArgumentParser(prog="bench.py gains", description="What each part of compiling gains.")
+    parser.add_argument("parts", nargs="*", help=f"by default all of: {', '.join(PARTS)}")
+    parser.add_argument("--turns", type=int, default=3)
+    args = parser.parse_args()
+    print("| part | command | without it, s | with it, s | gain, s |\n|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for part in args.parts or PARTS:
+            without, whole = measure(part, args.turns, Path(folder))
+            gain = without - whole
+            print(f"| {part} | {PARTS[part][0]} | {without:.2f} | {whole:.2f} | {gain:.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,212 @@
+"""The command that measures what accuracy costs for a deck: `udec trade DECK`.
+
+udec trade DECK        udec trade DECK --table --tolerance 1e-2
+udec trade DECK --half-step        udec trade DECK --digits        udec trade DECK --levers round,zones
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.command_line.command_options import command, given, seconds, variables, word_scheme
+
+if TYPE_CHECKING:
+    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.studies.setting_runner import Options, SettingRunner
+
+VERBS = ("trade",)
+TEXT = "find the cheapest time-step and word scheme that keep the results of a deck to a tolerance"
+
+
+def add_commands(commands: Any) -> None:
+    """Add it to those of `udec`."""
+    parser = command(commands, "trade", TEXT, _trade, _script)
+    parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
+    variables(parser)
+    parser.add_argument(
+        "--quantity",
+        action="append",
+        default=[],
+        metavar="QUANTITY",
+        help='quantity that must be right, as in "max contact.KCFN"; repeatable',
+    )
+    parser.add_argument(
+        "--constitutive", action="append", default=[], metavar="LAW", help="as for udec run; repeatable"
+    )
+    parser.add_argument(
+        "--tolerance", metavar="SHARE", help="greatest relative error, as 1e-3 or 0.1%% (default: 1e-3)"
+    )
+    parser.add_argument(
+        "--budget", default="5m", metavar="TIME", help="time for all runs: 60s, 5m, 1h (default: 5m)"
+    )
+    word_scheme(parser)
+    parser.add_argument(
+        "--builds", metavar="A,B", help="word schemes to try (default: the one with 32-bit reals)"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for all files (default: NAME-trade)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
+    parser.add_argument("--table", action="store_true", help="print a line for each setting as well")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--half-step", action="store_true", help="only compare the deck with half its time-step (report 4.6)"
+    )
+    what.add_argument(
+        "--digits", action="store_true", help="show how many digits of each quantity the deck determines"
+    )
+    what.add_argument(
+        "--blame", action="store_true", help="the same, and the fields in which the other digits are lost"
+    )
+    what.add_argument(
+        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness,types"
+    )
+    parser.add_argument(
+        "--runs", type=int, metavar="N", help="perturbed runs for --digits and --blame (default: 16)"
+    )
+
+
+def _trade(args: argparse.Namespace) -> Listing | Tables:
+    from udec_ia.reader.listing import Listing
+    from udec_ia.studies.accuracy_report import (
+        COLUMNS,
+        answer,
+        draw_costs,
+        half_step,
+        shown_rows,
+        study_table,
+    )
+    from udec_ia.studies.accuracy_study import study_accuracy
+    from udec_ia.studies.study_run import read_deck
+    from udec_ia.studies.study_table import check_paths, picture_paths, table_paths
+
+    if args.digits or args.blame:
+        return _digits(args)
+    if args.levers is not None:
+        return _levers(args)
+    base, options = _folder(args) / f"{args.deck.stem}-trade", _options(args)
+    if not args.half_step:
+        check_paths([*table_paths(base), *picture_paths(base)])
+    text, values = read_deck(args.deck), given(args.set)
+    study = study_accuracy(text, args.deck.name, values, _folder(args), options, args.deck.parent)
+    if args.half_step:
+        return Listing(half_step(study), status=int(len(study.levels) < 2))
+    if not study.rows:
+        return Listing(answer(study), status=1)
+    files = study_table(study).write(base, {"deck": study.deck.text})
+    files += draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
+    lines = [*answer(study), f"written: {', '.join(map(str, files))}"]
+    return Listing(lines, COLUMNS, shown_rows(study)) if args.table or args.json else Listing(lines)
+
+
+def _runner(args: argparse.Namespace) -> SettingRunner:
+    from udec_ia.studies.deck_rewriting import Deck
+    from udec_ia.studies.setting_runner import SettingRunner
+    from udec_ia.studies.study_run import read_deck
+
+    deck = Deck(read_deck(args.deck), args.deck.name, given(args.set), args.deck.parent)
+    return SettingRunner(deck, _options(args), _folder(args))
+
+
+def _digits(args: argparse.Namespace) -> Listing | Tables:
+    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.studies.significant_digits import (
+        COLUMNS,
+        ENSEMBLE,
+        FIELD_COLUMNS,
+        FieldBlame,
+        measure_digits,
+    )
+
+    runs = args.runs if args.runs is not None else ENSEMBLE
+    if runs < 3:
+        raise ValueError(f"--runs {runs}: give 3 or more")
+    with _runner(args) as runner:
+        found = measure_digits(runner, runs)
+        if not found.results:
+            return Listing(found.notes, status=1)
+        listing = Listing(found.notes, COLUMNS, found.rows())
+        if not args.blame:
+            return listing
+        line, rows = FieldBlame(found).search()
+        return Tables({"digits": listing, "blame": Listing([line], FIELD_COLUMNS, rows)})
+
+
+def _levers(args: argparse.Namespace) -> Listing:
+    from udec_ia.reader.listing import Listing
+    from udec_ia.studies.model_levers import COLUMNS, LEVERS, vary_lever
+    from udec_ia.studies.study_run import ENDED
+
+    levers = _names("--levers", args.levers, LEVERS)
+    with _runner(args) as runner:
+        result = runner.survey_deck()
+        if result.status != ENDED or not runner.survey:
+            return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
+        found = [vary_lever(runner, lever) for lever in levers]
+    notes, rows = ([one for part in parts for one in part] for parts in zip(*found, strict=True))
+    return Listing(notes, COLUMNS, rows)
+
+
+def _folder(args: argparse.Namespace) -> Path:
+    return args.out or Path(f"{args.deck.stem}-trade")
+
+
+def _options(args: argparse.Namespace) -> Options:
+    from udec_ia.heap.word_scheme import ALL_SCHEMES
+    from udec_ia.studies.setting_runner import Options
+
+    named: dict[str, Any] = {
+        "quantities": tuple(args.quantity),
+        "tolerance": _share(args.tolerance),
+        "budget": seconds("--budget", args.budget),
+        "build": args.build,
+        "builds": tuple(_names("--builds", args.builds, ALL_SCHEMES)),
+        "constitutive": tuple(args.constitutive),
+        "jobs": args.jobs,
+        "half_step": args.half_step,
+        "stream": sys.stderr,
+    }
+    return Options(**{name: value for name, value in named.items() if value not in (None, ())})
+
+
+def _share(text: str | None) -> float | None:
+    """The share that is written as a number or in per cent; None without one. ValueError for a wrong one."""
+    if text is None:
+        return None
+    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
+    try:
+        share = float(number) / (100 if percent else 1)
+    except ValueError:
+        share = math.nan
+    if not 0 < share < math.inf:
+        raise ValueError(f"--tolerance {text}: give a relative error above 0, as in 1e-3 or 0.1%")
+    return share
+
+
+def _names(option: str, text: str | None, known: Collection[str]) -> list[str]:
+    """The names in a list with commas; [] without the option. ValueError for unknown ones."""
+    if text is None:
+        return []
+    names = [one.strip() for one in text.split(",")]
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{option} {name or repr(text)}: choose from {', '.join(known)}")
+    return [*dict.fromkeys(names)]
+
+
+def _script(args: argparse.Namespace) -> str:
+    asked = f", quantities={tuple(args.quantity)!r}" if args.quantity else ""
+    where = f"{given(args.set)!r}, Path({str(_folder(args))!r}), options"
+    return (
+        "from pathlib import Path\n\n"
+        "from udec_ia.studies.accuracy_report import answer\n"
+        "from udec_ia.studies.accuracy_study import study_accuracy\n"
+        "from udec_ia.studies.setting_runner import Options\n\n"
+        f"options = Options(tolerance={_share(args.tolerance) or 1e-3!r}{asked})\n"
+        f"deck = Path({str(args.deck)!r})\n"
+        f"study = study_accuracy(deck.read_text(), deck.name, {where}, deck.parent)\n"
+        "print(*answer(study), sep='\\n')"
+    )

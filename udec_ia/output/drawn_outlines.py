@@ -1,0 +1,367 @@
+"""States of the block system as arrays for drawing: outlines, contacts, domains, stresses and velocities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
+from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.layout import offsets as g
+from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
+
+CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
+    "s11": "stress 11 (Pa)",
+    "s12": "stress 12 (Pa)",
+    "s22": "stress 22 (Pa)",
+    "pressure": "pressure (Pa)",
+    "shear": "greatest shear stress (Pa)",
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """Moving points (n): address, place (m) and velocity (m/s). Zones (k): corners (k, 3, 2), stress (k, 3).
+
+    middle (m, 2), stress (m, 3): of all zones, and then of the simply-deformable blocks in list order.
+    """
+
+    address: Any
+    place: Any
+    velocity: Any
+    zone: Any
+    middle: Any
+    stress: Any
+
+
+def field(h: Memory) -> Field:
+    """A copy of points and stresses of the present state. Unsound if the heap cannot be walked."""
+    blocks = list(groups(h, "block"))
+    hard = [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF]
+    points = [ig for ib in blocks for ig in members(h, ib, "gridpoint")]
+    zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
+    simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    place = np.concatenate([_reals(h, hard, g.KX, g.KY), _reals(h, points, g.KXG, g.KYG)])
+    velocity = np.concatenate([_reals(h, hard, g.KXD, g.KYD), _reals(h, points, g.KXDG, g.KYDG)])
+    at = {address: i for i, address in enumerate(hard + points)}
+    rows = np.array([[at[iget(h, iz, g.KZG, i)] for i in range(3)] for iz in zones], int).reshape(-1, 3)
+    zone_stress = _reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
+    centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    return Field(
+        np.array(hard + points, np.int64),
+        place,
+        velocity,
+        place[rows],
+        np.concatenate([place[rows].mean(axis=1), np.array(centres).reshape(-1, 2)]),
+        np.concatenate([zone_stress, _reals(h, simple, g.KS111, g.KS112, g.KS122)]),
+    )
+
+
+def _reals(h: Memory, addresses: Any, *names: Offset) -> Any:
+    at = np.array(addresses, np.int64)
+    return np.stack([_real(h, at, k) for k in names], axis=-1)
+
+
+def measure(stress: Any, name: str) -> Any:
+    """One number for each stress (k, 3): see CONTOURS."""
+    s11, s12, s22 = stress.T
+    if name == "pressure":
+        return -(s11 + s22) / 2
+    if name == "shear":
+        return np.hypot((s11 - s22) / 2, s12)
+    return {"s11": s11, "s12": s12, "s22": s22}[name]
+
+
+MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
+ARC_POINTS = 6  # points on an arc where a domain's polygon follows it
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """All blocks: n corners clockwise, block after block; the corners of block i are first[i]:first[i + 1].
+
+    corner, centre: (n, 2) in m; radius: (n,) in m, not positive where a corner is sharp; rounding: DTOL in m;
+    corner_address: (n,). centroid: (m, 2) in m; fixed, material, address and kind (head code): (m,).
+    """
+
+    corner: Any
+    centre: Any
+    radius: Any
+    rounding: float
+    corner_address: Any
+    first: Any
+    centroid: Any
+    fixed: Any
+    material: Any
+    address: Any
+    kind: Any
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """All contacts: place (n, 2) in m, force on block KB2 (n, 2) in N/m, virtual (n,), address (n,).
+
+    link (n, 2, 2): the two corners that the contact belongs to, in m; of a virtual one all that is known.
+    """
+
+    place: Any
+    force: Any
+    virtual: Any
+    link: Any
+    address: Any
+
+
+@dataclass(frozen=True)
+class Domain:
+    """One domain: its polygon (k, 2) in m, anticlockwise around it, and whether it is the outer one."""
+
+    address: int
+    polygon: Any
+    outer: bool
+
+
+@dataclass(frozen=True)
+class State:
+    """The block system at one moment; contacts, domains and the field where they were asked for."""
+
+    cycle: int
+    time: float
+    outlines: Outlines
+    contacts: Contacts | None = None
+    domains: tuple[Domain, ...] = ()
+    field: Field | None = None
+
+    def renumbered(self, moved: Any) -> State:
+        """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
+
+        def new(one: Any) -> Any:
+            return replace(one, address=moved[one.address].astype(np.int64))
+
+        return replace(
+            self,
+            outlines=replace(new(self.outlines), corner_address=moved[self.outlines.corner_address]),
+            contacts=self.contacts and new(self.contacts),
+            domains=tuple(new(domain) for domain in self.domains),
+            field=self.field and new(self.field),
+        )
+
+
+def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False) -> State:
+    """A copy of what can be drawn of the present state; inside: also points and stresses."""
+    return State(
+        int(h.ci[g.MCTOT]),
+        float(h.cd[g.TIME]),
+        outlines(h),
+        contact_forces(h) if contacts else None,
+        tuple(domain_polygons(h)) if domains else (),
+        field(h) if inside else None,
+    )
+
+
+def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
+    """The outlines of all blocks, or of those chosen by address. Unsound if the heap cannot be walked."""
+    blocks = list(groups(h, "block")) if chosen is None else list(chosen)
+    lists = [list(reverse(h, block))[::-1] for block in blocks]
+    corners = np.array([corner for one in lists for corner in one], np.int64)
+    return Outlines(
+        corner=_reals(h, corners, g.KXP, g.KYP),
+        centre=_reals(h, corners, g.KXCP, g.KYCP),
+        radius=_real(h, corners, g.KRAD),
+        rounding=float(h.cr[g.DTOL]),
+        corner_address=corners,
+        first=np.cumsum([0, *map(len, lists)]),
+        centroid=_reals(h, np.array(blocks, np.int64), g.KX, g.KY),
+        fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
+        material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
+        address=np.array(blocks, np.int64),
+        kind=np.array([iget(h, block, HEAD) for block in blocks], np.int64),
+    )
+
+
+def _real(h: Memory, addresses: Any, k: Offset) -> Any:
+    return np.array(getr(h, addresses, k), np.float64)
+
+
+def curves(o: Outlines) -> tuple[Any, Any, Any]:
+    """Vertices (k, 2), path codes (k,) and block index (k,) of all outlines, with their corners rounded.
+
+    An arc touches both edges at the distance DTOL from the corner (report 2.3). It is drawn as two cubic
+    curves, which stay within 3e-4 of its radius. Concave corners, flat ones, and all corners when DTOL is 0
+    are drawn as they are.
+    """
+    n = len(o.corner)
+    index = np.arange(n)
+    block = np.repeat(np.arange(len(o.first) - 1), np.diff(o.first))
+    starts = index == o.first[block]
+    ends = index == o.first[block + 1] - 1
+    back = _unit(o.corner[np.where(starts, o.first[block + 1] - 1, index - 1)] - o.corner)
+    ahead = _unit(o.corner[np.where(ends, o.first[block], index + 1)] - o.corner)
+    d, r = o.rounding, o.radius[:, None]
+    is_round = (o.radius > 0.0) & (d > 0.0)
+    tangent_in, tangent_out = o.corner + d * back, o.corner + d * ahead
+    middle = apex(o.corner, o.centre, o.radius)
+    along = _unit(tangent_out - tangent_in)
+    turn = 2.0 * np.arctan2(d, r)
+    handle = r * (4.0 / 3.0) * np.tan(turn / 8.0)
+    vertices = np.stack(
+        [
+            np.where(is_round[:, None], tangent_in, o.corner),
+            tangent_in - handle * back,
+            middle - handle * along,
+            middle,
+            middle + handle * along,
+            tangent_out - handle * ahead,
+            tangent_out,
+            o.corner,
+        ],
+        axis=1,
+    )
+    codes = np.full((n, 8), CURVE)
+    codes[:, 0] = np.where(starts, MOVE, LINE)
+    codes[:, 7] = CLOSE
+    keep = np.repeat(is_round[:, None], 8, axis=1)
+    keep[:, 0] = True
+    keep[:, 7] = ends
+    return vertices[keep], codes[keep], np.repeat(block[:, None], 8, axis=1)[keep]
+
+
+def apex(corner: Any, centre: Any, radius: Any) -> Any:
+    """The middle of the arc of each corner, or the corner itself where it is sharp.
+
+    Arrays: corner and centre (..., 2), radius (...).
+    """
+    r = radius[..., None]
+    return np.where(r > 0.0, centre + r * _unit(corner - centre), corner)
+
+
+def beside_corners(o: Outlines, i: int) -> Any:
+    """Places inside block i beside its corners, each on the bisector of the corner's angle: (n, 2) in m.
+
+    Their distance is a tenth of that to the centroid, and at most a third of that to the edge opposite and
+    to the next corner.
+    """
+    part = slice(o.first[i], o.first[i + 1])
+    corner = o.corner[part]
+    ahead, behind = np.roll(corner, -1, axis=0) - corner, corner - np.roll(corner, 1, axis=0)
+    along = _unit(ahead) + _unit(behind)
+    inwards = _unit(np.stack([along[:, 1], -along[:, 0]], axis=-1))  # clockwise: the inside is on the right
+    start = apex(corner, o.centre[part], o.radius[part])
+    others = [np.roll(corner, -k - 1, axis=0)[:-1] for k in range(len(corner))]
+    free = list(map(_reach, start, inwards, others))
+    room = np.min([free, np.hypot(*ahead.T), np.hypot(*behind.T)], axis=0)
+    step = np.minimum(0.1 * np.hypot(*(o.centroid[i] - start).T), room / 3.0)
+    return start + step[:, None] * inwards
+
+
+def _reach(start: Any, way: Any, line: Any) -> float:
+    """How far it is from `start` in the direction `way`, a unit vector, to the line through points, in m."""
+    edge, to = np.diff(line, axis=0), line[:-1] - start
+    across = way[0] * edge[:, 1] - way[1] * edge[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        far = (to[:, 0] * edge[:, 1] - to[:, 1] * edge[:, 0]) / across
+        share = (to[:, 0] * way[1] - to[:, 1] * way[0]) / across
+    return float(far[(far > 0.0) & (share >= 0.0) & (share <= 1.0)].min(initial=np.inf))
+
+
+def _apex(h: Memory, corners: Any) -> Any:
+    points = _reals(h, corners, g.KXP, g.KYP), _reals(h, corners, g.KXCP, g.KYCP)
+    return apex(*points, _real(h, corners, g.KRAD))
+
+
+def _unit(v: Any) -> Any:
+    length = np.hypot(v[..., 0], v[..., 1])[..., None]
+    return v / np.where(length > 0.0, length, 1.0)
+
+
+def contact_forces(h: Memory) -> Contacts:
+    """Places and forces of all contacts; a virtual contact has no force."""
+    addresses = list(groups(h, "contact"))
+    codes = [iget(h, contact, g.KCCOD) for contact in addresses]
+    pairs = [(iget(h, contact, g.KCP1), iget(h, contact, g.KCP2)) for contact in addresses]
+    normal = np.array(
+        [
+            (0.0, 0.0) if code == g.VIRTUAL else meet(h, code, *pair)[:2]
+            for code, pair in zip(codes, pairs, strict=True)
+        ]
+    ).reshape(-1, 2)
+    iads = np.array(addresses, np.int64)
+    tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
+    fn, fs = _real(h, iads, g.KCFN)[:, None], _real(h, iads, g.KCFS)[:, None]
+    return Contacts(
+        place=_reals(h, iads, g.KXC, g.KYC),
+        force=fn * normal - fs * tangent,
+        virtual=np.array([code == g.VIRTUAL for code in codes], bool),
+        link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
+        address=iads,
+    )
+
+
+def domain_polygons(h: Memory) -> Iterator[Domain]:
+    """All domains, as polygons along the rounded outlines of the blocks around them."""
+    for domain in groups(h, "domain"):
+        yield Domain(domain, np.array(list(_loop_reals(h, domain))), domain == h.ci[g.IODPNT])
+
+
+def _loop_reals(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
+    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7).
+
+    Each step begins where the last one ended, but for a virtual contact: there the loop crosses to the other
+    block, and back by the same way.
+    """
+    steps = list(loop(h, domain))
+    for (before, block), (item, _) in zip([steps[-1], *steps[:-1]], steps, strict=True):
+        previous, start = _stand(h, before, block)
+        corner, place = _stand(h, item, block)
+        yield start
+        if corner:
+            yield from _arc(
+                h, corner, start if previous == corner else _tangent(h, corner, arriving=True), place
+            )
+        else:
+            yield place
+
+
+def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
+    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place.
+
+    Where a virtual contact stands means nothing: it is taken to the middle of its corner's arc.
+    """
+    if kind_of(h, item) == "corner":
+        rounded = getr(h, item, g.KRAD) > 0.0
+        place = _tangent(h, item, arriving=False) if rounded else point(h, item, g.KXP, g.KYP)
+        return item if rounded else 0, place
+    first = iget(h, item, g.KB1) == block
+    corner = iget(h, item, g.KCP1 if first else g.KCP2)
+    code = iget(h, item, g.KCCOD)
+    on_arc = getr(h, corner, g.KRAD) > 0.0 and code != (g.EDGE_CORNER if first else g.CORNER_EDGE)
+    place = tuple(_apex(h, np.int64(corner))) if code == g.VIRTUAL else point(h, item, g.KXC, g.KYC)
+    return corner if on_arc else 0, place
+
+
+def _tangent(h: Memory, corner: int, arriving: bool) -> tuple[float, float]:
+    """Where the arc of a corner begins (arriving along the block, clockwise) or ends.
+
+    With the centre c, the corner p and m = c - p, they are p + (D^2 m -/+ D R Jm)/m.m, J a quarter turn.
+    """
+    x, y = point(h, corner, g.KXP, g.KYP)
+    cx, cy = point(h, corner, g.KXCP, g.KYCP)
+    d, r = float(h.cr[g.DTOL]), float(getr(h, corner, g.KRAD))
+    mx, my = cx - x, cy - y
+    mm = mx * mx + my * my
+    along, across = d * d / mm, (-d if arriving else d) * r / mm
+    return x + along * mx - across * my, y + along * my + across * mx
+
+
+def _arc(
+    h: Memory, corner: int, start: tuple[float, float], stop: tuple[float, float]
+) -> Iterator[tuple[float, float]]:
+    """Points on the arc of a corner, from `start` to `stop`."""
+    cx, cy = point(h, corner, g.KXCP, g.KYCP)
+    r = float(getr(h, corner, g.KRAD))
+    first = np.arctan2(start[1] - cy, start[0] - cx)
+    turn = (np.arctan2(stop[1] - cy, stop[0] - cx) - first + np.pi) % (2.0 * np.pi) - np.pi
+    for angle in first + np.linspace(0.0, turn, ARC_POINTS):
+        yield cx + r * float(np.cos(angle)), cy + r * float(np.sin(angle))

@@ -1,0 +1,101 @@
+"""PLOT HISTORY: what was recorded against time, as PNG and SVG.
+
+Histories of one field of several groups share a panel, since they can be compared, and so do quantities of
+the whole model in one unit, such as energies. The panels stand one above the other over one time axis. A
+curve breaks off where its group has gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from udec_ia.output.block_drawing import INK, drawable, write
+from udec_ia.running.history_series import Series
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH = 7.0  # inches of a panel
+PANEL = 1.9  # inches in height
+MARGINS = (0.9, 0.25, 0.5, 0.45)  # left, right, bottom, top, in inches
+KEY_WIDTH = 2.3  # inches for the keys on the right
+SAID = 10  # curves of a panel that the key names
+MARKED = 60  # numbers below which each is marked by a point
+COLOURS = ("#1f6f8b", "#c8553d", "#588b3c", "#7a5ba6", "#b8860b", "#3a4f7a", "#a23b72", "#5f6b6d")
+
+
+def draw(series: Sequence[Series], name: str, base: Path) -> list[Path]:
+    """Draw all of `series` to base.png and base.svg; returns both paths. name: title of the picture.
+
+    Error 31 if they cannot be written.
+    """
+    from matplotlib import rc_context
+
+    with rc_context({"svg.hashsalt": "udec"}):
+        return write(figure(series, name), base)
+
+
+def figure(series: Sequence[Series], name: str) -> Figure:
+    """The picture: its panels in the order in which they were asked for."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    panels: dict[str, list[Series]] = {}
+    for one in series:
+        panels.setdefault(one.name if one.group else one.unit or one.name, []).append(one)
+    left, right, bottom, top = MARGINS
+    size = (left + WIDTH + KEY_WIDTH + right, bottom + PANEL * len(panels) + top)
+    picture = Figure(size, facecolor="white")
+    FigureCanvasAgg(picture)
+    shared: Axes | None = None
+    for place, curves in enumerate(panels.values()):
+        low = bottom + PANEL * (len(panels) - 1 - place)
+        box = (left / size[0], (low + 0.12) / size[1], WIDTH / size[0], (PANEL - 0.24) / size[1])
+        axes = picture.add_axes(box, sharex=shared)
+        shared = shared or axes
+        _panel(axes, curves)
+        if place < len(panels) - 1:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("time (s)", fontsize=9, color=INK)
+    picture.text(left / size[0], 1 - 0.3 / size[1], drawable(name), fontsize=10, color=INK, parse_math=False)
+    return picture
+
+
+def _key(one: Series) -> str:
+    return f"{one.number}: {one.group or one.name}" + (f" {one.place}" if one.place else "")
+
+
+def _panel(axes: Axes, curves: list[Series]) -> None:
+    """Curves that belong together, and a key to them."""
+    names, unit = {one.name for one in curves}, curves[0].unit
+    label = unit if len(names) > 1 else curves[0].name + (f" ({unit})" if unit else "")
+    for i, one in enumerate(curves):
+        _, time, value = one.numbers.T
+        style: dict[str, Any] = {"color": COLOURS[i % len(COLOURS)], "linewidth": 1.2}
+        if np.isfinite(value).sum() < MARKED:
+            style |= {"marker": "o", "markersize": 2.5}
+        axes.plot(time, value, label=_key(one), **style)
+    axes.set_ylabel(label, fontsize=9, color=INK)
+    axes.yaxis.get_offset_text().set(fontsize=8, color=INK)
+    axes.grid(color="#e4e0d8", linewidth=0.6)
+    axes.tick_params(labelsize=8, colors=INK, width=0.6)
+    for spine in axes.spines.values():
+        spine.set(linewidth=0.6, color="#8a857c")
+    handles, labels = axes.get_legend_handles_labels()
+    if len(labels) > SAID:
+        labels[SAID - 1] += f" and {len(labels) - SAID} more"
+    axes.legend(
+        handles[:SAID],
+        labels[:SAID],
+        loc="upper left",
+        bbox_to_anchor=(1.01, 1.02),
+        borderaxespad=0.0,
+        fontsize=8,
+        frameon=False,
+    )

@@ -1,0 +1,249 @@
+"""PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
+
+PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
+picture is written at once, PLOT 1 writes it anew. A frame of many states is written whenever it has grown by
+a quarter, and when it ends: so that a frame of n states takes a time in proportion to n. A block is drawn
+again only when it has moved visibly: what stands still has the colour of its material, what moves gets a
+shade for each state, the darker the later.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import Memory
+from udec_ia.layout import offsets as g
+from udec_ia.output.block_drawing import (
+    HATCH_WIDTH,
+    INK,
+    draw_addresses,
+    draw_blocks,
+    draw_contacts,
+    draw_domains,
+    limits,
+    paper,
+    scale_for,
+    title,
+    write,
+)
+from udec_ia.output.drawn_outlines import State, snapshot
+from udec_ia.output.field_drawing import (
+    LONGEST,
+    draw_contours,
+    draw_displacements,
+    draw_principal,
+    draw_velocities,
+    draw_zones,
+)
+from udec_ia.printable import counted
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
+KEY_WIDTH = 1.55  # inches for the key on the right
+SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # what a picture's own reals can tell apart, with room to spare
+AT_ONCE = 10  # states up to which each one is drawn at once
+RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
+GROWTH = 1.25  # of a frame that has more
+
+
+@dataclass(frozen=True)
+class What:
+    """What a picture shows beside blocks, centroids and zones.
+
+    contour: a key of field.CONTOURS, or "". window: range x1, x2, y1, y2 in m, or what the blocks need.
+    """
+
+    contacts: bool = False
+    domains: bool = False
+    addresses: bool = False
+    stresses: bool = False
+    velocities: bool = False
+    displacements: bool = False
+    contour: str = ""
+    window: tuple[float, float, float, float] | None = None
+
+    def with_more(self, more: What) -> What:
+        """What is shown when `more` is asked for, too: words add up, a new contour or window replaces one."""
+        return What(*(getattr(more, one.name) or getattr(self, one.name) for one in fields(self)))
+
+    @property
+    def notes(self) -> int:
+        """Number of notes on scales."""
+        return self.stresses + self.velocities + self.displacements
+
+    @property
+    def margin(self) -> float:
+        """Share of the picture that stays free around the blocks: room for arrows, if there are any."""
+        return LONGEST + 0.02 if self.velocities or self.displacements else 0.04
+
+
+BARE = What()
+
+
+def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
+    """Error 28 unless there is something in the window, and it can be drawn. reach: of blocks from 0."""
+    if window is None:
+        return
+    x1, x2, y1, y2 = window
+    wide, high, far = x2 - x1, y2 - y1, max(reach, *map(abs, window))
+    if not (0 < wide < np.inf and 0 < high < np.inf):
+        advice = "WINDOW takes x1 x2 y1 y2 with x1 below x2 and y1 below y2, in m"
+        raise UdecError(28, "the window is empty", advice, parameter="window")
+    if min(wide, high) < max(max(wide, high) / SLENDER, far / REMOTE, 1 / FARTHEST) or far > FARTHEST:
+        detail = f"a window of {wide:g} m by {high:g} m, with blocks {far:g} m away from 0, cannot be drawn"
+        advice = f"its sides may be as 1 to {SLENDER:g}, and {REMOTE:g} of them reach from 0 to all blocks"
+        raise UdecError(28, detail, advice, parameter="window")
+
+
+class Plots:
+    """The frames of a run: files NAME-plot-1.png, NAME-plot-1.svg, NAME-plot-2.png ... in `folder`.
+
+    files: those that are written, each once. frame: the one that is open, number `count`. after: the last
+    number that is taken.
+    """
+
+    def __init__(self, folder: Path, name: str, after: int = 0) -> None:
+        self.folder = folder
+        self.name = name
+        self.files: list[Path] = []
+        self.count = after
+        self.frame: Frame | None = None
+
+    def draw(self, h: Memory, n: int = 0, what: What = BARE) -> list[Path]:
+        """PLOT n: start a frame with the present state (0), or draw it over the last one (1).
+
+        Returns the files that were written; none if the frame has many states and waits for more.
+        """
+        if n not in (0, 1):
+            advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
+            raise UdecError(28, f"PLOT {n}", advice, parameter="n")
+        state = snapshot(h, what.contacts, what.domains, inside=True)  # PLOT 1 may ask for displacements
+        _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
+        if n == 0 or self.frame is None:
+            self.close()
+            self.frame = Frame(self.name)
+            self.count += 1
+        self.frame.add(state, what, float(h.cr[g.PSCALE]))
+        return self._write(self.frame) if self.frame.due else []
+
+    def remarks(self, h: Memory, what: What) -> list[str]:
+        """What is to be said of the last PLOT, which asked for `what`: why something is not to be seen."""
+        said = []
+        if self.frame is not None and self.frame.written < len(self.frame.states):
+            many = counted(len(self.frame.states), "state")
+            said.append(f"{many} to be drawn with later ones or when the frame ends")
+        if what.displacements and self.frame is not None and len(self.frame.states) == 1:
+            said.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
+        if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
+            said.append(RIGID)
+        return said
+
+    def renumber(self, moved: Any) -> None:
+        """Groups have moved (heap.relocation): the open frame goes on with their new addresses."""
+        if self.frame is not None:
+            self.frame.states = [state.renumbered(moved) for state in self.frame.states]
+
+    def close(self) -> list[Path]:
+        """End the frame that is open, if any; returns all files written by now."""
+        if self.frame is not None and self.frame.written < len(self.frame.states):
+            self._write(self.frame)
+        self.frame = None
+        return self.files
+
+    def _write(self, frame: Frame) -> list[Path]:
+        paths = frame.save(self.folder / f"{self.name}-plot-{self.count}")
+        self.files += [path for path in paths if path not in self.files]
+        return paths
+
+
+class Frame:
+    """States of the block system that are drawn over each other.
+
+    what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
+    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its files.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.scale = 0.0
+        self.what = BARE
+        self.states: list[State] = []
+        self.written = 0
+
+    @property
+    def due(self) -> bool:
+        """True if the frame is to be written before there is more of it."""
+        return len(self.states) <= AT_ONCE or len(self.states) >= GROWTH * self.written
+
+    def add(self, state: State, what: What = BARE, scale: float = 0.0) -> None:
+        """Draw one more state over those before it, at the plot scale now in force."""
+        self.states.append(state)
+        self.what = self.what.with_more(what)
+        self.scale = scale
+
+    def save(self, base: Path) -> list[Path]:
+        """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
+        from matplotlib import rc_context
+
+        with rc_context({"svg.hashsalt": "udec", "hatch.linewidth": HATCH_WIDTH}):
+            paths = write(self.figure(), base)
+        self.written = len(self.states)
+        return paths
+
+    def figure(self) -> Figure:
+        """The picture of all states of the frame."""
+        box = self.what.window or limits(self.states, self.what.margin)
+        inches = scale_for(box, self.scale)
+        notes = self._notes()
+        key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour))
+        figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
+        last = self.states[-1]
+        title(axes, self.name, f"cycle {last.cycle}, t = {last.time:.4g} s")
+        draw_blocks(axes, self.states, inches)
+        for state in self.states:
+            draw_domains(axes, state.domains, inches)
+            if state.contacts is not None:
+                draw_contacts(axes, state.contacts, self.what.addresses, box)
+        if self.what.addresses:
+            draw_addresses(axes, last.outlines, inches)
+        notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))
+        figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
+        return figure
+
+    def _draw_inside(self, axes: Axes, size: float) -> list[str]:
+        """Zones, stresses, velocities and displacements of the last state; returns notes on their scales."""
+        what, first, now = self.what, self.states[0].field, self.states[-1].field
+        shown = self.states[-1].outlines
+        if now is None:
+            return []
+        if what.contour and len(now.stress):
+            key = KEY_WIDTH if len(self.states) > 1 else 0.0  # to the states, in inches
+            draw_contours(axes, now, shown, what.contour, key * axes.figure.dpi / axes.bbox.width)
+        draw_zones(axes, now, shown)
+        notes = []
+        if what.stresses and len(now.stress):
+            notes.append(draw_principal(axes, now, size))
+        if what.velocities:
+            notes.append(draw_velocities(axes, now, size))
+        if what.displacements and first is not None:
+            notes.append(draw_displacements(axes, first, now, size))
+        return notes
+
+    def _notes(self) -> list[str]:
+        """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""
+        outer = [f"outer domain: {domain.address}" for domain in self.states[-1].domains if domain.outer]
+        shown = [(state.cycle, state.contacts) for state in self.states if state.contacts is not None]
+        if not shown:
+            return outer
+        cycle, contacts = shown[-1]
+        force = np.hypot(*contacts.force.T).max(initial=0.0)
+        then = f", in cycle {cycle}" if cycle != self.states[-1].cycle else ""
+        return [*outer, f"largest contact force (resultant): {force:.4g} N/m{then}"]

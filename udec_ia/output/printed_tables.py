@@ -1,0 +1,299 @@
+"""PRINT: every field of every block, corner, contact and domain, and the linked lists as they run.
+
+The columns are the fields of the table of data groups, under their own names, so a new field shows up
+here by itself. What describes the rock (who, where, how fast, which force) comes first; the links that
+hold the map together follow in a table of their own. No line is wider than 120 columns: a table that
+would be is cut into several, one under the other, each beginning with the addresses.
+
+A damaged heap is printed as far as it can be walked, with a line that says where it breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeVar
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
+from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field, read_table
+from udec_ia.ops.commands.energy_account import Balance, balance
+from udec_ia.printable import counted
+from udec_ia.reader.list_walks import (
+    HEADS,
+    Unsound,
+    boundary,
+    corners,
+    extension,
+    groups,
+    kind_of,
+    loop,
+    members,
+    point,
+)
+from udec_ia.running.history_series import Series
+
+T = TypeVar("T")
+LINE = 120
+GAP = "  "
+TABLE = read_table()
+HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
+TABLES = {
+    "blocks": "block",
+    "contacts": "contact",
+    "corners": "corner",
+    "domains": "domain",
+    "gridpoints": "gridpoint",
+    "zones": "zone",
+    "boundaries": "bound",
+}
+NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
+LISTS = {"list": "block", "dlist": "domain"}
+ENERGY, HISTORIES = "energy", "histories"
+RATES = ("e11", "e12", "e22")
+CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table: its name, its unit ("" for none) and one text for each row."""
+
+    name: str
+    unit: str
+    cells: list[str]
+    left: bool = False
+
+    @cached_property
+    def width(self) -> int:
+        return max(map(len, self.lines))
+
+    @property
+    def lines(self) -> list[str]:
+        """Name, unit and cells, as they stand under each other."""
+        return [self.name, self.unit, *self.cells]
+
+    def aligned(self) -> list[str]:
+        """The lines at the column's width, numbers to the right."""
+        return [line.ljust(self.width) if self.left else line.rjust(self.width) for line in self.lines]
+
+
+def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
+    """The tables and lists asked for, in the order asked for (PRINT, report I-1).
+
+    what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
+    "dlist" (anticlockwise loop of every domain), "energy" (its account) and "histories" (what `series` have
+    recorded). Error 7 without any, 26 without an account, 10 for anything else.
+    """
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES])
+    if not what:
+        raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
+    parts = [_state(h)]
+    for name in what:
+        if name in TABLES:
+            parts += _group_tables(h, TABLES[name])
+            if name == "blocks" and any(iget(h, iad, HEAD) == g.MSDEF for iad in _all(h, "block")):
+                parts += _group_tables(h, "sdef")
+        elif name in LISTS:
+            parts += _lists(h, LISTS[name])
+        elif name == ENERGY:
+            parts.append(_energy(balance(h)))
+        elif name == HISTORIES:
+            parts += _histories(series)
+        else:
+            raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _state(h: Memory) -> str:
+    """One line: where the run stands and how large the map is."""
+    virtual = f" ({h.ci[g.NVIRT]} virtual)" if h.ci[g.NVIRT] else ""
+    return (
+        f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {counted(h.ci[g.NBLK], 'block')}, "
+        f"{counted(h.ci[g.NCON], 'contact')}{virtual}, {counted(h.ci[g.NDOM], 'domain')}"
+    )
+
+
+def _energy(b: Balance) -> str:
+    """PRINT ENERGY: what was put in, what is there, what was lost, and what is not accounted for."""
+    lines = [
+        ("there at first, and by commands", b.commands),
+        ("work of boundary conditions", b.boundary),
+        ("kinetic", b.kinetic),
+        ("strain of contacts", b.contacts),
+        ("strain of deformable blocks", b.blocks),
+        ("gravity, since the account began", b.potential),
+        ("lost to friction", b.friction),
+        ("lost to mass damping", b.mass_damping),
+        ("lost on the way to rest", b.relaxation),
+        ("lost to stiffness damping", b.stiffness_damping),
+        ("lost to yielding", b.yielding),
+        ("lost to changes of shape", b.shape),
+        ("not accounted for", b.residual),
+    ]
+    table = "\n".join(f"{name:34}{value:14.6g}" for name, value in lines)
+    per_cent = 100 * abs(b.residual) / b.throughput if b.throughput else 0.0
+    share = f"{per_cent:.2g} % of {b.throughput:.6g} that passed through"
+    return f"Energy, in J per m of thickness\n{table} = {share}"
+
+
+def _histories(series: Sequence[Series]) -> list[str]:
+    """PRINT HISTORIES: what is recorded, how many numbers there are, and between which they lie."""
+    if not series:
+        return ["No histories"]
+    heads = ("history", "of", "at", "every", "numbers", "minimum", "maximum", "last", "unit")
+    rows = []
+    for one in series:
+        values = one.numbers[:, 2]
+        known = values[~np.isnan(values)]
+        ends = [known.min(), known.max()] if len(known) else [np.nan, np.nan]
+        what = [f"{one.number}: {one.name}", one.group, one.place, str(one.every), str(len(values))]
+        last = values[-1] if len(values) else np.nan
+        rows.append([*what, *(f"{value:.6g}" for value in (*ends, last)), one.unit])
+    left = (*heads[:3], "unit")
+    columns = [
+        Column(head, "", list(cells), left=head in left)
+        for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
+    ]
+    return _stacked(f"Histories: {len(series)}", columns[0], columns[1:])
+
+
+def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:
+    """What can be reached, and the complaint if the walk broke off."""
+    reached: list[T] = []
+    try:
+        for step in walk:
+            reached.append(step)
+    except Unsound as broken:
+        return reached, [f"the heap is damaged here: {broken.detail}"]
+    return reached, []
+
+
+def _all(h: Memory, kind: str) -> Iterator[int]:
+    """Addresses of all groups of a kind; corners, grid-points and zones block by block."""
+    if kind == "corner":
+        for block in groups(h, "block"):
+            yield from corners(h, block)
+    elif kind in ("gridpoint", "zone"):
+        for block in groups(h, "block"):
+            yield from members(h, block, kind)
+    elif kind == "sdef":
+        for block in groups(h, "block"):
+            if iget(h, block, HEAD) == g.MSDEF:
+                yield extension(h, block)
+    else:
+        yield from groups(h, kind)
+
+
+def _group_tables(h: Memory, kind: str) -> list[str]:
+    """The tables of one kind of group: what it describes, then how it is linked."""
+    addresses, complaint = _until_broken(_all(h, kind))
+    name = NAMES.get(kind, kind)
+    if not addresses:
+        return [f"No {name}s", *complaint]
+    codes = HEADS.get(kind, ())
+    described: list[Column] = []
+    linked: list[Column] = []
+    for field in TABLE.group(kind).fields:
+        if field.role == "head":
+            types = [HEAD_NAMES.get(iget(h, iad, HEAD), "?") for iad in addresses]
+            described += [Column("type", "", types)] if len(codes) > 1 else []
+        else:
+            column = _field_column(h, addresses, field)
+            (described if field.role in ("data", "host") else linked).append(column)
+    if kind == "zone":
+        described += _strain_rates(h, addresses)
+    code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
+    address = Column("address", "", [str(iad) for iad in addresses])
+    title = f"{name.capitalize()}s: {len(addresses)}{code}"
+    return [
+        *_stacked(title, address, described),
+        *(_stacked(f"{name.capitalize()}s: links", address, linked) if linked else []),
+        *complaint,
+    ]
+
+
+def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:
+    """Strain rates of zones in the last step, which are not stored but follow from their grid-points."""
+    points = set(_until_broken(_all(h, "gridpoint"))[0])
+    triples = [{iget(h, iz, g.KZG, i) for i in range(3)} for iz in zones]
+    rates = [
+        strain_rates(h, iz) if triple <= points else (np.nan,) * 3
+        for iz, triple in zip(zones, triples, strict=True)
+    ]
+    return [Column(name, "1/s", [f"{rate[i]:.6g}" for rate in rates]) for i, name in enumerate(RATES)]
+
+
+def _field_column(h: Memory, addresses: Sequence[int], field: Field) -> Column:
+    offset = getattr(g, field.name)
+    at: Any = np.array(addresses, np.int64)
+    if field.real:
+        cells = [f"{value:.6g}" for value in getr(h, at, offset).tolist()]
+    else:
+        numbers = [integers(h, at, offset, i).tolist() for i in range(field.count)]
+        cells = [" ".join(map(str, row)) for row in zip(*numbers, strict=True)]
+    return Column(field.name, "" if field.unit == "-" else field.unit, cells)
+
+
+def _stacked(title: str, first: Column, columns: list[Column]) -> list[str]:
+    """As many tables as it takes to keep within LINE, each with the column `first` on its left."""
+    tables: list[list[Column]] = []
+    room = 0
+    for column in columns:
+        if column.width + len(GAP) > room:
+            tables.append([first])
+            room = LINE - first.width
+        tables[-1].append(column)
+        room -= column.width + len(GAP)
+    return [f"{title}{', continued' if i else ''}\n{_table(table)}" for i, table in enumerate(tables)]
+
+
+def _table(columns: list[Column]) -> str:
+    """Columns side by side under their names and, if any has one, their units."""
+    lines = [GAP.join(row).rstrip() for row in zip(*(column.aligned() for column in columns), strict=True)]
+    if not lines[1]:
+        del lines[1]
+    return "\n".join(lines)
+
+
+def _lists(h: Memory, kind: str) -> list[str]:
+    """PRINT List and DList: for each block or domain, what its list passes, in order."""
+    owners, complaint = _until_broken(groups(h, kind))
+    return [*(_one_list(h, kind, owner) for owner in owners), *complaint]
+
+
+def _one_list(h: Memory, kind: str, owner: int) -> str:
+    """The clockwise list of a block, or the anticlockwise loop of a domain with the blocks it goes along."""
+    if kind == "block":
+        title = f"block@{owner}: clockwise list"
+        items, complaint = _until_broken(boundary(h, owner))
+        along = []
+    else:
+        title = f"domain@{owner}{' (the outer one)' if owner == h.ci[g.IODPNT] else ''}: anticlockwise loop"
+        steps, complaint = _until_broken(loop(h, owner))
+        items = [item for item, _ in steps]
+        along = [Column("along", "", [f"block@{block}" for _, block in steps], left=True)]
+    names = Column("item", "", [f"{kind_of(h, item)}@{item}" for item in items], left=True)
+    return "\n".join(
+        [title, *([_table([names, *along, *_item_columns(h, items)])] if items else []), *complaint]
+    )
+
+
+def _item_columns(h: Memory, items: list[int]) -> list[Column]:
+    """OUTCP: where each item is; of a contact also what it joins and what it stands on."""
+    rows = []
+    for item in items:
+        if kind_of(h, item) == "corner":
+            place, rest = point(h, item, g.KXP, g.KYP), [""] * 4
+        else:
+            place = point(h, item, g.KXC, g.KYC)
+            pairs = ((g.KB1, g.KB2), (g.KCP1, g.KCP2), (g.KD1, g.KD2))
+            rest = [" - ".join(str(iget(h, item, field)) for field in pair) for pair in pairs]
+            rest.insert(1, CODES.get(iget(h, item, g.KCCOD), "?"))
+        rows.append([*(f"{value:.6g}" for value in place), *rest])
+    heads = (("x", "m"), ("y", "m"), ("KB1 - KB2", ""), ("on", ""), ("KCP1 - KCP2", ""), ("KD1 - KD2", ""))
+    return [Column(*head, list(cells)) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]

@@ -1,0 +1,333 @@
+"""The answer of a study of accuracy in five lines, its table, and its picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from udec_ia.output.block_drawing import INK, write
+from udec_ia.studies.accuracy_study import AccuracyStudy, is_within, pareto_set, path_differences
+from udec_ia.studies.deck_rewriting import list_changes
+from udec_ia.studies.extrapolation import Extrapolation, share
+from udec_ia.studies.setting_runner import Row
+from udec_ia.studies.study_table import StudyTable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+SLIPPED = "joints slipped"  # how SOLVE reports that its result depends on the loading path
+COLUMNS = ("setting", "error", "seconds", "predicted", "measured", "MB", "cycles", "what")
+SIZE = (7.5, 6.5)  # inches of the picture
+COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
+FRONT = "#33302b"
+SHORT, LONG = 8, 1e3  # axes, by the greatest over the smallest number on them
+SMALLEST = 1e-16  # error that is drawn for none
+
+
+# ---- the answer
+
+
+def answer(study: AccuracyStudy) -> list[str]:
+    """Five lines: what to change, what it costs, what limits the accuracy, the loading path, the unknown.
+
+    One line if there is nothing to compare.
+    """
+    if not study.rows:
+        return study.notes
+    return [
+        f"to change: {_change(study)}",
+        f"cost: {_cost(study)}",
+        f"accuracy: {_accuracy(study)}",
+        f"loading path: {_loading_path(study)}",
+        f"unknown: {_unknown(study)}",
+    ]
+
+
+def _change(study: AccuracyStudy) -> str:
+    row = study.best
+    if row is not None:
+        changes = "; ".join(list_changes(study.deck, row.setting, row.numbers, study.fraction))
+        return f"{row.setting.name} for {study.tolerance:g}: {changes}"
+    if study.obstacle:
+        return f"no recommendation: {study.obstacle}"
+    if len(study.levels) < 2:
+        return "no recommendation: no run with half the time-step has ended; give a greater --budget"
+    if study.tells:
+        nearest = min(study.rows, key=lambda row: row.error)
+        return (
+            f"no setting that was run keeps to {study.tolerance:g}: the least error is {nearest.error:.2e}, "
+            f"of {nearest.setting.name}; give a greater --budget or --tolerance"
+        )
+    if study.known and len(study.known) == len(study.references):
+        same = "is the same at all these steps, which says nothing about the step"
+        return f"no recommendation: {_all(study.known)} {same}; ask for another --quantity"
+    cure = "ask for another --quantity, give a greater --tolerance or --budget, or see --digits"
+    return f"no recommendation: {_without_reference(study)}; {cure}"
+
+
+def _cost(study: AccuracyStudy) -> str:
+    own = next((row for row in study.levels if row.setting.step == 1), None)
+    row = study.best
+    if own is None:
+        return "not known, as the deck as it is cannot be compared"
+    if row is None:
+        return f"the deck as it is takes {own.cost:.3g} s"
+    gain = own.cost / row.cost if row.cost else 1.0
+    margin = max(study.margins[name] for name in row.errors)
+    return (
+        f"{row.cost:.3g} s, {gain:.2f} times as fast as the deck as it is, with an error of {row.error:.1e} "
+        f"(known to within {margin:.1e})"
+    )
+
+
+def _accuracy(study: AccuracyStudy) -> str:
+    """What each quantity tends to, and what its error depends on."""
+    found = []
+    for name, one in study.references.items():
+        if one is None:
+            found.append(f"{name} has no value")
+        elif name not in study.known:
+            found.append(f"{name} {_why_unknown(study, name, one)}")
+        elif not one.error:
+            found.append(f"{name} is {one.value:.7g} at all these steps")
+        else:
+            by = "" if study.deck.has("solve") or math.isnan(one.order) else f", power {one.order:.2f}"
+            found.append(
+                f"{name} {one.value:.7g} is known to within {one.share:.1e}; the time-step limits it{by}"
+            )
+    found += _other_end_times(study)
+    return "; ".join(found) if found else "nothing was compared"
+
+
+def _why_unknown(study: AccuracyStudy, name: str, one: Extrapolation) -> str:
+    """Why a quantity is not compared, and the range of its values."""
+    values = study.values(name)
+    if one.is_zero:
+        why = f"tends to 0, known to within {one.error:.1e}: it has no relative error"
+    elif math.isfinite(one.order):
+        why = f"converges to {one.value:.7g}, known to within {one.share:.1e} only"
+    else:
+        why = f"does not converge at these steps, {one.value:.5g} is known to within {one.share:.1e} only"
+    every = study.sampled.get(name)
+    samples = f"; its samples are {every} cycles apart: take HISTORY 1" if every else ""
+    spread = f"{min(values):.5g} to {max(values):.5g}, mean {sum(values) / len(values):.5g}"
+    return f"{why}{samples} ({len(values)} runs: {spread})"
+
+
+def _other_end_times(study: AccuracyStudy) -> list[str]:
+    """Settings that do not end when the deck does, as cycles are whole and time-steps come out so."""
+    ends = [row.result.time for row in study.levels if row.result]
+    if not ends or study.deck.has("solve"):
+        return []
+    least = 0.1 * study.tolerance * abs(ends[0])
+    compared = [
+        (row.setting.name, row.result.time - ends[0]) for row in study.rows if row.result and row.compared
+    ]
+    off = [f"{name} by {time:.2g} s" for name, time in compared if abs(time) > least]
+    return [f"these end earlier or later than the deck: {', '.join(off)}"] if off else []
+
+
+def _loading_path(study: AccuracyStudy) -> str:
+    """Whether the result depends on the loading path, and by how much."""
+    parting = study.parting
+    if not study.deck.has("solve"):
+        scatters = any(one and one.error and math.isnan(one.order) for one in study.references.values())
+        if parting is None or not scatters:
+            return "not asked: the deck follows a motion, without SOLVE"
+        one, two = (row.setting.name for row in study.levels[-2:])
+        return (
+            f"the motion depends on small differences: {one} and {two} part at {parting.time:.4g} s, at the "
+            f"block that was at ({parting.x:.4g}, {parting.y:.4g}); at the end it is {parting.apart:.3g} m "
+            f"elsewhere, and the greatest displacement is {parting.moved:.3g} m"
+        )
+    found = path_differences(study)
+    much = ", ".join(f"{name} by {value:.2g}" for name, value in found.items())
+    if SLIPPED in study.solved:
+        how = f"SOLVE ... STATIC, another path, differs: {much}" if found else "by how much is unknown"
+        return f"depends on it ({study.solved}); {how}; load in steps, and compare"
+    if found and max(found.values()) > study.tolerance:
+        return f"depends on it, although no joint slip is reported: SOLVE ... STATIC differs: {much}"
+    return "does not depend on it: no joint slip is reported" + (
+        f"; SOLVE ... STATIC differs: {much}" if found else ""
+    )
+
+
+def _unknown(study: AccuracyStudy) -> str:
+    found = []
+    if any(name not in study.known for name in study.references):
+        found.append(_without_reference(study))
+    found += study.notes
+    not_compared = [row for row in study.rows if row.ran and row.why and row.why != study.obstacle]
+    if not_compared:
+        found.append(f"not compared: {', '.join(row.setting.name for row in not_compared)} (see --table)")
+    return "; ".join([*found, "other decks and quantities may need other settings"])
+
+
+def _without_reference(study: AccuracyStudy) -> str:
+    names = [name for name in study.references if name not in study.known]
+    return f"{_all(names)} {'has' if len(names) == 1 else 'have'} no reference that is known well enough"
+
+
+def _all(names: list[str]) -> str:
+    return " and ".join(part for part in (", ".join(names[:-1]), *names[-1:]) if part)
+
+
+# ---- the table
+
+
+def table_rows(study: AccuracyStudy) -> list[tuple[object, ...]]:
+    """A line for each setting, the cheapest first; those without a cost last: the COLUMNS."""
+    front = {id(row) for row in pareto_set(study.rows)}
+    return [
+        (
+            row.setting.name,
+            row.error,
+            row.cost,
+            row.predicted,
+            row.result.seconds if row.result else math.nan,
+            row.memory / 1e6 if row.result else math.nan,
+            row.result.cycles if row.result else 0,
+            _what(study, row, id(row) in front),
+        )
+        for row in _sorted(study)
+    ]
+
+
+def shown_rows(study: AccuracyStudy) -> list[tuple[object, ...]]:
+    """The same to be read: blank where there is no number."""
+    return [
+        tuple("" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row)
+        for row in table_rows(study)
+    ]
+
+
+def study_table(study: AccuracyStudy) -> StudyTable:
+    """The same with the value and the error of every quantity at every setting."""
+    columns: dict[str, Sequence[Any]] = dict(
+        zip(("run", *COLUMNS[1:]), zip(*table_rows(study), strict=True), strict=True)
+    )
+    rows = _sorted(study)
+    for name, one in study.references.items():
+        values = [row.result.quantities[name] if row.result else math.nan for row in rows]
+        compared = one is not None and not one.is_zero
+        errors = [
+            one.error_of(value) if one and compared and row.compared else math.nan
+            for row, value in zip(rows, values, strict=True)
+        ]
+        columns |= {f"value of {name}": values, f"error of {name}": errors}
+    return StudyTable(columns)
+
+
+def _sorted(study: AccuracyStudy) -> list[Row]:
+    return sorted(study.rows, key=lambda row: (row.cost, row.predicted))
+
+
+def _what(study: AccuracyStudy, row: Row, in_front: bool) -> str:
+    if not row.compared or row.result is None:
+        return why_not_compared(row)
+    found = ["recommended"] if row is study.best else []
+    found += ["Pareto set"] if in_front else []
+    found += ["within tolerance"] if is_within(row, study.margins, study.tolerance) else []
+    if row.setting.ratio == 1 and row.result.message != study.solved:
+        found.append(row.result.message)
+    return ", ".join(part for part in found if part)
+
+
+def why_not_compared(row: Row) -> str:
+    """What happened to a row that is not compared."""
+    if row.result is None:
+        return "not run: beyond the budget"
+    return f"not compared: {row.why}" if row.ran else f"{row.result.status}: {row.result.message}"
+
+
+def half_step(study: AccuracyStudy) -> list[str]:
+    """The check of report 4.6: the same run with half the time-step and twice the cycles."""
+    if len(study.levels) < 2:
+        rows = [row for row in study.rows if not row.compared]
+        return [*study.notes, *(f"{row.setting.name}: {why_not_compared(row)}" for row in rows)]
+    one, half = (row.result.quantities for row in study.levels[:2] if row.result)
+    found = []
+    for name in study.references:
+        a, b = one[name], half[name]
+        off = share(abs(a - b), b)
+        every = study.sampled.get(name)
+        fault = (
+            f"ITS SAMPLES, every {every} cycles, or the time-step are too far apart: take HISTORY 1 before a "
+            "smaller FRACTION"
+            if every
+            else "THE TIME-STEP IS TOO LARGE, take a smaller FRACTION"
+        )
+        differs = f" of it: {fault}" if off > study.tolerance else ""
+        found.append(f"{name}: {a:.7g}, with half the step {b:.7g}, off by {off:.1e}{differs}")
+    return found
+
+
+# ---- the picture
+
+
+def draw_costs(study: AccuracyStudy, title: str, base: Path) -> list[Path]:
+    """Draw error over time and over memory, each with its Pareto set, as base.png and base.svg.
+
+    Returns their names, none if no setting has an error.
+    """
+    rows = [row for row in study.rows if math.isfinite(row.error)]
+    if not rows:
+        return []
+    rows = [row for row in rows if row.error > 0] or rows  # what is its own reference says nothing
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context({"svg.hashsalt": "udec"}):
+        figure = Figure(SIZE, facecolor="white", layout="constrained")
+        FigureCanvasAgg(figure)
+        time, memory = figure.subplots(2, 1)
+        _panel(time, study, rows, [row.cost for row in rows], "seconds")
+        _panel(memory, study, rows, [row.memory / 1e6 for row in rows], "IA() in use, MB")
+        time.legend(fontsize=8)
+        figure.suptitle(title, fontsize=10, color=INK, parse_math=False)
+        return write(figure, base)
+
+
+def _panel(panel: Axes, study: AccuracyStudy, rows: list[Row], x: list[float], label: str) -> None:
+    error = [max(row.error, SMALLEST) for row in rows]
+    builds = [*dict.fromkeys(row.setting.build for row in rows)]
+    for build, colour in zip(builds, COLOURS, strict=False):
+        some = [k for k, row in enumerate(rows) if row.setting.build == build]
+        at = [x[k] for k in some], [error[k] for k in some]
+        panel.plot(*at, "o", color=colour, markersize=4, label=build)
+    front = [k for k in sorted(range(len(rows)), key=lambda k: (x[k], error[k])) if _best_until(k, x, error)]
+    at = [x[k] for k in front], [error[k] for k in front]
+    panel.plot(*at, color=FRONT, linewidth=0.8, label="Pareto set")
+    panel.axhline(study.tolerance, color=COLOURS[1], linewidth=0.8, linestyle="--", label="tolerance")
+    if study.best in rows:
+        k = rows.index(study.best)
+        panel.plot(x[k], error[k], "o", markersize=11, fillstyle="none", color=FRONT, label="recommended")
+    panel.set(xscale="log", yscale="log")
+    panel.set_xlabel(label, fontsize=9, color=INK)
+    panel.set_ylabel("greatest error", fontsize=9, color=INK)
+    _number_axis(panel.xaxis, x)
+    _number_axis(panel.yaxis, error)
+    panel.tick_params(labelsize=8, colors=INK)
+    panel.grid(color="#e4e0d8", linewidth=0.6)
+
+
+def _number_axis(axis: Axis, values: list[float]) -> None:
+    """Plain numbers along a logarithmic axis, several even where all `values` are of one size."""
+    from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
+
+    times = max(values) / min(values)
+    marks = LogLocator(subs=(1,) if times > LONG else (1, 2, 5))
+    axis.set_major_locator(marks if times > SHORT else AutoLocator())
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
+def _best_until(k: int, x: list[float], error: list[float]) -> bool:
+    """True if nothing that costs no more than row `k` has a smaller error, or as small a one for less."""
+    return not any(
+        a <= x[k] and e <= error[k] and (a, e) != (x[k], error[k]) for a, e in zip(x, error, strict=True)
+    )

@@ -1,0 +1,334 @@
+"""Rewrites the user's deck for a setting: the same lines with other numbers, and the list of these changes.
+
+Lines keep their numbers, as far as possible, so that they mean the same in both decks. Commands that only
+show or save something become comments: they take as long at any setting.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from udec_ia.deck.command_forms import Kind, match
+from udec_ia.deck.command_table import COMMANDS
+from udec_ia.deck.deck_statements import CONTINUATION, Statement, Token, obeyed, statements
+from udec_ia.deck.deck_variables import Values, Variables
+from udec_ia.deck.lines_and_calls import Call, command_of, parse
+from udec_ia.running.history_series import SOLVE_LIMIT
+from udec_ia.studies.settings import Fraction, Numbers, Setting
+from udec_ia.studies.study_run import RunResult
+from udec_ia.studies.survey_run import SurveyRun
+
+SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # become comments
+FILLED = "default"  # its values are in the lines
+RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
+WRITES = {one.name for one in COMMANDS if one.writes_words or one.begins}  # may set what makes a time-step
+ENDS = {one.name for one in COMMANDS if one.ends}
+EVERYWHERE = "-1E30 1E30 -1E30 1E30"
+OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
+
+
+class Piece(NamedTuple):
+    """Some lines as they are written. one: their statement, None for added lines.
+
+    number: of the first line with a word of it, or of the line that added lines follow.
+    """
+
+    one: Statement | None
+    number: int
+    lines: list[str]
+
+
+@dataclass(frozen=True)
+class _Change:
+    """What a setting changes in a statement.
+
+    longer: time-step of the deck over the new one there. cycles: of a CYCLE, last: limit of a SOLVE; None for
+    both: as they are.
+    """
+
+    setting: Setting
+    numbers: Numbers
+    longer: float
+    cycles: int | None
+    last: int | None
+
+
+class Deck:
+    """A deck with the values of its variables. Raises UdecError for a wrong one.
+
+    name: as errors call it. folder: where the names of its restart files begin.
+    """
+
+    def __init__(
+        self, text: str, name: str, values: Values | None = None, folder: Path | None = None
+    ) -> None:
+        self.text, self.name, self.folder = text, name, folder or Path()
+        variables = Variables(values)
+        variables.check(text.splitlines(), name)
+        self.statements = [*variables.filled(statements(text.splitlines(), name))]
+        self.commands = [_command(one) for one in self.statements]
+        ends = [k for k, command in enumerate(self.commands) if command in ENDS]
+        self.obeyed = ends[0] if ends else len(self.commands)  # statements before STOP
+        for k in range(self.obeyed):
+            if self.commands[k]:
+                parse(self.statements[k])
+        self._saves = "restart" in self.commands[1:]
+
+    def has(self, *commands: str) -> bool:
+        """True if one of these is in it."""
+        return any(one in commands for one in self.commands[: self.obeyed])
+
+    def calls(self, *commands: str) -> list[Call]:
+        """Its statements of these commands, in order."""
+        return [parse(one) for one, name in self._named() if name in commands]
+
+    @property
+    def rests(self) -> bool:
+        """True if it seeks nothing but rest: SOLVE, and no CYCLE of more than 0."""
+        return self.has("solve") and all(call.positional[0] == 0 for call in self.calls("cycle"))
+
+    @property
+    def statics(self) -> list[bool]:
+        """Of each CYCLE and SOLVE, in order: whether it is SOLVE ... STATIC, whose step is its own."""
+        return [bool(call.named.get("static")) for call in self.calls(*RUNS)]
+
+    @property
+    def is_stepped(self) -> bool:
+        """True if the time-step that FRACTION gives matters to a CYCLE or SOLVE."""
+        return not all(self.statics)
+
+    @property
+    def intervals(self) -> list[int]:
+        """Cycles from one sample to the next, of each HISTORY in order."""
+        return [int(call.positional[0]) for call in self.calls("history")]
+
+    def _named(self) -> Iterator[tuple[Statement, str]]:
+        yield from zip(self.statements[: self.obeyed], self.commands[: self.obeyed], strict=True)
+
+    # ---- rewritten
+
+    def pieces(
+        self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
+    ) -> list[Piece]:
+        """The deck for `setting`, as many pieces for all settings of the same types, in the order of lines.
+
+        fraction: that of the deck, where no line states it; None: it stays so.
+        """
+        numbers = numbers or Numbers()
+        stated = "fraction" in self._until_run() or not self.is_stepped
+        found: list[Piece] = []
+        run = last = 0  # CYCLEs and SOLVEs, and number of the last line, until here
+        for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
+            is_obeyed = k < self.obeyed
+            if is_obeyed and name in RUNS and run == 0:
+                soft = [f"CHANGE {EVERYWHERE} SDEF"] if setting.types == "sdef" else []
+                found.append(Piece(None, last, soft))
+            change = _Change(
+                setting,
+                numbers,
+                numbers.longer[run] if run < len(numbers.longer) else 1.0,
+                numbers.cycles[run] if run < len(numbers.cycles) else None,
+                numbers.limits[run] if run < len(numbers.limits) else None,
+            )
+            lines = self._lines(one, name, change) if is_obeyed else _unchanged(one)
+            first = one.tokens[0].line if one.tokens else one.lines[0]
+            found.append(Piece(one, first.number, lines))
+            last = one.lines[-1].number
+            if is_obeyed and name in ("start", "restart") and not stated and fraction is not None:
+                found.append(Piece(None, last, [_fraction(setting, numbers, fraction)]))
+            run += name in RUNS
+        return found
+
+    def written(
+        self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
+    ) -> str:
+        """The same as a text."""
+        return text_of(self.pieces(setting, numbers, fraction))
+
+    def setter(self, run: int) -> str:
+        """What may have set the time-step of a CYCLE or SOLVE past FRACTION; "" for nothing.
+
+        The last PATCH of FRAC before it, or else the last line that writes words or begins anew. run: number
+        of CYCLEs and SOLVEs before it.
+        """
+        ends = [k for k, name in enumerate(self.commands[: self.obeyed]) if name in RUNS]
+        before = [*zip(self.statements, self.commands, strict=True)][: ends[run]]
+        writes = [one for one, name in before if name in WRITES]
+        patches = [one for one in writes if any("FRAC" in word.text.upper() for word in one.tokens)]
+        if not writes:
+            return ""
+        one = (patches or writes)[-1]
+        return f"line {one.tokens[0].line.number}: {' '.join(line.text.strip() for line in one.lines)}"
+
+    def _until_run(self) -> list[str]:
+        found = self.commands[: self.obeyed]
+        ends = [k for k, name in enumerate(found) if name in RUNS]
+        return found[: ends[0]] if ends else found
+
+    def _lines(self, one: Statement, name: str, change: _Change) -> list[str]:
+        """The lines of a statement that is obeyed."""
+        if name in SHOWS or name == FILLED or (name == "save" and not self._saves):
+            return _as_comment(one)
+        if name == "restart" and not self._saves:
+            path = (self.folder / str(parse(one).named.get("path", "restart.h5"))).absolute()
+            return _replaced(one, f'RESTART "{path}"') if path.is_file() else _unchanged(one)
+        return _changed(one, name, change)
+
+
+def text_of(pieces: Iterable[Piece]) -> str:
+    """The text of a deck in pieces."""
+    return "".join(f"{line}\n" for piece in pieces for line in piece.lines)
+
+
+def _command(statement: Statement) -> str:
+    """Name of the command of a statement, "" for comments."""
+    command = command_of(statement)
+    if statement.tokens and command is None:
+        parse(statement)  # raises error 2
+    return command.name if command else ""
+
+
+# ---- the lines of a statement
+
+
+def _changed(one: Statement, name: str, change: _Change) -> list[str]:
+    """The lines of a statement of the command `name` for a setting."""
+    setting = change.setting
+    if name == "fraction":
+        call = parse(one)
+        words = "".join(f" {word.upper()}" for word in ("safe", "scaled") if call.named.get(word))
+        return _replaced(one, _fraction(setting, change.numbers, Fraction(call.positional[0], words)))
+    if name == "cycle":
+        same = change.cycles in (None, parse(one).positional[0])
+        return _unchanged(one) if same else _replaced(one, f"CYCLE {change.cycles}")
+    if name == "solve":
+        return _replaced(one, _solve(one, change))
+    if name == "history":
+        every = max(1, round(parse(one).positional[0] * change.longer))
+        return _with_texts(one, {one.tokens[1]: str(every)})
+    if name == "round":
+        return _multiplied(one, one.tokens[1:2], setting.rounding)
+    if name == "property" and setting.contact != 1:
+        return _multiplied(one, _numbers_after(one, *OF_CONTACTS), setting.contact)
+    if name == "property":
+        return _multiplied(one, _numbers_after(one, "KN", "KS"), setting.stiffness)
+    if name == "generate" and setting.edge != 1:
+        return _multiplied(one, _numbers_after(one, "Edge"), setting.edge)
+    makes_soft = name == "generate" or (name == "change" and parse(one).named.get("type") is not None)
+    return _as_comment(one) if setting.types and makes_soft else _unchanged(one)
+
+
+def _fraction(setting: Setting, numbers: Numbers, own: Fraction) -> str:
+    """FRACTION. own: that of the deck."""
+    value = (setting.safe or own.value * setting.step) * numbers.fit
+    safe = " SAFE" if setting.safe and "SAFE" not in own.words else ""
+    return f"FRACTION {value:.10g}{safe}{own.words}"
+
+
+def _solve(one: Statement, change: _Change) -> str:
+    call, setting = parse(one), change.setting
+    limit = round(call.named.get("limit", SOLVE_LIMIT) * max(change.longer, 1.0) / min(setting.ratio, 1.0))
+    limit = min(limit, change.last or limit)
+    static = " STATIC" if setting.static or call.named.get("static") else ""
+    mean = " MEAN" if call.named.get("criterion") == "mean" else ""
+    return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}{mean}"
+
+
+def _unchanged(one: Statement) -> list[str]:
+    return [line.text for line in one.lines]
+
+
+def _as_comment(one: Statement) -> list[str]:
+    words = {token.line for token in one.tokens}
+    return [f"* {line.text}" if line in words else line.text for line in one.lines]
+
+
+def _replaced(one: Statement, text: str) -> list[str]:
+    """`text` in the place of the first line with words of a statement, the others as comments."""
+    first = one.tokens[0].line
+    return [text if line == first else old for line, old in zip(one.lines, _as_comment(one), strict=True)]
+
+
+def _with_texts(one: Statement, texts: dict[Token, str]) -> list[str]:
+    """The lines of a statement with other texts in the place of some of its words."""
+    found: list[str] = []
+    for line in one.lines:
+        text = line.text
+        on_line = [token for token in texts if token.line == line]
+        for token in sorted(on_line, key=lambda token: -token.column):
+            text = text[: token.column - 1] + texts[token] + text[token.end - 1 :]
+        found.append(text)
+    return found
+
+
+def _multiplied(one: Statement, tokens: Sequence[Token], factor: float) -> list[str]:
+    """The lines of a statement with some of its numbers times a factor."""
+    if factor == 1:
+        return _unchanged(one)
+    numbers = {token: float(token.text.upper().replace("D", "E")) for token in tokens}
+    return _with_texts(one, {token: f"{value * factor:.10g}" for token, value in numbers.items()})
+
+
+def _numbers_after(one: Statement, *keywords: str) -> list[Token]:
+    """The numbers of keywords."""
+    words = parse(one).command.words
+    found = []
+    for word, number in zip(one.tokens[1:], one.tokens[2:], strict=False):
+        known = match(words, word.text)
+        if known is not None and known.keyword in keywords:
+            found.append(number)
+    return found
+
+
+# ---- in terms of the user's deck
+
+
+def list_changes(deck: Deck, setting: Setting, numbers: Numbers, fraction: Fraction | None) -> list[str]:
+    """--build and the lines of the user's deck to change for a setting."""
+    before = deck.pieces(Setting(setting.build), None, fraction)
+    numbers = replace(numbers, limits=())  # a SOLVE may take as long as it does
+    after = deck.pieces(setting, numbers, fraction)
+    found = [f"--build {setting.build}"]
+    own = deck.text.splitlines()
+    for old, new in zip(before, after, strict=True):
+        if old.lines == new.lines:
+            continue
+        if new.one is None:
+            found += [f"after line {new.number}: {line}" for line in new.lines]
+        else:
+            found.append(_change_of(new.one, own, new.lines))
+    return found
+
+
+def _change_of(one: Statement, own: list[str], new: list[str]) -> str:
+    """The lines with the words of a statement, from the first to the last, and what to write instead."""
+    held = {token.line.number for token in one.tokens}
+    first, last = min(held), max(held)
+    lines = f"line {first}" if first == last else f"lines {first}-{last}"
+    old = " ".join(own[number - 1].strip() for number in range(first, last + 1) if number in held)
+    begin = first - one.lines[0].number
+    texts = (obeyed(text).strip() for text in new[begin : begin + last - first + 1])
+    return f"{lines}: {old} -> {' '.join(text.removeprefix(CONTINUATION).strip() for text in texts if text)}"
+
+
+def own_lines(pieces: Sequence[Piece]) -> tuple[int, ...]:
+    """The number in the user's deck of each line of these pieces, or of the line before added ones."""
+    found: list[int] = []
+    for one, number, lines in pieces:
+        found += [line.number for line in one.lines] if one else [number] * len(lines)
+    return tuple(found)
+
+
+def at_own_line(result: RunResult, run: SurveyRun) -> RunResult:
+    """The same with the line of the user's deck in its message: the run had a rewritten one."""
+
+    def own(found: re.Match[str]) -> str:
+        k = int(found[2])
+        return f"{found[1]}{run.lines[k - 1] if 0 < k <= len(run.lines) else k}"
+
+    place = re.compile(rf"^({re.escape(run.file)}:)(\d+)")
+    return replace(result, message=place.sub(own, result.message))

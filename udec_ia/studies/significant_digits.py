@@ -1,0 +1,353 @@
+"""How many digits of each quantity a deck determines, what limits them, and which fields lose the others.
+
+Noise of the last place is passed on. As long as it is small it grows in proportion: it costs as many digits
+in words of any length. That is rounding. If 64-bit reals have less than half of the digits more that they
+should have, the motion itself loses them: that is chaos. What half the step changes by more than the spread
+is the error of the step.
+
+Digits that a sample of perturbed results shares, with confidence: D. Sohier, P. de Oliveira Castro,
+F. Fevotte, B. Lathuiliere, E. Petit, O. Jamond, Confidence intervals for stochastic arithmetic, ACM Trans.
+Math. Softw. 47(2), 2021, for errors that are normal and centred: with the confidence 1 - a the s first bits
+of a result are significant with the probability p if
+
+    s <= -log2(sigma/|mu|) - [1/2 log2((n - 1)/chi2) + log2(F((p + 1)/2))]
+
+sigma, mu: of the n results; chi2: the a/2 quantile of the chi-squared distribution with n - 1 degrees of
+freedom; F: quantile of the normal distribution.
+
+Fields. Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of
+that with noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying
+and isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002): first among passes, then among
+their fields. Where two sets without a common field each explain all of it, as in chaos, that is reported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from statistics import NormalDist, fmean, stdev
+
+import numpy as np
+
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.printable import counted
+from udec_ia.studies.perturbed_run import KICKS, PerturbedRun
+from udec_ia.studies.setting_runner import END_TIME, SettingRunner
+from udec_ia.studies.settings import Setting
+from udec_ia.studies.study_run import ENDED, RunResult
+
+PROBABILITY = CONFIDENCE = 0.95
+FEWEST = 3  # results of a sample
+HALVINGS = 200
+ENSEMBLE, OF_FIELDS = 16, 6  # runs of an ensemble, and of one with noise in some fields
+KICK = 4e-4  # seconds, about
+SHARE = 0.5  # of the digits that longer words have more; and of a spread, as four equal sources have
+COLUMNS = (
+    *("quantity", "value", "digits", "at least", "32-bit digits", "32-bit at least", "step"),
+    "what limits it",
+)
+FIELD_COLUMNS = ("pass", "field", "spread", "share")
+PASSES = {
+    "motion": ("block.KXD", "block.KYD", "block.KTD", "gridpoint.KXDG", "gridpoint.KYDG"),
+    "places": ("block.KX", "block.KY", "gridpoint.KXG", "gridpoint.KYG"),
+    "corners": ("corner.KXP", "corner.KYP", "corner.KXDP", "corner.KYDP"),
+    "outlines": ("corner.KXCP", "corner.KYCP", "corner.KRAD"),
+    "overlaps": ("contact.KCN", "contact.KCS"),
+    "contact forces": ("contact.KCFN", "contact.KCFS"),
+    "contact places": ("contact.KXC", "contact.KYC", "contact.KXDC", "contact.KYDC"),
+    "domains": ("domain.KUMAX",),
+    "stresses": ("zone.KZS11", "zone.KZS12", "zone.KZS22"),
+    "block strains": (
+        *(f"sdef.{name}" for name in ("KED11", "KED12", "KED21", "KED22")),
+        *(f"sdef.{name}" for name in ("KS111", "KS112", "KS121", "KS122")),
+    ),
+}
+
+
+# ---- digits of a sample
+
+
+@dataclass(frozen=True)
+class Digits:
+    """Of `runs` results. mean; spread: sigma/|mu|; digits: -log10 of it; lower: lower end of the interval.
+
+    full: digits that the words have; a sample of equal numbers has as many.
+    """
+
+    runs: int
+    mean: float
+    spread: float
+    digits: float
+    lower: float
+    full: float
+
+
+def shared_digits(results: Sequence[float], bits: int) -> Digits | None:
+    """The digits of results with so many bits in their fraction (52, 23); None for too few results."""
+    found = [value for value in results if math.isfinite(value)]
+    full = (bits + 1) * math.log10(2)
+    if len(found) < FEWEST:
+        return None
+    mean, sigma = fmean(found), stdev(found)
+    if sigma == 0:
+        return Digits(len(found), mean, 0.0, full, full, full)
+    spread = sigma / abs(mean) if mean else math.inf
+    own = min(-math.log10(spread), full) if spread < math.inf else 0.0
+    return Digits(len(found), mean, spread, own, own - doubt(len(found)), full)
+
+
+def doubt(runs: int) -> float:
+    """Decimal digits that a sample of so many results does not guarantee: the bracket above."""
+    quantile = chi_squared((1 - CONFIDENCE) / 2, runs - 1)
+    bits = 0.5 * math.log2((runs - 1) / quantile) + math.log2(NormalDist().inv_cdf((PROBABILITY + 1) / 2))
+    return bits * math.log10(2)
+
+
+@cache
+def chi_squared(p: float, degrees: int) -> float:
+    """The p quantile of the chi-squared distribution, by bisection."""
+    low, high = 0.0, degrees + 20 * math.sqrt(2 * degrees) + 50
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _gamma(degrees / 2, middle / 2) < p else (low, middle)
+    return (low + high) / 2
+
+
+def _gamma(a: float, x: float) -> float:
+    """The regularised lower incomplete gamma function (Abramowitz and Stegun 6.5.29)."""
+    if x <= 0:
+        return 0.0
+    term = total = 1 / a
+    n = a
+    while term > total * 1e-17:
+        n += 1
+        term *= x / n
+        total += term
+    return total * math.exp(a * math.log(x) - x - math.lgamma(a))
+
+
+# ---- ensembles of perturbed runs
+
+
+@dataclass
+class Ensemble:
+    """Perturbed runs of a deck. results: by word scheme. half: with half the step. notes: sentences."""
+
+    runner: SettingRunner
+    names: list[str] = field(default_factory=list)
+    plain: RunResult | None = None
+    half: RunResult | None = None
+    results: dict[str, list[RunResult]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def narrow(self) -> str:
+        """The word scheme with shorter reals, "" if it cannot run the deck."""
+        return next(iter([*self.results][1:]), "")
+
+    def digits(self, build: str, name: str) -> Digits | None:
+        """Of one quantity."""
+        bits = int(np.finfo(scheme(build).real_type).nmant)
+        return shared_digits(_values(self.results[build], name), bits)
+
+    def step_digits(self, name: str) -> float:
+        """Digits that a run with half the step shares, NaN without one."""
+        if self.plain is None or self.half is None:
+            return math.nan
+        a, b = self.plain.quantities[name], self.half.quantities[name]
+        return math.inf if a == b else -math.log10(abs(a - b) / abs(b)) if b else 0.0
+
+    def rows(self) -> list[tuple[object, ...]]:
+        """A line for each quantity: the COLUMNS."""
+        found: list[tuple[object, ...]] = []
+        for name in self.names:
+            one = self.digits(next(iter(self.results)), name)
+            two = self.digits(self.narrow, name) if self.narrow else None
+            parts = [getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")]
+            step = min(self.step_digits(name), one.full) if one else math.nan  # equal numbers share all
+            cells = ["" if math.isnan(number) else round(number, 1) for number in (*parts, step)]
+            found.append((name, one.mean if one else "", *cells, verdict(one, two, step, self.narrow)))
+        return found
+
+
+def _values(results: Sequence[RunResult], name: str) -> list[float]:
+    """A quantity of the runs that have ended, at rest where that was asked for."""
+    return [one.quantities[name] for one in results if one.status == ENDED and one.at_rest]
+
+
+def verdict(wide: Digits | None, narrow: Digits | None, step: float, short: str) -> str:
+    """What limits a quantity. short: the word scheme with shorter reals, "" if there is none."""
+    if wide is None:
+        return "too few runs have ended: see log.txt in their folders"
+    if narrow is None:
+        runs = f"too few runs of {short} have ended" if short else "no run has shorter reals"
+        sooner = "the time-step; " if step < wide.lower else ""
+        lost = f"noise takes {max(wide.full - wide.digits, 0):.1f} digits"
+        return f"{sooner}{lost}; whether that is rounding or chaos is not known, as {runs}"
+    more, gained = wide.full - narrow.full, max(wide.digits - narrow.digits, 0.0)
+    if gained < SHARE * more:
+        sooner = "; the time-step takes more" if step < wide.lower else ""
+        return f"chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left{sooner}"
+    lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
+    return f"the time-step; {lost}" if step < wide.lower else lost
+
+
+def measure_digits(runner: SettingRunner, runs: int) -> Ensemble:
+    """Run the ensembles of a deck, `runs` of each word scheme."""
+    options, deck, found = runner.options, runner.deck, Ensemble(runner)
+    runner.rehearse()
+    found.plain = runner.survey_deck()
+    if found.plain.status != ENDED or not runner.survey:
+        found.notes.append(f"the deck as it is gives no digits: {found.plain.message or 'it has no CYCLE'}")
+        return found
+    found.names = [*found.plain.quantities][1:]
+    row = runner.row(Setting(runner.wide, 0.5))
+    runner.run_rows([row])
+    if row.why:
+        found.notes.append(f"no digits of the step: {row.why}")
+    elif not deck.is_stepped:
+        found.notes.append("no digits of the step: SOLVE ... STATIC has its own, not that of FRACTION")
+    elif row.ran:
+        found.half = row.result
+    cycles = sum(one.done for one in runner.survey)
+    seconds = found.plain.seconds + KICK * min(cycles, KICKS)
+    runs = max(FEWEST, min(runs, int(max(runner.left, 0) * runner.processes / (2 * seconds))))
+    options.show(f"{runs} runs of {seconds:.3g} s in each of {' and '.join(runner.builds[:2])}")
+    for build in runner.builds[:2]:
+        found.results[build] = perturbed(runner, build, cycles, range(1, runs + 1))
+    every = max(1, cycles // KICKS)
+    kicks = "noise every " + ("cycle" if every == 1 else f"{every} cycles")
+    found.notes += runner.notes
+    found.notes.append(
+        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, {kicks}; "
+        "confidence and probability 95 %"
+    )
+    return found
+
+
+def perturbed(
+    runner: SettingRunner,
+    build: str,
+    cycles: int,
+    seeds: range,
+    fields: tuple[str, ...] = (),
+    label: str = "noise",
+) -> list[RunResult]:
+    """Perturbed runs of the deck as it is."""
+    text, options = runner.deck.written(Setting(build)), runner.options
+    runs = [
+        PerturbedRun(
+            f"{build},{label}={seed}",
+            text,
+            runner.deck.name,
+            quantities=(END_TIME, *options.quantities),
+            build=build,
+            constitutive=options.constitutive,
+            seed=seed,
+            fields=fields,
+            cycles=cycles,
+        )
+        for seed in seeds
+    ]
+    return runner.results(runs)
+
+
+# ---- fields
+
+
+class OutOfBudgetError(Exception):
+    """The budget has ended before the search."""
+
+
+class FieldBlame:
+    """Finds the fields from which the spread of a quantity of an ensemble comes.
+
+    quantity: by default the one with the fewest digits.
+    """
+
+    def __init__(self, found: Ensemble, quantity: str = "") -> None:
+        self.found = found
+        self.build, *_ = found.results
+        measured = {name: found.digits(self.build, name) for name in found.names}
+        known = {name: one for name, one in measured.items() if one is not None and one.spread > 0}
+        self.quantity = quantity or min(known, key=lambda name: known[name].digits, default="")
+        self.whole = known[self.quantity].spread if self.quantity in known else 0.0
+        self.cycles = sum(one.done for one in found.runner.survey)
+        self.tests: dict[tuple[str, ...], float] = {}  # spreads of the ensembles that were run
+
+    def spread(self, fields: Sequence[str]) -> float:
+        """The spread with noise in some fields only."""
+        key = tuple(sorted(fields))
+        if key not in self.tests:
+            if self.found.runner.left <= 0:
+                raise OutOfBudgetError
+            seeds, label = range(1, OF_FIELDS + 1), f"noise{len(self.tests)}"
+            results = perturbed(self.found.runner, self.build, self.cycles, seeds, key, label)
+            one = shared_digits(_values(results, self.quantity), 52)
+            self.tests[key] = one.spread if one else float("inf")
+        return self.tests[key]
+
+    def explains(self, fields: Sequence[str]) -> bool:
+        """True if noise in these fields alone is enough."""
+        return bool(fields) and self.spread(fields) >= SHARE * self.whole
+
+    def search(self) -> tuple[str, list[tuple[object, ...]]]:
+        """The result as a sentence, and a line for each field to blame: the FIELD_COLUMNS."""
+        if not self.quantity or self.whole == 0:
+            return "no digit is lost, so no field is to blame", []
+        try:
+            return self._search()
+        except OutOfBudgetError:
+            return (
+                f"{self.quantity}: the budget has ended before the fields were found; give a greater one",
+                [],
+            )
+
+    def _search(self) -> tuple[str, list[tuple[object, ...]]]:
+        passes = least_part([*PASSES], lambda names: self.explains(_fields(names)))
+        others = [name for name in PASSES if name not in passes]
+        if self.explains(_fields(others)):
+            return (
+                f"{self.quantity}: noise in {' and '.join(passes)} explains the loss, and so does noise in "
+                "all other passes: the digits are lost in the motion itself, whatever is perturbed"
+            ), self._rows(passes, _fields(passes))
+        fields = least_part([*_fields(passes)], self.explains)
+        return (
+            f"{self.quantity}: noise in these fields alone explains the loss; noise in other passes does not"
+        ), self._rows(passes, fields)
+
+    def _rows(self, passes: Sequence[str], fields: Sequence[str]) -> list[tuple[object, ...]]:
+        rows: list[tuple[object, ...]] = []
+        for name in passes:
+            for one in PASSES[name]:
+                if one in fields:
+                    spread = self.spread([one]) if len(fields) <= len(PASSES) else float("nan")
+                    rows.append((name, one, spread, spread / self.whole))
+        return rows
+
+
+def _fields(passes: Sequence[str]) -> list[str]:
+    return [one for name in passes for one in PASSES[name]]
+
+
+def least_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:
+    """A least part of `items` that is enough: none of the parts that were tried within it is (ddmin).
+
+    All of them are assumed to be enough.
+    """
+    parts = 2
+    while len(items) > 1:
+        size = -(-len(items) // parts)
+        chunks = [items[k : k + size] for k in range(0, len(items), size)]
+        rests = [[one for one in items if one not in chunk] for chunk in chunks] if len(chunks) > 2 else []
+        better = next((one for one in [*chunks, *rests] if is_enough(one)), None)
+        if better is not None:
+            parts = 2 if better in chunks else max(parts - 1, 2)
+            items = better
+        elif parts >= len(items):
+            break
+        else:
+            parts = min(2 * parts, len(items))
+    return items

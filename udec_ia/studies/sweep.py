@@ -1,0 +1,266 @@
+"""Sweep: runs one deck for all combinations of values of its variables.
+
+    0.3:0.9:7          seven values from 0.3 to 0.9 in equal steps
+    1e6:1e9:4:log      four values with a constant ratio
+    0.1,0.2,0.5        these; they may be words, too
+
+The steps of a range are calculated in fractions and rounded once, so 0.3:0.9:7 contains 0.4, and not
+0.39999999999999997. A range of integers with integers only gives integers.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import re
+import sys
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple, TextIO
+
+from udec_ia.deck.command_monitor import names_a_file
+from udec_ia.deck.deck_variables import NAME, Value, Variables, spelt
+from udec_ia.errors import UdecError
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
+from udec_ia.printable import MESSAGE, counted, printable
+from udec_ia.studies.execute_run import LOG
+from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities
+from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck
+from udec_ia.studies.study_table import (
+    BEFORE,
+    BEHIND,
+    StudyTable,
+    check_paths,
+    draw_table,
+    drawn_before,
+    picture_axes,
+    picture_paths,
+    table_paths,
+)
+from udec_ia.studies.worker_pool import StudyProgress, WorkerPool, processes
+
+LONGEST = 120  # characters of the name of a folder
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
+SHOWN = 3  # warnings that are shown
+DIGITS = 12  # of the values of a logarithmic range between its ends
+MOST_VALUES = 1_000_000  # values of a range
+FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
+GREATEST = int(sys.float_info.max)
+Given = Value | Iterable[Value]
+
+
+class Sweep(NamedTuple):
+    """The result of a sweep.
+
+    results: of all runs, in the order of the grid. table: a line for each. files: the table and its picture.
+    summary: sentences on how the runs ended and what they were warned of.
+    """
+
+    results: list[RunResult]
+    table: StudyTable
+    files: list[Path]
+    summary: list[str]
+
+
+def sweep(
+    deck: str | Path,
+    values: Mapping[str, Given],
+    *,
+    quantities: Iterable[str] = DEFAULTS,
+    stop: Iterable[str] = (),
+    every: int = EVERY,
+    limit: float | None = None,
+    build: str = DEFAULT_SCHEME,
+    constitutive: Iterable[str] = (),
+    out: str | Path | None = None,
+    jobs: int | None = None,
+    dask: str = "",
+    stream: TextIO | None = None,
+) -> Sweep:
+    """Run `deck`, a path or a text, for all combinations of `values`: a folder and a line of a table each.
+
+    values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7";
+    without any there is one run, of the deck as it is. quantities, stop, every, limit (s), build,
+    constitutive: of each run (StudyRun). out: folder of all files, by default NAME-sweep in the working
+    directory; results that it contains are used if their input is the same. jobs, dask: see WorkerPool.
+    stream: shows the progress.
+    A run that fails is a result. Raises ValueError for wrong arguments, UdecError 7 and 10 for variables of
+    the deck, 31 if a file cannot be written, is not of the program, would be written by two runs, or is in
+    use by another study: before any run, as far as that can be known. Ctrl-C leaves the table of the
+    completed runs.
+    """
+    text, file = _deck(deck)
+    stem = Path(file).stem if file else "deck"
+    folder = Path(f"{stem}-sweep" if out is None else out)
+    base, points, asked = folder / stem, grid(values), tuple(quantities)
+    names = [one.name for one in read_quantities(asked)]
+    _check_names(points[0], names)
+    Variables(points[0]).check(text.splitlines(), file or "text")
+    laws, rules = tuple(constitutive), tuple(stop)
+    run = StudyRun(stem, text, file, {}, asked, build, laws, rules, every, limit)
+    runs = [replace(run, name=folder_name(point) or stem, values=point) for point in points]
+    axes = picture_axes(points, names)
+    check_paths([*table_paths(base), *(picture_paths(base) if axes else ())])
+    earlier = drawn_before(base)
+
+    def write(results: list[RunResult]) -> Sweep:
+        table = StudyTable.of(results, points[0], names)
+        files = table.write(base, {"deck": text, "quantities": "\n".join(asked)})
+        files += draw_table(table, axes, names, stem, base) if axes else []
+        summary = [*progress.summary, *summarise_warnings(results, LOG), *_removed(earlier, files)]
+        return Sweep(results, table, files, summary)
+
+    pool = WorkerPool(folder, jobs=processes(jobs, runs), dask=dask)
+    with pool, StudyProgress(stream or io.StringIO(), len(runs)) as progress:
+        try:
+            return write(pool.results(runs, progress.show))
+        except KeyboardInterrupt as interrupt:
+            with suppress(Exception):
+                write(_completed(runs, pool.folder, progress.results))
+            raise type(interrupt)(str(folder)) from None
+
+
+def _completed(runs: list[StudyRun], folder: Path, shown: list[RunResult]) -> list[RunResult]:
+    """The results that there are, in the order of the runs; some may not have been shown yet."""
+    known = {one.name: one for one in shown}
+    found = (known.get(run.name) or kept_result(run, folder)[0] for run in runs)
+    return [one for one in found if one is not None]
+
+
+def _removed(earlier: list[Path], files: list[Path]) -> list[str]:
+    """Remove the pictures of an earlier sweep that do not belong to this one, and report it."""
+    old = [path for path in earlier if path not in files]
+    for path in old:
+        path.unlink(missing_ok=True)
+    return [f"removed, as of an earlier sweep: {', '.join(map(str, old))}"] if old else []
+
+
+def folder_name(values: Mapping[str, Value]) -> str:
+    """The name of the folder of a run with these values, "" if there are none."""
+    name = ",".join(f"{variable}={value}" for variable, value in values.items())
+    if len(name) <= LONGEST:
+        return name
+    return f"{name[:LONGEST]}~{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+
+
+def summarise_warnings(results: Iterable[RunResult], log: str) -> list[str]:
+    """A few lines on the warnings of `results`, the most frequent first. log: the file with all of them.
+
+    Warnings that differ in their numbers only count as one: the first is shown, with its run.
+    """
+    runs = [*results]
+    first: dict[str, tuple[str, str]] = {}
+    given: dict[str, int] = {}
+    for run in runs:
+        kinds = {NUMBER.sub("#", text): text for text in reversed(run.warnings)}
+        for kind, text in kinds.items():
+            first.setdefault(kind, (text, run.name))
+            given[kind] = given.get(kind, 0) + 1
+    often = sorted(given, key=lambda kind: -given[kind])
+    found = []
+    for kind in often[:SHOWN]:
+        text, name = first[kind]
+        many = f"{given[kind]} of {counted(len(runs), 'run')} {'was' if given[kind] == 1 else 'were'} warned"
+        found.append(printable(f"{many}: {text} ({name}, in {log})", MESSAGE))
+    if len(often) > SHOWN:
+        found.append(f"{counted(len(often) - SHOWN, 'other warning')}: see warnings in the table, and {log}")
+    return found
+
+
+def _check_names(point: Mapping[str, Value], quantities: list[str]) -> None:
+    """ValueError if a column of the table would have the name of another."""
+    taken = [*BEFORE, *point, *BEHIND]
+    for name in quantities:
+        if name in taken:
+            raise ValueError(f"the table has another column {name}: give the quantity a name, as in X={name}")
+
+
+def _deck(deck: str | Path) -> tuple[str, str]:
+    """The text of a deck and its name, "" if it is given as text."""
+    if isinstance(deck, Path) or os.path.isfile(deck) or names_a_file(deck):
+        return read_deck(Path(deck)), Path(deck).name
+    check_deck_text(deck, "the deck")
+    return deck, ""
+
+
+# ---- the values of variables
+
+
+def values_of(name: str, given: Given) -> list[Value]:
+    """The values of the variable `name`: one, several, or a text as above. ValueError for others."""
+    if not (isinstance(name, str) and NAME.fullmatch(name)):
+        raise ValueError(f"{name!r} is not the name of a variable: use a letter, then letters, digits and _")
+    found: list[Value]
+    if isinstance(given, str):
+        texts = [part.strip() for part in given.split(",")]
+        found = _range(name, given) if ":" in given else [_read(text) for text in texts]
+    else:
+        several = given if isinstance(given, Iterable) else [given]
+        found = [one.item() if hasattr(one, "item") else one for one in several]
+    if any(isinstance(one, int) and abs(one) > GREATEST for one in found):
+        raise ValueError(f"{name} cannot be greater than {float(GREATEST):.2g}, which no real number is")
+    try:
+        spellings = [spelt(name, value) for value in found]
+    except UdecError as error:
+        raise ValueError(f"{error.detail}: {error.advice}") from error
+    if not found:
+        raise ValueError(f"{name} has no value")
+    seen: set[Value] = set()
+    for value, spelling in zip(found, spellings, strict=True):
+        if value in seen or spelling in seen:  # 1000000 and 1e6 are one
+            raise ValueError(f"{name} has the value {spelling} twice")
+        seen |= {value, spelling}
+    return found
+
+
+def grid(values: Mapping[str, Given]) -> list[dict[str, Value]]:
+    """All combinations of the values of several variables, the last of which changes first."""
+    columns = [values_of(name, given) for name, given in values.items()]
+    names = [name.upper() for name in values]
+    if len({*names}) < len(names):
+        raise ValueError(f"a variable is given twice: {', '.join(names)}")
+    return [dict(zip(names, row, strict=True)) for row in product(*columns)]
+
+
+def _range(name: str, text: str) -> list[Value]:
+    first, *others = (part.strip() for part in text.split(":"))
+    how = others.pop() if len(others) == 3 else ""
+    try:
+        last, number = others
+        a, b, n = Fraction(first), Fraction(last), int(number)
+        float(a), float(b)
+    except (ValueError, OverflowError):
+        raise ValueError(f"{name}={text}: {FORM}") from None
+    if how not in ("", "log"):
+        raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one); {FORM}")
+    if not 2 <= n <= MOST_VALUES:
+        raise ValueError(f"{name}={text}: a range has 2 to {MOST_VALUES} values, not {n}")
+    if how == "log":
+        return _logarithmic(name, text, float(a), float(b), n)
+    steps = [a + (b - a) * k / (n - 1) for k in range(n)]
+    whole = all(isinstance(_read(end), int) for end in (first, last)) and all(
+        s.denominator == 1 for s in steps
+    )
+    return [int(step) if whole else float(step) for step in steps]
+
+
+def _logarithmic(name: str, text: str, a: float, b: float, n: int) -> list[Value]:
+    if not (a > 0 and b > 0):
+        raise ValueError(f"{name}={text}: a logarithmic range begins and ends above 0")
+    inner = [float(f"{a * (b / a) ** (k / (n - 1)):.{DIGITS}g}") for k in range(1, n - 1)]
+    return [a, *inner, b]
+
+
+def _read(text: str) -> Any:
+    """A number as such, anything else as it is."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

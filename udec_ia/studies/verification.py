@@ -1,0 +1,314 @@
+"""Problems with exact or published answers: `udec verify`. Finds, executes and judges them.
+
+The problems are files of plain Python, in examples/verify of the checkout and in the folder
+`verification_problems` here when the program is installed. One such file has
+
+    a docstring   its title; the problem, its formula and why the tolerance is what it is; its source
+    BLOCKS        the types of blocks that it makes sense for: "rigid", "sdef", "fdef"
+    REALS         64, if what it measures is lost in reals of 32 bits; it may be left out
+    solve(case)   builds and runs models, and yields an Answer for each number that is known
+
+The file of a user is run by its path: `udec verify mine.py`. verification_tools.py has what problems share.
+"""
+
+from __future__ import annotations
+
+import io
+import runpy
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from inspect import cleandoc
+from math import isfinite
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.model import Model
+from udec_ia.output.block_drawing import INK, title
+from udec_ia.output.history_graph import COLOURS
+from udec_ia.printable import MESSAGE, printable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from udec_ia.output.plot_frames import Frame
+
+
+@dataclass(frozen=True)
+class Answer:
+    """what, unit: of the number. within: reasons for an error, and how large it can be, in the unit.
+
+    The tolerance is the sum of these parts. Each is derived from what the run was given, as its reason says;
+    none is chosen so that the number holds.
+    """
+
+    what: str
+    unit: str
+    computed: float
+    exact: float
+    within: Mapping[str, float]
+
+    @property
+    def error(self) -> float:
+        """Computed less exact, in the unit."""
+        return self.computed - self.exact
+
+    @property
+    def tolerance(self) -> float:
+        """In the unit."""
+        return sum(self.within.values())
+
+    @property
+    def holds(self) -> bool:
+        """False also if any number is none."""
+        return isfinite(self.computed) and abs(self.error) <= self.tolerance
+
+    @property
+    def why(self) -> str:
+        """The parts of the tolerance, the largest first, without those below a thousandth of it."""
+        parts = sorted(self.within.items(), key=lambda part: -part[1])
+        return "; ".join(
+            f"{self.share(part)} {name}" for name, part in parts if part >= 1e-3 * self.tolerance
+        )
+
+    def share(self, part: float) -> str:
+        """A difference as a share of the exact number, or with its unit where that is 0."""
+        if self.exact != 0:
+            return f"{100 * part / abs(self.exact):.2g} %"
+        return f"{part:.2g} {self.unit}".rstrip()
+
+
+BLOCKS = ("rigid", "sdef", "fdef")
+CROSS = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]  # four zones about grid-point 5
+
+
+class Case:
+    """One run of a problem: `build` is the word scheme, `blocks` the type of the blocks in question."""
+
+    def __init__(self, name: str, build: str, blocks: str) -> None:
+        self.name = name
+        self.build = build
+        self.blocks = blocks
+        self._frame: Frame | None = None
+        self._graph: Figure | None = None
+
+    @property
+    def last_digit(self) -> float:
+        """Half the last digit of a real, as a share of it: what rounding can change it by."""
+        return float(np.finfo(scheme(self.build).real_type).eps) / 2
+
+    def model(self, law: Any = None) -> Model:
+        """An empty model in the words of this case. law: of constitutive number 2."""
+        return Model(build=self.build, constitutive=law, name=self.name)
+
+    def deform(self, m: Model, x1: float, x2: float, y1: float, y2: float) -> None:
+        """Make the rectangular block x1 x2 y1 y2 one of the type in question; fdef: four zones."""
+        if self.blocks == "sdef":
+            m.change(x1, x2, y1, y2, type="sdef")
+        elif self.blocks == "fdef":
+            points = [((x1 + x2) / 2, (y1 + y2) / 2), (x2, y1), (x2, y2), (x1, y2), (x1, y1)]
+            m.generate(x1, x2, y1, y2, "manual", points, CROSS)
+
+    def draw(self, m: Model, **what: Any) -> None:
+        """Draw the blocks as they stand, over those drawn before; `what` as for Model.plot."""
+        from udec_ia.output.drawn_outlines import snapshot
+        from udec_ia.output.plot_frames import Frame, What
+
+        asked = What(**what)
+        if self._frame is None:
+            self._frame = Frame(self.name)
+        self._frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
+
+    def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
+        """Draw curves, each x and y: exact ones as lines, by their names, computed ones as points.
+
+        x, y: what the axes show.
+        """
+        self._graph = draw_graph(self.name, x, y, exact, computed)
+
+    def picture(self) -> bytes | None:
+        """What was drawn, a PNG; None if nothing was."""
+        if self._graph is not None:
+            return png(self._graph)
+        return None if self._frame is None else png(self._frame.figure())
+
+
+HERE = Path(__file__).parent
+FOLDERS = (
+    HERE / "verification_problems",
+    HERE.parents[1] / "examples" / "verify",
+)  # of an installation, of a checkout
+PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify --list names"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One file. text: its docstring. blocks: types of blocks that it makes sense for. solve: runs it.
+
+    reals: bits that a real must have at least.
+    """
+
+    path: Path
+    text: str
+    blocks: tuple[str, ...]
+    solve: Callable[[Case], Iterator[Answer]]
+    reals: int = 32
+
+    @property
+    def name(self) -> str:
+        return self.path.stem
+
+    @property
+    def title(self) -> str:
+        """The first line of its text, without the full stop."""
+        return self.text.partition("\n")[0].rstrip(".")
+
+
+def problem_folder() -> Path:
+    """Where the problems that come with the program are."""
+    return next(one for one in FOLDERS if one.is_dir())
+
+
+def problem_names() -> list[str]:
+    """Of all problems that come with the program."""
+    return sorted(path.stem for path in problem_folder().glob("*.py"))
+
+
+def find_problem(name: str) -> Problem:
+    """The problem called `name`, or the one in the file of that path. ValueError if there is none."""
+    if name in problem_names():
+        return load_problem(problem_folder() / f"{name}.py")
+    if name.endswith(".py") and Path(name).is_file():
+        return load_problem(Path(name))
+    near = get_close_matches(name, problem_names(), n=1)
+    advice = f"did you mean {near[0]}?" if near else "udec verify --list names them all"
+    raise ValueError(f"there is no problem {printable(name)}: {advice}")
+
+
+def load_problem(path: Path) -> Problem:
+    """The problem in the file `path`. ValueError if it is none, or cannot be read as Python."""
+    try:
+        space = runpy.run_path(str(path))
+    except Exception as error:
+        text = f"{type(error).__name__}: {error}"
+        raise ValueError(f"{printable(str(path))} is not a problem: {printable(text, MESSAGE)}") from error
+    text, blocks, solve = space["__doc__"], space.get("BLOCKS", ()), space.get("solve")
+    if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
+        raise ValueError(f"{printable(str(path))} is not a problem: it needs {PARTS}")
+    return Problem(path, cleandoc(text), tuple(blocks), solve, space.get("REALS", 32))
+
+
+@dataclass
+class ProblemResult:
+    """What came of one case. failure: what ended it, or "". picture: PNG, if one was drawn."""
+
+    problem: Problem
+    build: str
+    blocks: str
+    answers: list[Answer] = field(default_factory=list)
+    failure: str = ""
+    picture: bytes | None = None
+    seconds: float = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """True if there are answers, and all are within their tolerances."""
+        return not self.failure and bool(self.answers) and all(one.holds for one in self.answers)
+
+    def line(self) -> str:
+        """One line."""
+        case = f"{self.problem.name}, {self.blocks}, {self.build}"
+        if self.failure:
+            return f"{case}: {self.failure}"
+        good = sum(one.holds for one in self.answers)
+        worst = max((abs(one.error) / one.tolerance for one in self.answers if one.tolerance), default=0.0)
+        return (
+            f"{case}: {good} of {len(self.answers)} within tolerance, at most {100 * worst:.0f} % of it, "
+            f"{self.seconds:.1f} s"
+        )
+
+
+def solve_problems(
+    problems: Iterable[Problem], builds: Sequence[str], blocks: Sequence[str]
+) -> Iterator[ProblemResult]:
+    """All cases of the problems: in the words of each of `builds`, with those of `blocks` that make sense.
+
+    Words whose reals are too short for a problem make no sense for it either.
+    """
+    for problem in problems:
+        for build in builds:
+            for kind in problem.blocks:
+                if kind in blocks and scheme(build).real_bits >= problem.reals:
+                    yield solve_case(problem, build, kind)
+
+
+def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
+    """One case. Whatever it raises, but an interrupt, becomes the `failure`."""
+    case, result, start = (
+        Case(problem.name, build, blocks),
+        ProblemResult(problem, build, blocks),
+        perf_counter(),
+    )
+    try:
+        result.answers.extend(problem.solve(case))
+        result.picture = case.picture()
+        if not result.answers:
+            result.failure = "it gives no answer"
+    except UdecError as error:
+        result.failure = printable(" ".join(str(error).split()), MESSAGE)
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        text = f"{type(error).__name__}: {error}, in line {place.lineno} of {place.filename}"
+        result.failure = printable(" ".join(text.split()), MESSAGE)
+    result.seconds = perf_counter() - start
+    return result
+
+
+# ---- graphs
+
+
+SIZE = (7.2, 3.4)  # inches of a graph
+DPI = 90
+SHADES = 64  # colours of a file
+
+
+def draw_graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> Figure:
+    """Curves over one pair of axes: `exact` as lines, `computed` as points in the same order of colours."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(SIZE, facecolor="white", layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    title(axes, name)
+    for colour, (label, points) in zip(COLOURS, exact.items(), strict=False):
+        axes.plot(*points, color=colour, linewidth=1.2, label=label)
+    for k, points in enumerate(computed):
+        style: dict[str, Any] = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
+        label = "computed" if k == 0 else "_"  # said once
+        axes.plot(*points, "o", color=COLOURS[k % len(COLOURS)], label=label, **style)
+    axes.set_xlabel(x, fontsize=9, color=INK)
+    axes.set_ylabel(y, fontsize=9, color=INK)
+    axes.grid(color="#e4e0d8", linewidth=0.6)
+    axes.tick_params(labelsize=8, colors=INK, width=0.6)
+    for spine in axes.spines.values():
+        spine.set(linewidth=0.6, color="#8a857c")
+    figure.legend(loc="outside right upper", fontsize=8, frameon=False)
+    return figure
+
+
+def png(figure: Figure) -> bytes:
+    """The picture as a small PNG."""
+    from PIL import Image
+
+    whole, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(whole, format="png", dpi=DPI)
+    with Image.open(whole) as image:
+        image.convert("RGB").quantize(SHADES).save(small, "png", optimize=True)
+    return small.getvalue()

@@ -1,0 +1,186 @@
+"""Functions that verification problems share: scenes, meshes of structured zones, and measurements."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+from udec_ia.layout import offsets as g
+from udec_ia.model import Model
+from udec_ia.studies.verification import Case
+
+REST = 1e-10  # force ratio of a state of rest, as far as the reals can hold one
+
+
+def on_base(case: Case, m: Model, b: float, h: float, n: int = 1, width: float = 12.0) -> None:
+    """Build a column of `n` blocks, `b` broad and `h` high, on a fixed rigid base with its top at y = 0.
+
+    The column stands in the middle of the base, which is `width` wide and 1 m high; the lowest block is
+    centred at (0, h/2). The blocks are of the type of the case.
+    """
+    m.block(-width / 2, -1, -width / 2, n * h, width / 2, n * h, width / 2, -1)
+    m.split(-width, 0, width, 0)
+    for x in (-b / 2, b / 2):
+        m.split(x, -0.5, x, n * h + 1)
+    m.delete(-width, -b / 2, 0, n * h)
+    m.delete(b / 2, width, 0, n * h)
+    for k in range(1, n):
+        m.split(-width, k * h, width, k * h)
+    m.fix(-width, width, -1, 0)
+    for k in range(n):
+        case.deform(m, -b / 2, b / 2, k * h, (k + 1) * h)
+
+
+def settle(case: Case, m: Model, stiffness: float, mass: float, limit: int = 20_000) -> None:
+    """Let the blocks come to rest under critical damping of a mass on a spring; then take it away.
+
+    The force ratio of rest is REST, or what the last digits of 32-bit reals leave.
+    """
+    frequency = sqrt(stiffness / mass) / (2 * pi)
+    m.damping(2.0, frequency, "mass")
+    m.damping(1.0, frequency, "internal")
+    m.solve(max(REST, 1e4 * case.last_digit), limit)
+    m.damping(0, 1)
+    m.damping(0, 1, "internal")
+
+
+def tilt(m: Model, g: float, angle: float, steps: int = 10, ratio: float = 1e-4) -> None:
+    """Turn gravity g from downwards towards x, by `angle` (rad) in `steps`, with rest between them."""
+    for k in range(1, steps + 1):
+        m.gravity(g * sin(angle * k / steps), -g * cos(angle * k / steps))
+        m.solve(ratio, 5000)
+
+
+def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
+    """Nodes of a rectangle, shape (ny + 1, nx + 1, 2)."""
+    return np.stack(np.meshgrid(np.linspace(x0, x1, nx + 1), np.linspace(y0, y1, ny + 1)), axis=-1)
+
+
+def quarter_ring(inner: float, outer: float, around: int, across: int) -> Any:
+    """Nodes of a quarter of a ring about the origin, x and y positive; rings grow geometrically."""
+    angle = np.linspace(np.pi / 2, 0.0, around + 1)
+    radius = np.geomspace(inner, outer, across + 1)
+    nodes = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)[None]
+    nodes[np.abs(nodes) < 1e-12 * outer] = 0.0
+    return nodes
+
+
+def outline(nodes: Any) -> list[float]:
+    """Corners of a block around the nodes: the four sides with all their nodes, clockwise: x, y, x, y ..."""
+    sides = [nodes[-1, :-1], nodes[::-1, -1][:-1], nodes[0, ::-1][:-1], nodes[:-1, 0]]
+    loop = np.concatenate(sides)
+    return [float(v) for v in loop.ravel()]
+
+
+def generate(model: Model, nodes: Any, mixed: bool = False) -> int:
+    """GENERATE for the block under the nodes; the diagonals of neighbouring quadrilaterals alternate."""
+    nx, ny = int(nodes.shape[1]) - 1, int(nodes.shape[0]) - 1
+    points = [(float(x), float(y)) for x, y in nodes.reshape(-1, 2)]
+
+    def number(i: int, j: int) -> int:  # grid-points are numbered from the last one
+        return len(points) - (j * (nx + 1) + i)
+
+    zones = []
+    for j in range(ny):
+        for i in range(nx):
+            a, b, c, d = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+            zones += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
+    low, high = nodes.reshape(-1, 2).min(axis=0), nodes.reshape(-1, 2).max(axis=0)
+    return model.generate(low[0], high[0], low[1], high[1], "manual", points, zones, mixed=mixed)
+
+
+def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
+    """GENERATE for the convex block whose centroid is nearest to (x, y): all zones meet in its centroid.
+
+    edge_points: grid-points on each edge besides those at its ends.
+    """
+    blocks = model.table("block")
+    row = blocks[((blocks["KX"] - x) ** 2 + (blocks["KY"] - y) ** 2).argmin()]
+    corners = model.table("corner")
+    ring = corners[corners["KNB"] == row["address"]]
+    outer: list[tuple[float, float]] = []
+    for start, end in zip(ring, np.roll(ring, -1), strict=True):
+        for k in range(edge_points + 1):
+            s = k / (edge_points + 1)
+            px, py = ((1 - s) * start[name] + s * end[name] for name in ("KXP", "KYP"))
+            outer.append((float(px), float(py)))
+    n, cx, cy = len(outer), float(row["KX"]), float(row["KY"])
+    zones = [(1, k + 2, (k + 1) % n + 2) for k in range(n)]  # the centroid, given last, is number 1
+    at = cx - 1e-6, cx + 1e-6, cy - 1e-6, cy + 1e-6
+    return model.generate(*at, "manual", [*reversed(outer), (cx, cy)], zones)
+
+
+def polar(model: Model) -> tuple[Any, Any, Any, Any]:
+    """Of all quadrilaterals: distance of the middle from the origin, radial and hoop stress, angle (rad).
+
+    The stress of one zone is exact to the first order of its size only: it is that of its middle and a
+    saw-tooth, which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the
+    second order.
+    """
+    points, zones = model.table("gridpoint"), model.table("zone")
+    at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}
+    middle = np.array([np.mean([at[i] for i in row], axis=0) for row in zones["KZG"].tolist()])
+    x, y, s11, s12, s22 = (
+        (one[0::2] + one[1::2]) / 2 for one in (*middle.T, zones["KZS11"], zones["KZS12"], zones["KZS22"])
+    )
+    r2 = x * x + y * y
+    radial = (s11 * x * x + s22 * y * y + 2 * s12 * x * y) / r2
+    hoop = (s11 * y * y + s22 * x * x - 2 * s12 * x * y) / r2
+    return np.sqrt(r2), radial, hoop, np.arctan2(y, x)
+
+
+def block(m: Model, x: float, y: float) -> Any:
+    """The row of the block whose centroid is nearest to (x, y)."""
+    blocks = m.table("block")
+    return blocks[((blocks["KX"] - x) ** 2 + (blocks["KY"] - y) ** 2).argmin()]
+
+
+def row(m: Model, kind: str, address: int) -> Any:
+    """The row of the group of `kind` at `address`."""
+    rows = m.table(kind)
+    return rows[(rows["address"] == address).argmax()]
+
+
+def push(m: Model, address: int, **velocity: float) -> None:
+    """Give a block velocities: KXD, KYD (m/s), KTD (rad/s)."""
+    m.patch(", ".join(f"block@{address}.{name} = {float(value)!r}" for name, value in velocity.items()))
+
+
+def step(m: Model) -> float:
+    """The time-step of the last CYCLE, s."""
+    return float(m.h.cr[g.TDEL])
+
+
+def now(m: Model) -> float:
+    """Time since the first cycle, s."""
+    return float(m.h.cd[g.TIME])
+
+
+def cycle_for(m: Model, seconds: float) -> None:
+    """Cycle for a time, with the time-step of the last CYCLE."""
+    m.cycle(max(1, round(seconds / step(m))))
+
+
+def crossings(t: Any, v: Any) -> Any:
+    """Times at which a vibration passes zero."""
+    t, v = np.asarray(t), np.asarray(v)
+    i = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1]))
+    return t[i] - v[i] * (t[i + 1] - t[i]) / (v[i + 1] - v[i])
+
+
+def period(t: Any, v: Any) -> float:
+    """Of a vibration about zero, from all its crossings."""
+    times = crossings(t, v)
+    return 2 * float(times[-1] - times[0]) / (len(times) - 1)
+
+
+def straight_line(t: Any, v: Any) -> tuple[float, float]:
+    """Slope of the straight line through velocities, and what all that is left beside the line can add to it.
+
+    Numbers of at most A, whatever their order, tilt the line that fits them best over a time T by 3 A/T.
+    """
+    t, v = np.asarray(t), np.asarray(v)
+    line = np.polyfit(t, v, 1)
+    return float(line[0]), 3 * float(np.abs(v - np.polyval(line, t)).max() / (t[-1] - t[0]))

@@ -1,0 +1,315 @@
+"""Many runs: in this process, in worker processes (joblib's loky), or on workers of dask.distributed.
+
+A run with a kept result of the same input is not repeated. A run whose process has died is tried once more,
+alone; if it dies again, that is its result. Kernels are compiled before the runs begin, by a rehearsal.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, suppress
+from itertools import islice
+from pathlib import Path
+from time import sleep
+from typing import Any, TextIO
+from urllib.parse import urlsplit
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from udec_ia.deck.deck_statements import at
+from udec_ia.errors import UdecError
+from udec_ia.printable import MESSAGE, counted, printable
+from udec_ia.studies.execute_run import execute, record_death, rehearse
+from udec_ia.studies.run_folder import check_replaceable, clear, incomplete, lock_folder
+from udec_ia.studies.study_run import DIED, ERROR, RunResult, StudyRun, kept_result
+
+RUNS = "runs"  # folder of the folders of runs
+KEPT = "kept"
+CHECKED = 1.0  # seconds between two checks whether the study still lives
+CONNECT = 30  # seconds to wait for a scheduler
+SCHEMES = ("", "tcp", "tls", "ucx", "ws", "wss")  # of its address
+PRINTED = "give the address that the scheduler prints when it starts, as in tcp://10.0.0.1:8786"
+Report = Callable[[RunResult, str], None]
+
+
+class WorkerPool:
+    """Executes runs in folders of `folder`/runs, which no other study can use until the end of `with`.
+
+    jobs: processes, by default one for each processor; 0 executes one after the other in this process.
+    dask: address of a scheduler; `folder` must be one that its workers have as well. timed: the seconds of
+    results are to be compared, so each process rehearses its first run. Raises ValueError for wrong jobs and
+    addresses; UdecError 31 if the folder cannot be written or another study uses it.
+    """
+
+    def __init__(
+        self, folder: str | Path, *, jobs: int | None = None, dask: str = "", timed: bool = False
+    ) -> None:
+        if jobs is not None and jobs < 0:
+            raise ValueError(f"{jobs} jobs: give 1 or more, or 0 for this process")
+        if dask:
+            _check_address(dask)
+        self.folder = Path(folder).absolute() / RUNS
+        self.jobs = (os.cpu_count() or 1) if jobs is None else jobs
+        self._dask, self._timed = dask, timed
+        self._executor: Any = None
+        self._compiled: set[str] = set()  # word schemes whose kernels have been compiled
+        self._open = ExitStack()
+
+    def __enter__(self) -> WorkerPool:
+        self._open.enter_context(lock_folder(self.folder))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end_processes()
+        self._open.close()
+
+    def results(self, runs: Sequence[StudyRun], report: Report = lambda result, why: None) -> list[RunResult]:
+        """The results of `runs`, in the same order.
+
+        report: takes each result as it comes, and where it comes from: "" if it is new, "kept", or what has
+        changed since a kept one was made. Raises ValueError if two runs have one name; UdecError 31, before
+        any run, if two runs save to one file, or if something that is not of the program is in the place of
+        a run. Results that are complete are kept, whatever ends the study.
+        """
+        names = [run.name for run in runs]
+        if len({*names}) < len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise ValueError(f"two runs are called {twice}: give each a name of its own")
+        check_saves(runs)
+        done: dict[str, RunResult] = {}
+        rest, why = list[StudyRun](), dict[str, str]()
+        for run in runs:
+            result, why[run.name] = kept_result(run, self.folder)
+            if result is None:
+                check_replaceable(self.folder / run.name)
+                rest.append(run)
+            else:
+                done[run.name] = result
+        for result in done.values():
+            report(result, KEPT)
+        for result in self._executed(rest) if rest else ():
+            done[result.name] = result
+            report(result, why[result.name])
+        return [done[name] for name in names]
+
+    def _executed(self, runs: list[StudyRun]) -> Iterator[RunResult]:
+        """The results of `runs` as they come."""
+        if self._dask:
+            return _on_dask(runs, self.folder, self._dask, self._timed)
+        if self.jobs == 0:
+            return (execute(run, self.folder, self._timed) for run in runs)
+        return self._in_processes(runs)
+
+    # ---- joblib
+
+    def _in_processes(self, runs: list[StudyRun]) -> Iterator[RunResult]:
+        left = {run.name: run for run in runs}
+        while left:
+            try:
+                for result in self._submitted([*left.values()]):
+                    del left[result.name]
+                    yield result
+            except BrokenProcessPool:
+                self._end_processes()
+                suspects = [run for run in left.values() if incomplete(run.name, self.folder)]
+                clear(self.folder)
+                for run in suspects or [*left.values()][:1]:
+                    yield self._alone(run)
+                    del left[run.name]
+
+    def _alone(self, run: StudyRun) -> RunResult:
+        """The result of a run that may have ended its process, as the only one in another."""
+        try:
+            return next(self._submitted([run]))
+        except BrokenProcessPool:
+            self._end_processes()
+            return record_death(run, self.folder)
+
+    def _submitted(self, runs: list[StudyRun]) -> Iterator[RunResult]:
+        """The results of `runs`, as they come."""
+        from joblib.externals.loky import ProcessPoolExecutor
+
+        if self._executor is None:
+            self._executor = ProcessPoolExecutor(
+                self.jobs, initializer=_begin_worker, initargs=(os.getpid(),)
+            )
+        if self.jobs > 1 and len(runs) > 1 and runs[0].build not in self._compiled:
+            self._executor.submit(rehearse, runs[0]).result()
+            self._compiled.add(runs[0].build)
+        waiting = iter(runs)
+        going = {self._submit(run) for run in islice(waiting, self.jobs)}
+        while going:
+            done, going = wait(going, return_when=FIRST_COMPLETED)
+            going |= {self._submit(run) for run in islice(waiting, len(done))}
+            for future in done:
+                yield future.result()
+
+    def _submit(self, run: StudyRun) -> Any:
+        return self._executor.submit(execute, run, self.folder, self._timed)
+
+    def _end_processes(self) -> None:
+        if self._executor is not None:
+            self._executor.shutdown(wait=True, kill_workers=True)
+            self._executor = None
+
+
+def run_all(
+    runs: Sequence[StudyRun],
+    folder: str | Path,
+    *,
+    jobs: int | None = None,
+    dask: str = "",
+    report: Report = lambda result, why: None,
+) -> list[RunResult]:
+    """The results of `runs`, each in a folder of its name in `folder`/runs: see WorkerPool."""
+    with WorkerPool(folder, jobs=processes(jobs, runs), dask=dask) as pool:
+        return pool.results(runs, report)
+
+
+def processes(jobs: int | None, runs: Sequence[StudyRun]) -> int:
+    """As many processes as are asked for, by default one for each processor, but no more than runs."""
+    return min((os.cpu_count() or 1) if jobs is None else jobs, max(len(runs), 1))
+
+
+def check_saves(runs: Sequence[StudyRun]) -> None:
+    """Error 31, at the statement, if runs save to one file: to an absolute path, or out of their folders."""
+    saved: dict[str, str] = {}
+    for run in runs:
+        for call in run.calls("save"):
+            path = str(call.named.get("path", ""))
+            outside = os.path.isabs(path) or os.path.normpath(path).split(os.sep)[0] == os.pardir
+            if not outside:
+                continue
+            file = os.path.realpath(path) if os.path.isabs(path) else os.path.normpath(path)
+            if saved.setdefault(file, run.name) != run.name:
+                error = UdecError(
+                    31,
+                    f"the runs {saved[file]} and {run.name} of this study would both write it",
+                    "save without a folder: each run has one of its own; or put a variable into the name",
+                )
+                raise at(error, call.places.get("path", call.head))
+
+
+def _begin_worker(parent: int) -> None:
+    """A worker leaves Ctrl-C to the process that has started it, and ends with that process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, args=(parent,), daemon=True).start()
+
+
+def _end_with_parent(parent: int) -> None:
+    while os.getppid() == parent:
+        sleep(CHECKED)
+    os._exit(1)
+
+
+# ---- dask
+
+
+def _check_address(address: str) -> None:
+    """ValueError for what cannot be the address of a scheduler: to try it takes long."""
+    scheme, _, place = address.rpartition("://")
+    if scheme == "inproc":  # a scheduler in this process, which has no port
+        return
+    try:
+        parts = urlsplit(f"//{place}")
+        good = scheme in SCHEMES and bool(parts.hostname) and bool(parts.port)
+    except ValueError:
+        good = False
+    if not good:
+        raise ValueError(f"no dask scheduler at {address}: it needs a host and a port; {PRINTED}")
+
+
+def _on_dask(runs: list[StudyRun], folder: Path, address: str, timed: bool) -> Iterator[RunResult]:
+    """The results of `runs` by the workers of a scheduler. If one dies, others do its run."""
+    try:
+        from distributed import Client, KilledWorker
+        from distributed import as_completed as completed
+    except ImportError as error:
+        advice = 'install its packages: python -m pip install "udec-ia[dask]"'
+        raise UdecError(23, "--dask needs dask.distributed", advice) from error
+    try:
+        client = Client(address, timeout=CONNECT, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise ValueError(f"no dask scheduler at {address}: {error}; {PRINTED}") from error
+    with client:
+        machines = {urlsplit(worker).hostname: worker for worker in client.nthreads()}
+        first = [client.submit(rehearse, runs[0], workers=[one], pure=False) for one in machines.values()]
+        for future in first:
+            with suppress(KilledWorker, CancelledError):  # the runs show it
+                future.result()
+        futures = {client.submit(execute, run, folder, timed, pure=False): run for run in runs}
+        for future in completed([*futures], loop=client.loop):
+            try:
+                yield future.result()
+            except KilledWorker:
+                yield record_death(futures[future], folder)
+
+
+# ---- progress
+
+
+class StudyProgress:
+    """Shows results of `total` runs on `stream` as they come: a bar on a terminal, else a line for each."""
+
+    def __init__(self, stream: TextIO, total: int) -> None:
+        self.stream, self.total = stream, total
+        self.results: list[RunResult] = []
+        self.kept = 0
+        self.changed: dict[str, int] = {}  # kept results that were not used: why, and how many
+        columns = (
+            BarColumn(None),
+            MofNCompleteColumn(),
+            TextColumn("{task.description}"),
+            TimeRemainingColumn(),
+        )
+        self._bar: Progress | None = None
+        if stream.isatty():
+            console = Console(file=stream, highlight=False)
+            self._bar = Progress(*columns, console=console, transient=True)
+            self._task = self._bar.add_task("", total=total)
+            self._bar.start()
+
+    def __enter__(self) -> StudyProgress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def show(self, result: RunResult, why: str) -> None:
+        """A result has come. why: see WorkerPool.results."""
+        self.results.append(result)
+        self.kept += why == KEPT
+        if why not in ("", KEPT):
+            self.changed[why] = self.changed.get(why, 0) + 1
+        line = _line(result) + {"": "", KEPT: " (kept)"}.get(why, f" (done again: {why})")
+        if self._bar is not None:
+            self._bar.update(self._task, advance=1, description=printable(line))
+            if result.status in (ERROR, DIED):
+                self._bar.console.print(line, markup=False)
+        else:
+            print(f"{len(self.results)} of {self.total}: {line}", file=self.stream, flush=True)
+
+    @property
+    def summary(self) -> list[str]:
+        """How many runs there are of each status, and how many were kept or repeated."""
+        states = dict.fromkeys(one.status for one in self.results)
+        counts = (f"{sum(one.status == state for one in self.results)} {state}" for state in states)
+        found = [f"{len(self.results)} of {self.total} runs: {', '.join(counts)}"]
+        if self.kept:
+            found.append(f"{counted(self.kept, 'run')} kept, as the input is the same")
+        return found + [f"{counted(n, 'run')} done again: {why}" for why, n in self.changed.items()]
+
+
+def _line(result: RunResult) -> str:
+    """A result on one line."""
+    text = f"{result.name} {result.status}"
+    if result.message:
+        text += f", {result.message}"
+    return printable(f"{text}, {counted(result.cycles, 'cycle')}, {result.seconds:.1f} s", MESSAGE)
