@@ -146,3 +146,24 @@ def test_what_the_commands_print_they_take(
         status, _, said = udec(verb, file, *before, f"corner@{iad}")
         assert status == 2
         assert f"there is no corner at {iad}" in " ".join(said.split())
+
+
+def test_names_of_files_cannot_steer_a_terminal(
+    model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = "a\x1b[31m"
+    model.save(tmp_path / f"{name}.h5")
+    for words in (
+        ["map", f"{name}.h5", "--out", f"{name}.png"],
+        ["graph", f"{name}.h5", "1", "--out", f"{name}.dot"],
+        ["what", f"{name}.h5", "1", "--out", f"{name}.svg"],
+        ["view", f"{name}.h5", "--out", f"{name}.html"],
+        ["check", f"{name}.h5"],
+        ["info", f"{name}.h5"],
+        ["what", f"{name}.h5", f"{name}@1"],
+    ):
+        main(words)
+        said = capsys.readouterr()
+        assert "\x1b" not in said.out + said.err, words
+        assert said.out + said.err
