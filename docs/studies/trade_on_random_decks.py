@@ -187,8 +187,7 @@ def judge_deck(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
         reason = "nothing comparable" if not found.known else "none within"
         return Verdict(kind, tolerance, reason if found.rows else found.notes[-1])
     with SettingRunner(found.deck, replace(options, budget=math.inf), folder) as runner:
-        runner.rehearse()
-        runner.survey_deck()
+        runner.run_own_deck()
         true = truth(found, runner)
         times, cheapest = over_cheapest(found, runner, true)
     ratios = [

@@ -81,7 +81,7 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
     )
     from udec_ia.studies.accuracy_study import study_accuracy
     from udec_ia.studies.study_run import read_deck
-    from udec_ia.studies.study_table import check_paths, picture_paths, table_paths
+    from udec_ia.studies.study_table import check_paths, picture_paths, table_path
 
     if args.digits or args.blame:
         return _digits(args)
@@ -89,14 +89,14 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         return _levers(args)
     base, options = _folder(args) / f"{args.deck.stem}-trade", _options(args)
     if not args.half_step:
-        check_paths([*table_paths(base), *picture_paths(base)])
+        check_paths([table_path(base), *picture_paths(base)])
     text, values = read_deck(args.deck), given(args.set)
     study = study_accuracy(text, args.deck.name, values, _folder(args), options, args.deck.parent)
     if args.half_step:
         return Listing(half_step(study), status=int(len(study.levels) < 2))
     if not study.rows:
         return Listing(answer(study), status=1)
-    files = study_table(study).write(base, {"deck": study.deck.text})
+    files = [study_table(study).write(base)]
     files += draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
     lines = [*answer(study), f"written: {', '.join(map(str, files))}"]
     return Listing(lines, COLUMNS, shown_rows(study)) if args.table or args.json else Listing(lines)
@@ -138,13 +138,12 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
 def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.reader.listing import Listing
     from udec_ia.studies.model_levers import COLUMNS, LEVERS, vary_lever
-    from udec_ia.studies.study_run import ENDED
 
     levers = _names("--levers", args.levers, LEVERS)
     with _runner(args) as runner:
-        result = runner.survey_deck()
-        if result.status != ENDED or not runner.survey:
-            return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
+        why = runner.run_own_deck()
+        if why:
+            return Listing([why], status=1)
         found = [vary_lever(runner, lever) for lever in levers]
     notes, rows = ([one for part in parts for one in part] for parts in zip(*found, strict=True))
     return Listing(notes, COLUMNS, rows)

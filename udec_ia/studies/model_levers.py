@@ -3,9 +3,9 @@
 Another value is another model, so its only reference is its own refinement: half and a quarter of the
 rounding length and of the zones' edge, twice and four times the stiffness. Where the three converge, the
 table shows how far the deck is from what they tend to. Types of blocks are set side by side. Time-steps
-follow from the model: a rehearsal of a few cycles measures them, and CYCLEs get the cycles of the same time.
-Smaller zones have more contacts on their joints, each with KN and KS; these are reduced by as much, so that
-the joints stay as stiff as they are.
+follow from the model: a run of one cycle for each CYCLE measures them, and CYCLEs get the cycles of the same
+time. Smaller zones have more contacts on their joints, each with KN and KS; these are reduced by as much, so
+that the joints stay as stiff as they are.
 """
 
 from __future__ import annotations
@@ -29,24 +29,32 @@ LEVERS = (*FACTORS, "types")
 ALL, CLOSED = "all contacts", "closed contacts"
 CONTACTS = (f"{ALL} = count contact where KCCOD != {VIRTUAL}", f"{CLOSED} = count contact where KCFN > 0")
 COLUMNS = ("lever", "times", "quantity", "value", "off its limit", "contacts", "closed", "seconds", "what")
-A_FEW = 1e-9  # seconds after which a rehearsal ends each CYCLE, at its second check
 
 
 def vary_lever(runner: SettingRunner, lever: str) -> tuple[list[str], list[tuple[object, ...]]]:
-    """Notes, and a line for each value of a lever and each quantity. runner: with its survey."""
+    """Notes, and a line for each value of a lever and each quantity. runner: it has run its own deck."""
     if not _applies(runner.deck, lever):
         why = "the deck has no line that this lever changes"
         return [], [(lever, math.nan, "", *(math.nan,) * 5, why)]
     own, notes = _settings(lever, Setting(runner.wide)), list[str]()
     if lever == "zones":
-        own, notes = _keep_stiffness(runner, own)
-    steps = [runner.rehearsal(one, A_FEW, CONTACTS)[1] for one in own]
-    numbers = [_same_time(runner.survey, found) for found in steps]
+        own, notes = _keep_stiffness(own, [result.quantities[ALL] for result in _rehearse(runner, own)])
+    _rehearse(runner, own)
+    numbers = [_same_time(runner.survey, runner.segments(f"rehearsal,{one.name}")) for one in own]
     results = runner.results(
-        [runner.run(one, put, f"model,{one.name}", CONTACTS) for one, put in zip(own, numbers, strict=True)]
+        [
+            runner.run(one, put, CONTACTS, name=f"model,{one.name}")
+            for one, put in zip(own, numbers, strict=True)
+        ]
     )
     names = [*results[0].quantities][1 : -len(CONTACTS)]
     return notes, [row for name in names for row in _rows(lever, own, results, name)]
+
+
+def _rehearse(runner: SettingRunner, settings: Sequence[Setting]) -> list[RunResult]:
+    """Runs with one cycle for each CYCLE and SOLVE."""
+    runs = [runner.run(one, None, CONTACTS, name=f"rehearsal,{one.name}", rehearsal=True) for one in settings]
+    return runner.results(runs)
 
 
 def _applies(deck: Deck, lever: str) -> bool:
@@ -67,12 +75,11 @@ def _settings(lever: str, own: Setting) -> list[Setting]:
     return [replace(own, **{PARTS[lever]: factor}) for factor in FACTORS[lever]]  # type: ignore[arg-type]
 
 
-def _keep_stiffness(runner: SettingRunner, own: Sequence[Setting]) -> tuple[list[Setting], list[str]]:
+def _keep_stiffness(own: Sequence[Setting], counts: Sequence[float]) -> tuple[list[Setting], list[str]]:
     """The same with KN, KS and the cohesions divided by the growth of the number of contacts; and a note.
 
     There is a contact at each grid-point of an edge, and these are properties of one contact.
     """
-    counts = [runner.rehearsal(one, A_FEW, CONTACTS)[0].quantities[ALL] for one in own]
     if not all(count > 0 for count in counts):  # one of them has failed, as its line shows
         return [*own], []
     found = [
@@ -83,10 +90,7 @@ def _keep_stiffness(runner: SettingRunner, own: Sequence[Setting]) -> tuple[list
         f"EDGE times {one.edge:g} has {count:.0f} contacts, and KN, KS and COHESION times {one.contact:g}"
         for one, count in zip(found, counts, strict=True)
     )
-    return found, [
-        "zones: a joint has a contact at each grid-point, and would be the stiffer the more there are "
-        f"(docs/deformable.md); so that joints stay as they are in the mean, {times}"
-    ]
+    return found, [f"zones: joints stay as stiff as they are in the mean: {times}"]
 
 
 def _same_time(survey: Sequence[Segment], rehearsed: Sequence[Segment]) -> Numbers:

@@ -1,12 +1,8 @@
 """Runs whose last digits are perturbed: every real that a cycle has changed is moved at random.
 
-Between two cycles each real of a block, corner, contact, domain, grid-point, zone or simply-deformable
-block that has changed since the last kick is moved by xi units in the last place, xi uniform in [-1, 1],
-and rounded to the nearest: one half of them stays, a quarter goes up by one unit, a quarter down. That is
-what the last rounding of each number would do if it were done once more, upwards or downwards at random;
-Verrou and CADNA do it to every operation, here it is done to what an operation leaves for the next cycle.
-Roundings inside a cycle, which only differences of nearly equal numbers make worse than that, are not
-repeated. Numbers that nothing changes, a mass or the place of a fixed block, stay: nothing rounds them.
+Between two cycles each real that has changed since the last kick is moved by xi units in the last place, xi
+uniform in [-1, 1], and rounded to the nearest: as if the last rounding of each number were done once more, up
+or down at random (Verrou and CADNA do that to every operation). Numbers that nothing changes stay.
 
 To bound the cost there are KICKS at most. If a kick stands for k cycles it is sqrt(k) units high: random
 steps, each as likely up as down, add up so.
@@ -25,7 +21,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import layouts, read_table
 from udec_ia.reader.group_tables import addresses as listed
 from udec_ia.running.observer import between_cycles
-from udec_ia.studies.observer import RunObserver
+from udec_ia.studies.execute_run import RunObserver
 from udec_ia.studies.study_run import StudyRun
 
 KICKS = 1000
@@ -47,11 +43,9 @@ class PerturbedRun(StudyRun):
 
     @property
     def made_of(self) -> dict[str, str]:
-        """See StudyRun."""
         return super().made_of | {"noise": f"{self.seed} {self.fields} {self.cycles}"}
 
     def observers(self, model: Any) -> list[RunObserver]:
-        """See StudyRun."""
         return [_Noise(model.array, self)] if self.seed else []
 
 
@@ -87,7 +81,6 @@ class _Noise(RunObserver):
         return min(n, self.every - int(h.ci[g.MCTOT]) % self.every)
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See RunObserver."""
         if between_cycles(array.h) and array.h.ci[g.MCTOT] % self.every == 0:
             self._kick(array)
 

@@ -2,8 +2,8 @@
 
 A block, corner, grid-point or zone at a place is the one that is nearest to it when the first cycle begins
 (before that, now). It is followed from there by its address as long as it exists. Contacts, domains and
-other groups come and go in a run: for these it is the one that is nearest now. Each class is one form of
-quantity; quantity_syntax.py describes how it is written.
+other groups come and go in a run: for these it is the one that is nearest now. Each function makes one form
+of quantity; quantity_syntax.py describes how it is written.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class NoValue(ValueError):
 
 
 class InitialState:
-    """What was where at first. places: what will be asked for."""
+    """Where groups were when the first cycle began. places: those that quantities name."""
 
     def __init__(self, places: frozenset[Place]) -> None:
         self._places = places
@@ -47,7 +47,7 @@ class InitialState:
         self._first: dict[str, tuple[Any, Any]] = {}  # kind: addresses (n,), places (n, 2)
 
     def begin(self, array: MainArray) -> None:
-        """A run of cycles begins: note what is where, unless there have been cycles before."""
+        """A run of cycles begins: record where groups are, unless there have been cycles before."""
         if self._array is not None and array.h.ci[g.MCTOT] > 0:
             return
         self._array = array
@@ -56,7 +56,7 @@ class InitialState:
         self._first = {kind: (atlas.groups[kind], positions(atlas, kind)) for kind in PLACES}
 
     def look(self, array: MainArray) -> None:
-        """A command was obeyed: forget what is not there any more, before its address has a new owner."""
+        """A command was obeyed: drop deleted groups, before their addresses belong to others."""
         if self._array is None:
             return
         there = {kind: addresses(array, kind) for kind in FOLLOWED}
@@ -97,11 +97,17 @@ class State:
 
     @cached_property
     def atlas(self) -> Atlas:
-        """What the words are."""
+        """Groups and fields of the state."""
         return Atlas(self.array.h)
 
+    def groups(self, kind: str, where: str) -> Any:
+        """Addresses of the groups of a kind for which a condition is true, ascending; "" is true for all."""
+        return satisfying(self.atlas, f"{kind} where {where}").at if where else self.atlas.groups[kind]
+
     def column(self, kind: str, name: str, at: Any) -> Any:
-        """The field `name` of the groups at `at`, as 64-bit reals (n,)."""
+        """The field or displacement `name` of the groups at `at`, as 64-bit reals (n,)."""
+        if name in DISPLACEMENTS:
+            return DISPLACEMENTS[name](self.start.displacements(self.atlas, kind, at))
         word: Word = next(one for one in self.atlas.shapes[kind] if one.name == name)
         return self.atlas.gather(word, at).astype(np.float64)
 
@@ -130,137 +136,92 @@ OVER: dict[str, Callable[[Any], Any]] = {"max": np.max, "min": np.min, "mean": n
 OF_SERIES: dict[str, Callable[[Any], Any]] = {**OVER, "last": lambda numbers: numbers[-1]}
 
 
-class Quantity:
-    """One number of a state."""
-
-    @property
-    def place(self) -> Place | None:
-        """Of the group that it has to find when the first cycle begins, if there is one."""
-        return None
-
-    def value(self, state: State) -> float:
-        """The number. Raises NoValue with the reason if there is none."""
-        raise NotImplementedError
-
-
 @dataclass(frozen=True)
-class OfModel(Quantity):
+class Quantity:
+    """One number of a state. value: gives it, or raises NoValue with the reason why there is none.
+
+    place: of the group that has to be found when the first cycle begins, if there is one.
+    """
+
+    value: Callable[[State], float]
+    place: Place | None = None
+
+
+def of_model(what: Recordable) -> Quantity:
     """A variable of the common block, or a quantity of the whole model."""
 
-    what: Recordable
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
-        h, what = state.array.h, self.what
+    def value(state: State) -> float:
+        h = state.array.h
         if what.kind == g.WHOLE_MODEL:
             return measured(h, what.number)
-        index = getattr(g, what.field.name)
         part = {"double": h.cd, "real": h.cr, "int": h.ci}[what.field.type]
-        return float(part[index])
+        return float(part[getattr(g, what.field.name)])
+
+    return Quantity(value)
 
 
-@dataclass(frozen=True)
-class AtPlace(Quantity):
+def at_place(kind: str, x: float, y: float, field: str) -> Quantity:
     """A field, or a displacement, of the group at a place."""
+    place = kind, x, y
 
-    kind: str
-    x: float
-    y: float
-    field: str
+    def value(state: State) -> float:
+        at = np.array([state.start.group(state.array, place)])
+        return float(state.column(kind, field, at)[0])
 
-    @property
-    def place(self) -> Place:
-        """See Quantity."""
-        return self.kind, self.x, self.y
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
-        at = np.array([state.start.group(state.array, self.place)])
-        return float(_column(state, self.kind, self.field, at)[0])
+    return Quantity(value, place)
 
 
-@dataclass(frozen=True)
-class Over(Quantity):
-    """The maximum, minimum, mean or sum of a field over the groups of a kind, or of those `where` says."""
+def over_groups(how: str, kind: str, field: str, where: str) -> Quantity:
+    """The maximum, minimum, mean or sum of a field over groups of a kind. where: condition, "" for all."""
 
-    how: str
-    kind: str
-    field: str
-    where: str
+    def value(state: State) -> float:
+        found = state.column(kind, field, state.groups(kind, where))
+        found = found[~np.isnan(found)] if field in DISPLACEMENTS else found
+        if not len(found) and how != "sum":
+            raise NoValue(f"there is no such {kind}")
+        return float(OVER[how](found))
 
-    def value(self, state: State) -> float:
-        """See Quantity."""
-        found = _column(state, self.kind, self.field, _groups(state, self.kind, self.where))
-        found = found[~np.isnan(found)] if self.field in DISPLACEMENTS else found
-        if not len(found) and self.how != "sum":
-            raise NoValue(f"there is no such {self.kind}")
-        return float(OVER[self.how](found))
+    return Quantity(value)
 
 
-@dataclass(frozen=True)
-class Count(Quantity):
-    """How many groups of a kind there are, or that `where` says."""
-
-    kind: str
-    where: str
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
-        return float(len(_groups(state, self.kind, self.where)))
+def count(kind: str, where: str) -> Quantity:
+    """The number of groups of a kind. where: condition, "" for all."""
+    return Quantity(lambda state: float(len(state.groups(kind, where))))
 
 
-@dataclass(frozen=True)
-class OfHistory(Quantity):
+def of_history(how: str, number: int) -> Quantity:
     """The last, greatest, least or mean number that a history has recorded. number: of it, from 1."""
 
-    how: str
-    number: int
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
-        if self.number > len(state.series):
-            raise NoValue(f"there is no history {self.number}")
-        numbers = state.series[self.number - 1].numbers[:, 2]
+    def value(state: State) -> float:
+        if number > len(state.series):
+            raise NoValue(f"there is no history {number}")
+        numbers = state.series[number - 1].numbers[:, 2]
         if not len(numbers):
-            raise NoValue(f"history {self.number} has recorded nothing")
-        return float(OF_SERIES[self.how](numbers))
+            raise NoValue(f"history {number} has recorded nothing")
+        return float(OF_SERIES[how](numbers))
+
+    return Quantity(value)
 
 
-@dataclass(frozen=True)
-class OfEnergy(Quantity):
-    """A line of the account of the energy."""
+def of_energy(name: str) -> Quantity:
+    """A line of the energy account."""
 
-    name: str
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
+    def value(state: State) -> float:
         try:
-            return float(getattr(balance(state.array.h), self.name))
+            return float(getattr(balance(state.array.h), name))
         except UdecError as error:
             raise NoValue(f"{error.detail}: {error.advice}") from error
 
+    return Quantity(value)
 
-@dataclass(frozen=True)
-class OfSolve(Quantity):
+
+def of_solve(name: str) -> Quantity:
     """How the last SOLVE has ended."""
 
-    name: str
-
-    def value(self, state: State) -> float:
-        """See Quantity."""
+    def value(state: State) -> float:
         if not state.solutions:
             raise NoValue("there was no SOLVE")
-        found = getattr(state.solutions[-1], self.name)
-        return float(len(found) if self.name == "fallen" else found)
+        found = getattr(state.solutions[-1], name)
+        return float(len(found) if name == "fallen" else found)
 
-
-def _groups(state: State, kind: str, where: str) -> Any:
-    """Addresses of the groups of a kind, ascending."""
-    return satisfying(state.atlas, f"{kind} where {where}").at if where else state.atlas.groups[kind]
-
-
-def _column(state: State, kind: str, field: str, at: Any) -> Any:
-    """A field or displacement of groups (n,)."""
-    if field in DISPLACEMENTS:
-        return DISPLACEMENTS[field](state.start.displacements(state.atlas, kind, at))
-    return state.column(kind, field, at)
+    return Quantity(value)

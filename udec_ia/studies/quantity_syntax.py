@@ -110,22 +110,22 @@ def _quantity(text: str, start: int) -> Quantity:
     if found := AT_PLACE.fullmatch(text, start):
         kind = _kind(text, found, 1)
         x, y = (_number(text, found, part) for part in (2, 3))
-        return forms.AtPlace(kind, x, y, _field(text, found, 4, kind))
+        return forms.at_place(kind, x, y, _field(text, found, 4, kind))
     if found := HISTORY.fullmatch(text, start):
         number = int(_number(text, found, 2))
         if number < 1:
             raise Wrong(text, found.start(2), "histories count from 1")
-        return forms.OfHistory(_one_of(text, found, 1, OF_SERIES), number)
+        return forms.of_history(_one_of(text, found, 1, OF_SERIES), number)
     if found := COUNT.fullmatch(text, start):
         kind = _kind(text, found, 1)
-        return forms.Count(kind, _where(text, found, 2, kind))
+        return forms.count(kind, _where(text, found, 2, kind))
     if found := OVER_ALL.fullmatch(text, start):
         how, kind = _one_of(text, found, 1, OVER), _kind(text, found, 2)
-        return forms.Over(how, kind, _field(text, found, 3, kind), _where(text, found, 4, kind))
+        return forms.over_groups(how, kind, _field(text, found, 3, kind), _where(text, found, 4, kind))
     if found := OF.fullmatch(text, start):
         if found[1] == "energy":
-            return forms.OfEnergy(_one_of(text, found, 2, ENERGIES))
-        return forms.OfSolve(_one_of(text, found, 2, SOLUTION))
+            return forms.of_energy(_one_of(text, found, 2, ENERGIES))
+        return forms.of_solve(_one_of(text, found, 2, SOLUTION))
     return _of_model(text, start)
 
 
@@ -147,30 +147,28 @@ def _of_model(text: str, start: int) -> Quantity:
         name = what.field.name
         advice = f"write {what.group}(x, y).{name}, or max {what.group}.{name}"
         raise Wrong(text, start, f"{name} of which {what.group}? {advice}")
-    return forms.OfModel(what)
+    return forms.of_model(what)
 
 
 def _kind(text: str, found: re.Match[str], part: int) -> str:
-    if found[part] not in KINDS:
-        advice = _suggestion(found[part], KINDS) or f"there are {', '.join(KINDS)}"
-        raise Wrong(text, found.start(part), f"no kind of group {found[part]!r}: {advice}")
-    return found[part]
+    return _one_of(text, found, part, KINDS, "no kind of group is called so")
 
 
 def _field(text: str, found: re.Match[str], part: int, kind: str) -> str:
     known = [word.name for word in _empty().shapes[kind]] + [*(DISPLACEMENTS if kind in PLACES else ())]
-    name = found[part].upper()
-    if name not in known:
-        advice = _suggestion(name, known) or f"it has {', '.join(known)}"
-        raise Wrong(text, found.start(part), f"a {kind} has no field {found[part]}: {advice}")
-    return name
+    return _one_of(text, found, part, known, f"a {kind} has no field {found[part]}")
 
 
-def _one_of(text: str, found: re.Match[str], part: int, known: Iterable[str]) -> str:
-    name = found[part].lower()
-    if name not in known:
-        raise Wrong(text, found.start(part), f"there is no {found[part]!r} here, but {', '.join(known)}")
-    return name
+def _one_of(
+    text: str, found: re.Match[str], part: int, known: Iterable[str], what: str = "this is not known here"
+) -> str:
+    """The one of `known` that is written there, in upper or lower case."""
+    names = {name.upper(): name for name in known}
+    typed = found[part].upper()
+    if typed not in names:
+        advice = _suggestion(typed, names.values()) or f"there are {', '.join(names.values())}"
+        raise Wrong(text, found.start(part), f"{what}: {advice}")
+    return names[typed]
 
 
 def _where(text: str, found: re.Match[str], part: int, kind: str) -> str:

@@ -1,9 +1,8 @@
 """How many digits of each quantity a deck determines, what limits them, and which fields lose the others.
 
-Noise of the last place is passed on. As long as it is small it grows in proportion: it costs as many digits
-in words of any length. That is rounding. If 64-bit reals have less than half of the digits more that they
-should have, the motion itself loses them: that is chaos. What half the step changes by more than the spread
-is the error of the step.
+Small noise in the last place grows in proportion: rounding costs as many digits in words of any length. If
+64-bit reals have less than half of the digits more that they should have, the motion itself loses them: that
+is chaos. What half the step changes by more than the spread is the error of the step.
 
 Digits that a sample of perturbed results shares, with confidence: D. Sohier, P. de Oliveira Castro,
 F. Fevotte, B. Lathuiliere, E. Petit, O. Jamond, Confidence intervals for stochastic arithmetic, ACM Trans.
@@ -15,10 +14,9 @@ of a result are significant with the probability p if
 sigma, mu: of the n results; chi2: the a/2 quantile of the chi-squared distribution with n - 1 degrees of
 freedom; F: quantile of the normal distribution.
 
-Fields. Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of
-that with noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying
-and isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002): first among passes, then among
-their fields. Where two sets without a common field each explain all of it, as in chaos, that is reported.
+Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of that with
+noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying and
+isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002), first among passes, then among fields.
 """
 
 from __future__ import annotations
@@ -26,7 +24,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from statistics import NormalDist, fmean, stdev
 
 import numpy as np
@@ -40,7 +37,6 @@ from udec_ia.studies.study_run import ENDED, RunResult
 
 PROBABILITY = CONFIDENCE = 0.95
 FEWEST = 3  # results of a sample
-HALVINGS = 200
 ENSEMBLE, OF_FIELDS = 16, 6  # runs of an ensemble, and of one with noise in some fields
 KICK = 4e-4  # seconds, about
 SHARE = 0.5  # of the digits that longer words have more; and of a spread, as four equal sources have
@@ -105,27 +101,13 @@ def doubt(runs: int) -> float:
     return bits * math.log10(2)
 
 
-@cache
 def chi_squared(p: float, degrees: int) -> float:
-    """The p quantile of the chi-squared distribution, by bisection."""
-    low, high = 0.0, degrees + 20 * math.sqrt(2 * degrees) + 50
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _gamma(degrees / 2, middle / 2) < p else (low, middle)
-    return (low + high) / 2
+    """The p quantile of the chi-squared distribution (E. B. Wilson and M. M. Hilferty, PNAS 17, 1931).
 
-
-def _gamma(a: float, x: float) -> float:
-    """The regularised lower incomplete gamma function (Abramowitz and Stegun 6.5.29)."""
-    if x <= 0:
-        return 0.0
-    term = total = 1 / a
-    n = a
-    while term > total * 1e-17:
-        n += 1
-        term *= x / n
-        total += term
-    return total * math.exp(a * math.log(x) - x - math.lgamma(a))
+    For the 0.025 quantile it is too small: by half for 2 degrees, by 2 % for 7, which leaves more doubt.
+    """
+    part = 2 / (9 * degrees)
+    return float(degrees * (1 - part + NormalDist().inv_cdf(p) * math.sqrt(part)) ** 3)
 
 
 # ---- ensembles of perturbed runs
@@ -141,11 +123,6 @@ class Ensemble:
     half: RunResult | None = None
     results: dict[str, list[RunResult]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-
-    @property
-    def narrow(self) -> str:
-        """The word scheme with shorter reals, "" if it cannot run the deck."""
-        return next(iter([*self.results][1:]), "")
 
     def digits(self, build: str, name: str) -> Digits | None:
         """Of one quantity."""
@@ -163,12 +140,12 @@ class Ensemble:
         """A line for each quantity: the COLUMNS."""
         found: list[tuple[object, ...]] = []
         for name in self.names:
-            one = self.digits(next(iter(self.results)), name)
-            two = self.digits(self.narrow, name) if self.narrow else None
+            one, *others = (self.digits(build, name) for build in self.results)
+            two = others[0] if others else None
             parts = [getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")]
             step = min(self.step_digits(name), one.full) if one else math.nan  # equal numbers share all
             cells = ["" if math.isnan(number) else round(number, 1) for number in (*parts, step)]
-            found.append((name, one.mean if one else "", *cells, verdict(one, two, step, self.narrow)))
+            found.append((name, one.mean if one else "", *cells, verdict(one, two, step)))
         return found
 
 
@@ -177,31 +154,28 @@ def _values(results: Sequence[RunResult], name: str) -> list[float]:
     return [one.quantities[name] for one in results if one.status == ENDED and one.at_rest]
 
 
-def verdict(wide: Digits | None, narrow: Digits | None, step: float, short: str) -> str:
-    """What limits a quantity. short: the word scheme with shorter reals, "" if there is none."""
+def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
+    """What limits a quantity."""
     if wide is None:
         return "too few runs have ended: see log.txt in their folders"
+    by_step = "the time-step; " if step < wide.lower else ""
+    lost = max(wide.full - wide.digits, 0)
     if narrow is None:
-        runs = f"too few runs of {short} have ended" if short else "no run has shorter reals"
-        sooner = "the time-step; " if step < wide.lower else ""
-        lost = f"noise takes {max(wide.full - wide.digits, 0):.1f} digits"
-        return f"{sooner}{lost}; whether that is rounding or chaos is not known, as {runs}"
+        return f"{by_step}rounding or chaos takes {lost:.1f} digits: too few runs have shorter reals"
     more, gained = wide.full - narrow.full, max(wide.digits - narrow.digits, 0.0)
     if gained < SHARE * more:
-        sooner = "; the time-step takes more" if step < wide.lower else ""
-        return f"chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left{sooner}"
-    lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
-    return f"the time-step; {lost}" if step < wide.lower else lost
+        return f"{by_step}chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left"
+    return f"{by_step}rounding takes {lost:.1f} digits"
 
 
 def measure_digits(runner: SettingRunner, runs: int) -> Ensemble:
     """Run the ensembles of a deck, `runs` of each word scheme."""
     options, deck, found = runner.options, runner.deck, Ensemble(runner)
-    runner.rehearse()
-    found.plain = runner.survey_deck()
-    if found.plain.status != ENDED or not runner.survey:
-        found.notes.append(f"the deck as it is gives no digits: {found.plain.message or 'it has no CYCLE'}")
+    why = runner.run_own_deck()
+    if why or runner.own.result is None:
+        found.notes.append(why)
         return found
+    found.plain = runner.own.result
     found.names = [*found.plain.quantities][1:]
     row = runner.row(Setting(runner.wide, 0.5))
     runner.run_rows([row])
@@ -211,18 +185,17 @@ def measure_digits(runner: SettingRunner, runs: int) -> Ensemble:
         found.notes.append("no digits of the step: SOLVE ... STATIC has its own, not that of FRACTION")
     elif row.ran:
         found.half = row.result
+    runner.drop_unable_builds()
     cycles = sum(one.done for one in runner.survey)
     seconds = found.plain.seconds + KICK * min(cycles, KICKS)
     runs = max(FEWEST, min(runs, int(max(runner.left, 0) * runner.processes / (2 * seconds))))
     options.show(f"{runs} runs of {seconds:.3g} s in each of {' and '.join(runner.builds[:2])}")
     for build in runner.builds[:2]:
         found.results[build] = perturbed(runner, build, cycles, range(1, runs + 1))
-    every = max(1, cycles // KICKS)
-    kicks = "noise every " + ("cycle" if every == 1 else f"{every} cycles")
     found.notes += runner.notes
     found.notes.append(
-        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, {kicks}; "
-        "confidence and probability 95 %"
+        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, noise every "
+        f"{counted(max(1, cycles // KICKS), 'cycle')}; confidence and probability 95 %"
     )
     return found
 
@@ -298,25 +271,19 @@ class FieldBlame:
         if not self.quantity or self.whole == 0:
             return "no digit is lost, so no field is to blame", []
         try:
-            return self._search()
+            passes = least_part([*PASSES], lambda names: self.explains(_fields(names)))
+            if self.explains(_fields([name for name in PASSES if name not in passes])):
+                why = (
+                    f"noise in {' and '.join(passes)} explains the loss, and so does noise in all other "
+                    "passes: the digits are lost in the motion itself, whatever is perturbed"
+                )
+                return f"{self.quantity}: {why}", self._rows(passes, _fields(passes))
+            fields = least_part([*_fields(passes)], self.explains)
+            why = "noise in these fields alone explains the loss; noise in other passes does not"
+            return f"{self.quantity}: {why}", self._rows(passes, fields)
         except OutOfBudgetError:
-            return (
-                f"{self.quantity}: the budget has ended before the fields were found; give a greater one",
-                [],
-            )
-
-    def _search(self) -> tuple[str, list[tuple[object, ...]]]:
-        passes = least_part([*PASSES], lambda names: self.explains(_fields(names)))
-        others = [name for name in PASSES if name not in passes]
-        if self.explains(_fields(others)):
-            return (
-                f"{self.quantity}: noise in {' and '.join(passes)} explains the loss, and so does noise in "
-                "all other passes: the digits are lost in the motion itself, whatever is perturbed"
-            ), self._rows(passes, _fields(passes))
-        fields = least_part([*_fields(passes)], self.explains)
-        return (
-            f"{self.quantity}: noise in these fields alone explains the loss; noise in other passes does not"
-        ), self._rows(passes, fields)
+            why = "the budget has ended before the fields were found; give a greater one"
+            return f"{self.quantity}: {why}", []
 
     def _rows(self, passes: Sequence[str], fields: Sequence[str]) -> list[tuple[object, ...]]:
         rows: list[tuple[object, ...]] = []
