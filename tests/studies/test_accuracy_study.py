@@ -18,10 +18,9 @@ from udec_ia.layout import offsets as g
 from udec_ia.studies.accuracy_report import answer, half_step, shown_rows
 from udec_ia.studies.accuracy_study import AccuracyStudy, Row, recommended, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck, list_changes
-from udec_ia.studies.perturbed_run import PerturbedRun
 from udec_ia.studies.setting_runner import Options, SettingRunner
 from udec_ia.studies.settings import Fraction, Numbers, Setting
-from udec_ia.studies.significant_digits import Ensemble, FieldBlame, measure_digits
+from udec_ia.studies.significant_digits import Ensemble, FieldBlame, PerturbedRun, measure_digits
 from udec_ia.studies.study_run import ENDED, RunResult
 from udec_ia.studies.survey_run import find_parting, read_segments
 from udec_ia.studies.worker_pool import RUNS, run_all

@@ -15,7 +15,7 @@ import pytest
 from udec_ia import Model, UdecError
 from udec_ia.layout.offsets import MCTOT, MFREE
 from udec_ia.studies.execute_run import execute, rehearse
-from udec_ia.studies.quantity_syntax import read_quantities
+from udec_ia.studies.quantities import read_quantities
 from udec_ia.studies.run_folder import LOCK
 from udec_ia.studies.study_run import RunResult, StudyRun, kept_result, write_result
 from udec_ia.studies.worker_pool import RUNS, run_all

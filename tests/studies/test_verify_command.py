@@ -100,7 +100,7 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     [
         (["inclin"], "there is no problem inclin: did you mean incline?"),
         (["qqq"], "there is no problem qqq: udec verify --list names them all"),
-        (["--blocks", "soft"], "--blocks soft: choose from rigid, sdef, fdef, with commas between"),
+        (["--blocks", "soft"], "--blocks soft: choose from rigid, sdef, fdef"),
         (["--build", "i8r8"], "--build i8r8: choose from i16r32"),
         (["ball", "--blocks", "fdef"], "none of these problems makes sense for fdef in i32r64"),
     ],

@@ -95,8 +95,7 @@ def _laws(args: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]
 
 def _values(args: argparse.Namespace) -> tuple[dict[str, str], dict[str, str]]:
     """Values of the variables of the first and the second."""
-    values = given(args.set)
-    return values, values | given(args.other_set or [])
+    return given(args.set), given(args.set) | given(args.other_set or [])
 
 
 def _run(

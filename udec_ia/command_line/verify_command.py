@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.command_line.command_options import command
+from udec_ia.command_line.command_options import command, names
 from udec_ia.printable import counted
 
 if TYPE_CHECKING:
@@ -45,21 +45,13 @@ def _problems(args: argparse.Namespace) -> list[Problem]:
     return [find_problem(name) for name in args.names or problem_names()]
 
 
-def _chosen(option: str, given: str | None, default: str, known: Any) -> list[str]:
-    """The words of a list with commas, in its order. ValueError for one that is not known."""
-    words = (given or default).split(",")
-    if not {*words} <= {*known}:
-        raise ValueError(f"{option} {given}: choose from {', '.join(known)}, with commas between")
-    return words
-
-
-def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
+def _cases(args: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Word schemes and types of blocks."""
     from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
     from udec_ia.studies.verification import BLOCKS
 
-    builds = _chosen("--build", args.build, DEFAULT_SCHEME, ALL_SCHEMES)
-    return builds, _chosen("--blocks", args.blocks, ",".join(BLOCKS), BLOCKS)
+    builds = names("--build", args.build, ALL_SCHEMES) or [DEFAULT_SCHEME]
+    return builds, names("--blocks", args.blocks, BLOCKS) or [*BLOCKS]
 
 
 def _verify(args: argparse.Namespace) -> Listing:
@@ -67,7 +59,7 @@ def _verify(args: argparse.Namespace) -> Listing:
     from udec_ia.reader.listing import Listing
     from udec_ia.studies.verification import solve_problems
 
-    problems, (builds, blocks) = _problems(args), _choice(args)
+    problems, (builds, blocks) = _problems(args), _cases(args)
     if args.list:
         named: list[tuple[Any, ...]] = [
             (one.name, ", ".join(one.blocks), one.reals, one.title) for one in problems
@@ -105,7 +97,7 @@ def _result_rows(results: Sequence[ProblemResult]) -> Iterator[tuple[Any, ...]]:
 
 
 def _script(args: argparse.Namespace) -> str:
-    builds, blocks = _choice(args)
+    builds, blocks = _cases(args)
     return (
         "from udec_ia.studies.verification import find_problem, problem_names, solve_problems\n\n"
         f"problems = map(find_problem, {args.names or 'problem_names()'})\n"

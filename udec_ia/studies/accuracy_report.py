@@ -130,14 +130,15 @@ def _loading_path(study: AccuracyStudy) -> str:
             f"elsewhere, and the greatest displacement is {parting.moved:.3g} m"
         )
     found = path_differences(study)
-    much = ", ".join(f"{name} by {value:.2g}" for name, value in found.items())
-    if SLIPPED in study.solved:
-        how = f"SOLVE ... STATIC, another path, differs: {much}" if found else "by how much is unknown"
-        return f"depends on it ({study.solved}); {how}; load in steps, and compare"
-    if found and max(found.values()) > study.tolerance:
-        return f"depends on it, although no joint slip is reported: SOLVE ... STATIC differs: {much}"
-    return "does not depend on it: no joint slip is reported" + (
-        f"; SOLVE ... STATIC differs: {much}" if found else ""
+    slips = SLIPPED in study.solved
+    depends = slips or max(found.values(), default=0.0) > study.tolerance
+    return "; ".join(
+        [
+            "depends on it" if depends else "does not depend on it",
+            study.solved if slips else "no joint slip is reported",
+            *[f"SOLVE ... STATIC, another path, changes {name} by {off:.2g}" for name, off in found.items()],
+            *["by how much is unknown: load in steps, and compare"] * (depends and not found),
+        ]
     )
 
 

@@ -31,8 +31,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.model import Model
 from udec_ia.running.observer import Observer, between_cycles
 from udec_ia.running.solve_result import in_short, worth_reporting
-from udec_ia.studies.quantities import InitialState, NoValue, State
-from udec_ia.studies.quantity_syntax import read_quantities, read_rule
+from udec_ia.studies.quantities import InitialState, NoValue, State, read_quantities, read_rule
 from udec_ia.studies.run_folder import BEGUN, incomplete, new_folder, publish
 from udec_ia.studies.study_run import (
     DECK,

@@ -25,7 +25,7 @@ from udec_ia.deck.lines_and_calls import Call, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.printable import MESSAGE, printable
-from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities, read_rule
+from udec_ia.studies.quantities import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.run_folder import RESULT
 from udec_ia.version import __version__
 
@@ -41,7 +41,7 @@ class StudyRun:
     """The input of a run. It can be sent to another process.
 
     name: of its folder, unique in its study. deck: the text. file: how errors name the deck; without it they
-    name deck.dat in the folder of the run. values: of variables. quantities: see quantity_syntax. build,
+    name deck.dat in the folder of the run. values: of variables. quantities: see quantities.py. build,
     constitutive: as for Model; laws are files or names. stop: rules, checked every `every` cycles: the run
     ends with the first that holds. limit: processor seconds without compiling after which the run is ended.
     rehearsal: each CYCLE and SOLVE has one cycle. Raises ValueError for what is wrong with any of these.

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 BEFORE = ("run",)
 BEHIND = ("status", "error", "cycles", "seconds", "words", "warnings", "message")
 FRONTS = {".csv": b"run,", ".png": b"\x89PNG\r\n", ".svg": b"<?xml "}
-BEGINNING = 16  # bytes
 WIDTH, CURVE, MAP = 6.5, 2.0, 4.5  # inches of a panel, and its height
 TITLE = 0.45  # inches above all panels
 LINE, FAILED = "#1f6f8b", "#c8553d"
@@ -87,20 +86,10 @@ def _refusal(front: bytes, _: int) -> str:
 def check_paths(paths: Iterable[Path]) -> None:
     """Error 31 unless the files `paths` can be written, as far as that is known beforehand."""
     for path in paths:
-        front = FRONTS[path.suffix]
         try:
-            there = _front(path)
-            check_name(path, there if there.startswith(front) else front)
+            check_name(path, FRONTS[path.suffix])
         except OSError as error:
             raise UdecError(31, f"{path}: {error.strerror or error}") from error
-
-
-def _front(path: Path) -> bytes:
-    """The first bytes of a file, b"" without one."""
-    if not path.is_file():
-        return b""
-    with path.open("rb") as file:
-        return file.read(BEGINNING)
 
 
 # ---- the picture

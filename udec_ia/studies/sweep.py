@@ -30,7 +30,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.printable import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import LOG
-from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities
+from udec_ia.studies.quantities import DEFAULTS, read_quantities
 from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck
 from udec_ia.studies.study_table import (
     BEFORE,
