@@ -21,7 +21,8 @@ freedom; F: quantile of the normal distribution.
 
 Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of that with
 noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying and
-isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002), first among passes, then among fields.
+isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002), first among kinds of groups, then among
+their fields.
 """
 
 from __future__ import annotations
@@ -60,22 +61,7 @@ COLUMNS = (
     *("quantity", "value", "digits", "at least", "32-bit digits", "32-bit at least", "step"),
     "what limits it",
 )
-FIELD_COLUMNS = ("pass", "field", "spread", "share")
-PASSES = {
-    "motion": ("block.KXD", "block.KYD", "block.KTD", "gridpoint.KXDG", "gridpoint.KYDG"),
-    "places": ("block.KX", "block.KY", "gridpoint.KXG", "gridpoint.KYG"),
-    "corners": ("corner.KXP", "corner.KYP", "corner.KXDP", "corner.KYDP"),
-    "outlines": ("corner.KXCP", "corner.KYCP", "corner.KRAD"),
-    "overlaps": ("contact.KCN", "contact.KCS"),
-    "contact forces": ("contact.KCFN", "contact.KCFS"),
-    "contact places": ("contact.KXC", "contact.KYC", "contact.KXDC", "contact.KYDC"),
-    "domains": ("domain.KUMAX",),
-    "stresses": ("zone.KZS11", "zone.KZS12", "zone.KZS22"),
-    "block strains": (
-        *(f"sdef.{name}" for name in ("KED11", "KED12", "KED21", "KED22")),
-        *(f"sdef.{name}" for name in ("KS111", "KS112", "KS121", "KS122")),
-    ),
-}
+FIELD_COLUMNS = ("field", "spread", "share")
 
 
 # ---- digits of a sample
@@ -156,15 +142,11 @@ class _Noise(RunObserver):
         self._random = np.random.default_rng(run.seed)
         ratio = array.scheme.ratio
         shapes = {
-            group.name: [
-                layouts(ratio)[group.name].offset[field.name] - 1
-                for field in group.fields
-                if field.real and (not run.fields or f"{group.name}.{field.name}" in run.fields)
-            ]
-            for group in read_table().groups
-            if group.name in KINDS
+            kind: [layouts(ratio)[kind].offset[field.partition(".")[2]] - 1 for field in fields]
+            for kind, every in noisy_fields().items()
+            if (fields := [field for field in every if not run.fields or field in run.fields])
         }
-        self._fields = {kind: np.array(found, np.int64) for kind, found in shapes.items() if found}
+        self._fields = {kind: np.array(found, np.int64) for kind, found in shapes.items()}
         self._staying = np.zeros(0, np.int64)
         self._before: Any = None
 
@@ -274,9 +256,7 @@ def measure_digits(runner: SettingRunner, runs: int) -> Ensemble:
     if row.compared and deck.is_stepped:
         found.half = row.result
     else:
-        found.notes.append(
-            f"no digits of the step: {row.why or 'FRACTION does not change it'}"
-        )
+        found.notes.append(f"no digits of the step: {row.why or 'FRACTION does not change it'}")
     runner.drop_unable_builds()
     cycles = sum(one.done for one in runner.survey)
     seconds = found.plain.seconds + KICK * min(cycles, KICKS)
@@ -362,33 +342,36 @@ class FieldBlame:
         """The result as a sentence, and a line for each field to blame: the FIELD_COLUMNS."""
         if not self.quantity or self.whole == 0:
             return "no digit is lost, so no field is to blame", []
+        every = noisy_fields()
+
+        def fields_of(kinds: Sequence[str]) -> list[str]:
+            return [field for kind in kinds for field in every[kind]]
+
         try:
-            passes = least_part([*PASSES], lambda names: self.explains(_fields(names)))
-            if self.explains(_fields([name for name in PASSES if name not in passes])):
+            kinds = least_part([*every], lambda some: self.explains(fields_of(some)))
+            fields = fields_of(kinds)
+            if self.explains(fields_of([kind for kind in every if kind not in kinds])):
                 why = (
-                    f"noise in {' and '.join(passes)} explains the loss, and so does noise in all other "
-                    "passes: the digits are lost in the motion itself, whatever is perturbed"
+                    f"noise in each {' and '.join(kinds)} explains the loss, and so does noise in all other "
+                    "groups: the digits are lost in the motion itself, whatever is perturbed"
                 )
-                return f"{self.quantity}: {why}", self._rows(passes, _fields(passes))
-            fields = least_part([*_fields(passes)], self.explains)
-            why = "noise in these fields alone explains the loss; noise in other passes does not"
-            return f"{self.quantity}: {why}", self._rows(passes, fields)
+            else:
+                fields = least_part(fields, self.explains)
+                why = "noise in these fields alone explains the loss; noise in other groups does not"
+            spreads = [(field, self.spread([field])) for field in fields]
+            return f"{self.quantity}: {why}", [(field, one, one / self.whole) for field, one in spreads]
         except OutOfBudgetError:
             why = "the budget has ended before the fields were found; give a greater one"
             return f"{self.quantity}: {why}", []
 
-    def _rows(self, passes: Sequence[str], fields: Sequence[str]) -> list[tuple[object, ...]]:
-        rows: list[tuple[object, ...]] = []
-        for name in passes:
-            for one in PASSES[name]:
-                if one in fields:
-                    spread = self.spread([one]) if len(fields) <= len(PASSES) else float("nan")
-                    rows.append((name, one, spread, spread / self.whole))
-        return rows
 
-
-def _fields(passes: Sequence[str]) -> list[str]:
-    return [one for name in passes for one in PASSES[name]]
+def noisy_fields() -> dict[str, list[str]]:
+    """The fields that noise can be in, by kind of group."""
+    return {
+        group.name: [f"{group.name}.{field.name}" for field in group.fields if field.real]
+        for group in read_table().groups
+        if group.name in KINDS
+    }
 
 
 def least_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:

@@ -121,15 +121,9 @@ def sweep(
             return write(pool.results(runs, progress.show))
         except KeyboardInterrupt as interrupt:
             with suppress(Exception):
-                write(_completed(runs, pool.folder, progress.results))
+                found = (kept_result(run, pool.folder)[0] for run in runs)
+                write([one for one in found if one is not None])
             raise type(interrupt)(str(folder)) from None
-
-
-def _completed(runs: list[StudyRun], folder: Path, shown: list[RunResult]) -> list[RunResult]:
-    """The results that there are, in the order of the runs; some may not have been shown yet."""
-    known = {one.name: one for one in shown}
-    found = (known.get(run.name) or kept_result(run, folder)[0] for run in runs)
-    return [one for one in found if one is not None]
 
 
 def folder_name(values: Mapping[str, Value]) -> str:
@@ -150,7 +144,7 @@ def summarise_warnings(results: Iterable[RunResult], log: str) -> list[str]:
     given = Counter[str]()
     for run in runs:
         kinds = {NUMBER.sub("#", text): text for text in reversed(run.warnings)}
-        given.update(kinds)
+        given.update([*kinds])
         first = {kind: f"{text} ({run.name}, in {log})" for kind, text in kinds.items()} | first
     found = [
         printable(f"warning in {many} of {counted(len(runs), 'run')}: {first[kind]}", MESSAGE)
