@@ -11,7 +11,7 @@ from support.view_page import HOSTILE, ViewCase, arrived, needs_browser, selecte
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g
-from udec_ia.view import Page, page
+from udec_ia.view import Page, view_page
 
 pytestmark = needs_browser
 
