@@ -117,7 +117,7 @@ def test_whatever_the_words_say_the_page_shows_it(browser: Browser, viewed: View
 def test_what_is_left_out_is_said(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, viewed: ViewCase
 ) -> None:
-    monkeypatch.setattr(page, "LIMIT", 1000)
+    monkeypatch.setattr(view_page, "LIMIT", 1000)
     pages = Page()
     pages.add(viewed.model.array, "cut")
     cut = pages.write(tmp_path / "cut.html")
