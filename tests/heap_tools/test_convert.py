@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.census import census
-from naive.convert import common, put_together, take_apart
 from naive.relocate import differences, essence
+from naive.word_schemes import common, put_together, take_apart
 from support import random_deformable_scenes as soft_scenes
 from support import random_scenes as scenes
 from support.every_group_kind import every_kind

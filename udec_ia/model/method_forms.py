@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar,
 from udec_ia.heap.main_array import MainArray
 
 if TYPE_CHECKING:
-    from udec_ia.model.model import Model
     from udec_ia.model.model_session import Session
 
 P = ParamSpec("P")
@@ -24,28 +23,28 @@ class InSession(Generic[T]):
     def __set_name__(self, _: type, name: str) -> None:
         self.name = name
 
-    def __get__(self, model: Model | None, _: type | None = None) -> T:
+    def __get__(self, model: Any, _: type | None = None) -> T:
         value: Any = self if model is None else getattr(model.session, self.name)
         return value  # type: ignore[no-any-return]
 
-    def __set__(self, model: Model, value: T) -> None:
+    def __set__(self, model: Any, value: T) -> None:
         setattr(model.session, self.name, value)
 
 
-def of_session(function: Callable[Concatenate[Session, P], R]) -> Callable[Concatenate[Model, P], R]:
+def of_session(function: Callable[Concatenate[Session, P], R]) -> Callable[Concatenate[Any, P], R]:
     """`function` of a session as a method of the same other arguments, name and description."""
 
-    def method(model: Model, /, *args: P.args, **named: P.kwargs) -> R:
+    def method(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         return function(model.session, *args, **named)
 
     update_wrapper(method, function)
     return method
 
 
-def on_shapes(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Model, P], R]:
+def on_shapes(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Any, P], R]:
     """`op` as a method of the same arguments, for an operation that needs sound outlines."""
 
-    def method(model: Model, /, *args: P.args, **named: P.kwargs) -> R:
+    def method(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         model.session.ensure_ready(shapes=True)
         return op(model.array, *args, **named)
 

@@ -61,11 +61,11 @@ def restart(
     if force and unchecked:
         raise ValueError("restart takes force or unchecked, not both")
     source = session.out / RESTART_FILE if path is None else path
-    array, deck_log, laws, series, said, unsound = load(source, force, unchecked)
+    array, deck_log, laws, series, notes, unsound = load(source, force, unchecked)
     refit(array, session.mtop)
     session.array = array
     session.continue_from(deck_log, series)
-    for sentence in said:
+    for sentence in notes:
         session.tell(sentence)
     if unsound:
         session.tell(
