@@ -49,7 +49,7 @@ def add_commands(commands: Any) -> None:
         "--blame", action="store_true", help="the same, and the fields in which the other digits are lost"
     )
     what.add_argument(
-        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness,types"
+        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness"
     )
     parser.add_argument(
         "--runs", type=int, metavar="N", help="perturbed runs for --digits and --blame (default: 16)"
@@ -124,9 +124,9 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
 
 def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.reader.listing import Listing
-    from udec_ia.studies.model_levers import COLUMNS, LEVERS, vary_lever
+    from udec_ia.studies.model_levers import COLUMNS, FACTORS, vary_lever
 
-    levers = names("--levers", args.levers, LEVERS)
+    levers = names("--levers", args.levers, FACTORS)
     with _runner(args) as runner:
         why = runner.run_own_deck()
         if why:

@@ -23,7 +23,6 @@ SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # become comme
 FILLED = "default"  # its values are in the lines
 RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
 ENDS = {one.name for one in COMMANDS if one.ends}
-EVERYWHERE = "-1E30 1E30 -1E30 1E30"
 OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
 
 
@@ -100,7 +99,7 @@ class Deck:
     def pieces(
         self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
     ) -> list[Piece]:
-        """The deck for `setting`, as many pieces for all settings of the same types, in the order of lines.
+        """The deck for `setting`, as many pieces for all settings, in the order of lines.
 
         fraction: that of the deck, where no line states it; None: it stays so.
         """
@@ -108,20 +107,16 @@ class Deck:
         stated = "fraction" in self._until_run() or not self.is_stepped
         found: list[Piece] = []
         counts = dict(enumerate(zip_longest(numbers.longer, numbers.cycles)))
-        run = number = 0  # CYCLEs and SOLVEs, and number of the last line, until here
+        run = 0  # CYCLEs and SOLVEs until here
         for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
             is_obeyed = k < self.obeyed
-            if is_obeyed and name in RUNS and run == 0:
-                soft = [f"CHANGE {EVERYWHERE} SDEF"] if setting.types == "sdef" else []
-                found.append(Piece(None, number, soft))
             longer, cycles = counts.get(run, (None, None))
             change = _Change(setting, numbers, longer or 1.0, cycles)
             lines = self._lines(one, name, change) if is_obeyed else _unchanged(one)
             first = one.tokens[0].line if one.tokens else one.lines[0]
             found.append(Piece(one, first.number, lines))
-            number = one.lines[-1].number
             if is_obeyed and name in ("start", "restart") and not stated and fraction is not None:
-                found.append(Piece(None, number, [_fraction(setting, numbers, fraction)]))
+                found.append(Piece(None, one.lines[-1].number, [_fraction(setting, numbers, fraction)]))
             run += name in RUNS
         return found
 
@@ -181,8 +176,7 @@ def _changed(one: Statement, name: str, change: _Change) -> list[str]:
         return _multiplied(one, _numbers_after(one, "KN", "KS"), setting.stiffness)
     if name == "generate" and setting.edge != 1:
         return _multiplied(one, _numbers_after(one, "Edge"), setting.edge)
-    makes_soft = name == "generate" or (name == "change" and parse(one).named.get("type") is not None)
-    return _as_comment(one) if setting.types and makes_soft else _unchanged(one)
+    return _unchanged(one)
 
 
 def _fraction(setting: Setting, numbers: Numbers, own: Fraction) -> str:

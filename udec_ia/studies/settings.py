@@ -33,7 +33,7 @@ class Setting:
     build: word scheme. step: times the time-step of the deck. safe: fraction of the safe bound instead, 0 for
     none. ratio: times the ratio of SOLVE. static: SOLVE ... STATIC. rounding, edge, stiffness: times the
     lengths of ROUND and of GENERATE ... EDGE, and KN and KS. contact: times KN, KS and the cohesions, which
-    are properties of one contact, instead. types: "" as they are, "rigid" or "sdef".
+    are properties of one contact, instead.
     """
 
     build: str = DEFAULT_SCHEME
@@ -45,7 +45,6 @@ class Setting:
     edge: float = 1.0
     stiffness: float = 1.0
     contact: float = 1.0
-    types: str = ""
 
     @property
     def name(self) -> str:
@@ -57,7 +56,7 @@ class Setting:
             parts.append(f"step={self.step:.4g}")
         times = ("ratio", "rounding", "edge", "stiffness", "contact")
         parts += [f"{name}={getattr(self, name):.3g}" for name in times if getattr(self, name) != 1]
-        return ",".join([*parts, *["static"] * self.static, *[self.types] * bool(self.types)])
+        return ",".join([*parts, *["static"] * self.static])
 
     def step_of(self, one: Segment) -> float:
         """The time-step (s) that it makes for a CYCLE or SOLVE of the deck."""
