@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from udec_ia.cli import main
-from udec_ia.studies.accuracy_report import answer, shown_rows, study_table
+from udec_ia.studies.accuracy_report import answer, study_table, table_rows
 from udec_ia.studies.accuracy_study import AccuracyStudy, depends_on_step, path_differences, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import Extrapolation
@@ -46,7 +46,7 @@ def test_what_is_the_same_at_all_steps_recommends_nothing_alone(tmp_path: Path) 
     )
     assert "way converges to" in lines[ACCURACY]
     assert "force is 0 at all these steps" in lines[ACCURACY]
-    assert not any("within" in str(row[-1]) for row in shown_rows(study))
+    assert not any("within" in str(row[-1]) for row in table_rows(study))
     one = replace(study, levels=study.levels[:1], parting=None, rows=study.rows[:1])
     assert "no run with half the time-step has ended" in answer(one)[CHANGE]
 

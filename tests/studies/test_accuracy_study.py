@@ -15,7 +15,7 @@ import pytest
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.layout import offsets as g
-from udec_ia.studies.accuracy_report import answer, half_step, shown_rows
+from udec_ia.studies.accuracy_report import answer, half_step, table_rows
 from udec_ia.studies.accuracy_study import AccuracyStudy, Row, recommended, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck, list_changes
 from udec_ia.studies.setting_runner import Options, SettingRunner
@@ -219,7 +219,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 
 def test_what_was_not_run_has_no_numbers(fall: AccuracyStudy) -> None:
     setting, numbers = fall.rows[0].setting, fall.rows[0].numbers
-    (row,) = shown_rows(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
+    (row,) = table_rows(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
     assert row == (setting.name, "", "", "", 0, "not run: beyond the budget")
 
 

@@ -63,8 +63,8 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         answer,
         draw_costs,
         half_step,
-        shown_rows,
         study_table,
+        table_rows,
     )
     from udec_ia.studies.accuracy_study import study_accuracy
     from udec_ia.studies.study_run import read_deck
@@ -86,7 +86,7 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
     files = [study_table(study).write(base)]
     files += draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
     lines = [*answer(study), f"written: {', '.join(map(str, files))}"]
-    return Listing(lines, COLUMNS, shown_rows(study)) if args.table or args.json else Listing(lines)
+    return Listing(lines, COLUMNS, table_rows(study)) if args.table or args.json else Listing(lines)
 
 
 def _runner(args: argparse.Namespace) -> SettingRunner:

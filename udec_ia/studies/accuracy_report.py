@@ -160,26 +160,18 @@ def _without_reference(study: AccuracyStudy) -> str:
 
 
 def table_rows(study: AccuracyStudy) -> list[tuple[Any, ...]]:
-    """A line for each setting, the cheapest first; those without a cost last: the COLUMNS."""
+    """A line for each setting, the cheapest first: the COLUMNS, blank where there is no number."""
     front = [id(row) for row in pareto_set(study.rows)]
     return [
         (
             row.setting.name,
-            row.error,
-            row.cost,
-            row.memory / 1e6 if row.result else math.nan,
+            _cell(row.error),
+            _cell(row.cost),
+            row.memory / 1e6 if row.result else "",
             row.result.cycles if row.result else 0,
             _what(study, row, id(row) in front),
         )
         for row in _sorted(study)
-    ]
-
-
-def shown_rows(study: AccuracyStudy) -> list[tuple[Any, ...]]:
-    """The same to be read: blank where there is no number."""
-    return [
-        tuple("" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row)
-        for row in table_rows(study)
     ]
 
 
@@ -191,10 +183,14 @@ def study_table(study: AccuracyStudy) -> StudyTable:
         values, errors = list[float](), list[float]()
         for row in _sorted(study):
             values.append(row.result.quantities[name] if row.result else math.nan)
-            compared = one is not None and not one.is_zero and row.compared
-            errors.append(one.error_of(values[-1]) if one and compared else math.nan)
-        columns |= {f"value of {name}": values, f"error of {name}": errors}
+            known = row.compared and one is not None and not one.is_zero
+            errors.append(one.error_of(values[-1]) if one and known else math.nan)
+        columns |= {f"value of {name}": [*map(_cell, values)], f"error of {name}": [*map(_cell, errors)]}
     return StudyTable(columns)
+
+
+def _cell(number: float) -> float | str:
+    return number if math.isfinite(number) else ""
 
 
 def _sorted(study: AccuracyStudy) -> list[Row]:
@@ -278,5 +274,5 @@ def _panel(panel: Axes, study: AccuracyStudy, rows: list[Row], x: list[float], l
     panel.set(xscale="log", yscale="log")
     panel.set_xlabel(label, fontsize=9, color=INK)
     panel.set_ylabel("greatest error", fontsize=9, color=INK)
-    panel.tick_params(labelsize=8, colors=INK)
+    panel.tick_params(which="both", labelsize=8, colors=INK)
     panel.grid(color="#e4e0d8", linewidth=0.6)
