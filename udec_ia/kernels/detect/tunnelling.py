@@ -42,9 +42,7 @@ from udec_ia.layout import offsets as g
 
 POINTS = 3  # points of an arc that are followed
 STEPS = 8  # places tested while a point moves by CTOL in x or in y
-LOOKS = (
-    20_000  # places tested on one path: a thousand rounding lengths in a step are too many to follow
-)
+LOOKS = 20_000  # places on one path: a thousand rounding lengths in a step are too many to follow
 
 
 @kernel
