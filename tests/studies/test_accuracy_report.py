@@ -47,7 +47,7 @@ def test_what_is_the_same_at_all_steps_recommends_nothing_alone(tmp_path: Path) 
     assert "way converges to" in lines[ACCURACY]
     assert "force is 0 at all these steps" in lines[ACCURACY]
     assert not any("within" in str(row[-1]) for row in table_rows(study))
-    one = replace(study, levels=study.levels[:1], parting=None, rows=study.rows[:1])
+    one = replace(study, levels=study.levels[:1], separation=None, rows=study.rows[:1])
     assert "no run with half the time-step has ended" in answer(one)[CHANGE]
 
 

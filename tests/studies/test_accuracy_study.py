@@ -22,7 +22,7 @@ from udec_ia.studies.setting_runner import Options, SettingRunner
 from udec_ia.studies.settings import Fraction, Numbers, Setting
 from udec_ia.studies.significant_digits import Ensemble, FieldBlame, PerturbedRun, measure_digits
 from udec_ia.studies.study_run import ENDED, RunResult
-from udec_ia.studies.survey_run import find_parting, read_segments
+from udec_ia.studies.survey_run import find_separation, read_segments
 from udec_ia.studies.worker_pool import RUNS, run_all
 
 PROPERTIES = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 FRICTION=0.5\n"
@@ -154,11 +154,11 @@ def test_a_deck_that_fails_is_a_result(tmp_path: Path) -> None:
 def test_runs_that_go_apart_part_somewhere(tmp_path: Path) -> None:
     price = priced(FALL, tmp_path, quantities=FELL, half_step=True)
     one, two = (price.path(row) for row in price.levels)
-    found = find_parting(one, two, 1e-3)
+    found = find_separation(one, two, 1e-3)
     assert found is not None
     assert (found.x, found.y) == (0.5, 0.5)
     assert found.apart == pytest.approx(0.5 * 10 * (200 * STEP) ** 2 * (1 / 200 - 1 / 400))
-    assert find_parting(one, one, 1e-3) is None
+    assert find_separation(one, one, 1e-3) is None
 
 
 # ---- digits

@@ -8,7 +8,7 @@ import random
 import pytest
 
 from udec_ia.studies.extrapolation import converges, extrapolate
-from udec_ia.studies.significant_digits import chi_squared, doubt, least_part, shared_digits
+from udec_ia.studies.significant_digits import chi_squared, doubt, shared_digits, smallest_part
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -93,6 +93,6 @@ def test_a_least_set_is_found() -> None:
         asked.append(items)
         return {"b", "f"} <= {*items}
 
-    assert least_part([*"abcdefgh"], enough) == ["b", "f"]
+    assert smallest_part([*"abcdefgh"], enough) == ["b", "f"]
     assert len(asked) < 40
-    assert least_part([*"abcdefgh"], lambda items: "c" in items) == ["c"]
+    assert smallest_part([*"abcdefgh"], lambda items: "c" in items) == ["c"]

@@ -118,16 +118,16 @@ def _why_unknown(study: AccuracyStudy, name: str, one: Extrapolation) -> str:
 
 def _loading_path(study: AccuracyStudy) -> str:
     """Whether the result depends on the loading path, and by how much."""
-    parting = study.parting
+    separation = study.separation
     if not study.deck.has("solve"):
         scatters = any(one and one.error and math.isnan(one.order) for one in study.references.values())
-        if parting is None or not scatters:
+        if separation is None or not scatters:
             return "not asked: the deck follows a motion, without SOLVE"
         one, two = (row.setting.name for row in study.levels[-2:])
         return (
-            f"the motion depends on small differences: {one} and {two} part at {parting.time:.4g} s, at the "
-            f"block that was at ({parting.x:.4g}, {parting.y:.4g}); at the end it is {parting.apart:.3g} m "
-            f"elsewhere, and the greatest displacement is {parting.moved:.3g} m"
+            f"the motion depends on small differences: {one} and {two} part at {separation.time:.4g} s, at the "
+            f"block that was at ({separation.x:.4g}, {separation.y:.4g}); at the end it is {separation.apart:.3g} m "
+            f"elsewhere, and the greatest displacement is {separation.moved:.3g} m"
         )
     found = path_differences(study)
     slips = SLIPPED in study.solved
@@ -264,8 +264,8 @@ def _panel(panel: Axes, study: AccuracyStudy, rows: list[Row], x: list[float], l
         at = [x[k] for k in some], [error[k] for k in some]
         panel.plot(*at, "o", color=colour, markersize=4, label=build)
     points = sorted(zip(x, error, strict=True))
-    least = accumulate((one for _, one in points), min)
-    front = [point for point, one in zip(points, least, strict=True) if point[1] == one]
+    smallest = accumulate((one for _, one in points), min)
+    front = [point for point, one in zip(points, smallest, strict=True) if point[1] == one]
     panel.plot(*zip(*front, strict=True), color=FRONT, linewidth=0.8, label="Pareto set")
     panel.axhline(study.tolerance, color=COLOURS[1], linewidth=0.8, linestyle="--", label="tolerance")
     if study.best in rows:

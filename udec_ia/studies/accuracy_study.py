@@ -20,7 +20,7 @@ from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import HIGHEST, Extrapolation, converges, extrapolate, share
 from udec_ia.studies.setting_runner import Options, Row, SettingRunner
 from udec_ia.studies.settings import Fraction, Setting, longer_steps, reference_setting, shorter_steps
-from udec_ia.studies.survey_run import Parting, find_parting
+from udec_ia.studies.survey_run import RunSeparation, find_separation
 from udec_ia.studies.worker_pool import RUNS
 
 WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
@@ -35,7 +35,7 @@ class AccuracyStudy:
     """The study of one deck. rows: all settings. references: of the quantities, None without a value.
 
     known: quantities that are compared. levels: rows of the reference, the step halved from one to the next.
-    best: the recommended one. fraction: that of the deck at first, None if it does not matter. parting: where
+    best: the recommended one. fraction: that of the deck at first, None if it does not matter. separation: where
     the finest runs part. solved: what SOLVE reports in the deck as it is, "" for rest. notes: sentences.
     """
 
@@ -48,7 +48,7 @@ class AccuracyStudy:
     known: list[str] = field(default_factory=list)
     best: Row | None = None
     fraction: Fraction | None = None
-    parting: Parting | None = None
+    separation: RunSeparation | None = None
     solved: str = ""
     notes: list[str] = field(default_factory=list)
 
@@ -122,7 +122,7 @@ def _reference(study: AccuracyStudy, runner: SettingRunner) -> None:
         study.levels += [row for row in wanted if row.compared]
         if len(study.levels) > 1:
             one, two = (study.path(row) for row in study.levels[-2:])
-            study.parting = find_parting(one, two, study.tolerance)
+            study.separation = find_separation(one, two, study.tolerance)
         values = {
             name: [row.result.quantities[name] for row in study.levels if row.result]
             for name in study.references
@@ -177,7 +177,7 @@ def enter_errors(study: AccuracyStudy) -> None:
         for name, one in study.references.items()
         if one
         and one.share <= SPREAD * study.tolerance
-        and (study.parting is None or math.isfinite(one.order) or one.error == 0)
+        and (study.separation is None or math.isfinite(one.order) or one.error == 0)
     ]
     for row in study.rows:
         if row.result is not None and row.compared:
@@ -208,8 +208,8 @@ def recommended(rows: Sequence[Row], margins: Mapping[str, float], tolerance: fl
     best, safe = (min(some, key=lambda row: (row.cost, row.memory), default=None) for some in (fit, wide))
     if best is None or safe is None:
         return best
-    least, seconds = SCATTER
-    return best if safe.cost - best.cost > max(least * safe.cost, seconds) else safe
+    part, seconds = SCATTER
+    return best if safe.cost - best.cost > max(part * safe.cost, seconds) else safe
 
 
 def pareto_set(rows: Sequence[Row]) -> list[Row]:

@@ -348,7 +348,7 @@ class FieldBlame:
             return [field for kind in kinds for field in every[kind]]
 
         try:
-            kinds = least_part([*every], lambda some: self.explains(fields_of(some)))
+            kinds = smallest_part([*every], lambda some: self.explains(fields_of(some)))
             fields = fields_of(kinds)
             if self.explains(fields_of([kind for kind in every if kind not in kinds])):
                 why = (
@@ -356,7 +356,7 @@ class FieldBlame:
                     "groups: the digits are lost in the motion itself, whatever is perturbed"
                 )
             else:
-                fields = least_part(fields, self.explains)
+                fields = smallest_part(fields, self.explains)
                 why = "noise in these fields alone explains the loss; noise in other groups does not"
             spreads = [(field, self.spread([field])) for field in fields]
             return f"{self.quantity}: {why}", [(field, one, one / self.whole) for field, one in spreads]
@@ -374,8 +374,8 @@ def noisy_fields() -> dict[str, list[str]]:
     }
 
 
-def least_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:
-    """A least part of `items` that is enough: none of the parts that were tried within it is (ddmin).
+def smallest_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:
+    """A smallest part of `items` that is enough: none of the parts that were tried within it is (ddmin).
 
     All of them are assumed to be enough.
     """

@@ -139,7 +139,7 @@ def read_segments(folder: Path) -> list[Segment]:
 # ---- where two runs part
 
 
-class Parting(NamedTuple):
+class RunSeparation(NamedTuple):
     """time: from which on a block is elsewhere (s). x, y: where it was at first.
 
     apart: distance at the end (m). moved: the greatest displacement of any block (m).
@@ -152,7 +152,7 @@ class Parting(NamedTuple):
     moved: float
 
 
-def find_parting(one: Path, two: Path, share: float) -> Parting | None:
+def find_separation(one: Path, two: Path, share: float) -> RunSeparation | None:
     """Where the runs in two folders part for good by more than `share` of the greatest displacement."""
     pairs = [*zip(_tracks(one), _tracks(two), strict=False)]
     if not pairs:
@@ -166,7 +166,7 @@ def find_parting(one: Path, two: Path, share: float) -> Parting | None:
     mark = int(np.argmax(stays.any(axis=1)))
     block = int(np.argmax(np.where(stays[mark], apart[mark], -1.0)))
     x, y = map(float, first[block, 1:])
-    return Parting(pairs[mark][0][0], x, y, float(apart[-1, block]), moved)
+    return RunSeparation(pairs[mark][0][0], x, y, float(apart[-1, block]), moved)
 
 
 def _tracks(folder: Path) -> list[tuple[float, Any]]:

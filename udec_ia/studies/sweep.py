@@ -48,7 +48,7 @@ LONGEST = 120  # characters of the name of a folder
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 SHOWN = 3  # warnings that are shown
 DIGITS = 12  # of the values of a logarithmic range between its ends
-MOST_VALUES = 1_000_000  # values of a range
+VALUE_COUNT = 1_000_000  # values of a range
 FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
 GREATEST = int(sys.float_info.max)
 Given = Value | Iterable[Value]
@@ -221,8 +221,8 @@ def _range(name: str, text: str) -> list[Value]:
         raise ValueError(f"{name}={text}: {FORM}") from None
     if how not in ("", "log"):
         raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one); {FORM}")
-    if not 2 <= n <= MOST_VALUES:
-        raise ValueError(f"{name}={text}: a range has 2 to {MOST_VALUES} values, not {n}")
+    if not 2 <= n <= VALUE_COUNT:
+        raise ValueError(f"{name}={text}: a range has 2 to {VALUE_COUNT} values, not {n}")
     if how == "log":
         return _logarithmic(name, text, float(a), float(b), n)
     steps = [a + (b - a) * k / (n - 1) for k in range(n)]
