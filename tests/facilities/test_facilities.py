@@ -16,10 +16,10 @@ from support.mechanics_scenes import on_base
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
+from udec_ia.facilities import facility_costs as cost
+from udec_ia.facilities.facilities_in_use import FACILITIES, facilities, idle
+from udec_ia.facilities.facility_costs import WITHOUT, costs
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap_tools import facility_costs as cost
-from udec_ia.heap_tools.facilities import FACILITIES, facilities, idle
-from udec_ia.heap_tools.facility_costs import WITHOUT, costs
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table

@@ -20,10 +20,10 @@ import numpy as np
 from udec_ia.advice.energy_monitor import EnergyMonitor
 from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.errors import UdecError
+from udec_ia.facilities.facilities_in_use import FACILITIES, REMEMBER, Facility, Scene
 from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap_tools.facilities import FACILITIES, REMEMBER, Facility, Scene
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
