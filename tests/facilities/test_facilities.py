@@ -19,7 +19,7 @@ from udec_ia.cli import main
 from udec_ia.facilities import facility_costs as cost
 from udec_ia.facilities.facilities_in_use import FACILITIES, facilities, idle
 from udec_ia.facilities.facility_costs import WITHOUT, costs
-from udec_ia.heap.accessors import puti, putr
+from udec_ia.heap.accessors import puti
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
@@ -212,12 +212,6 @@ def test_what_is_asked_for_in_vain_is_named_with_the_reason(
     with_effect(other)
     assert why in vain(m)[name]
     assert name not in vain(other)
-
-
-def test_pore_pressures_have_no_effect() -> None:
-    m = scene()
-    putr(m.array.h, int(m.table("domain")["address"][0]), g.KPP, 1e5)
-    assert vain(m) == {"pore pressure": "set in 1 domain, and no routine looks at it"}
 
 
 def test_damaged_lists_are_not_followed() -> None:

@@ -73,17 +73,12 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
     for k, what in told(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
         contact, overlap = contacts[k], touch.overlap[k]
         if what == OVERLAP:
-            state.report(
-                7,
-                f"KCN of contact@{contact} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
-                f"corner@{o.corner[touch.j[k]]} the outlines overlap by {overlap}",
-            )
+            ends = f"corner@{o.corner[touch.i[k]]} and corner@{o.corner[touch.j[k]]}"
+            text = f"KCN of contact@{contact} is {noted[k]}"
+            state.report(7, f"{text}, but at {ends} the outlines overlap by {overlap}")
         elif what == PLACE:
-            state.report(
-                7,
-                f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}, but the outlines meet at "
-                f"{touch.point[k, 0]}, {touch.point[k, 1]}",
-            )
+            text = f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}"
+            state.report(7, f"{text}, but the outlines meet at {touch.point[k, 0]}, {touch.point[k, 1]}")
         else:
             state.report(7, f"the overlap of contact@{contact} is {max(noted[k], overlap)}, DTOL2 is {limit}")
 
@@ -156,12 +151,9 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
             waits = concave or _waits(state, int(touch.row[k]), side, step)
             far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
             if beyond[k] > far and not (concave and force[k] != 0):
-                segment = "edge" if here.on_edge[k] else "arc"
-                state.report(
-                    7,
-                    f"contact@{contacts[k]} stands on the {segment} of corner@{o.corner[here.corner[k]]} of "
-                    f"block@{block[k]}, but lies {beyond[k]} {what} of it",
-                )
+                segment = f"{'edge' if here.on_edge[k] else 'arc'} of corner@{o.corner[here.corner[k]]}"
+                text = f"contact@{contacts[k]} stands on the {segment} of block@{block[k]}"
+                state.report(7, f"{text}, but lies {beyond[k]} {what} of it")
 
 
 def _waits(state: State, row: int, side: int, step: int) -> bool:
@@ -196,8 +188,5 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
         others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}
         wedge = touch.overlap[one] > 0 and touch.overlap[two] > 0 and len(others) > 1
         if behind > slack[one] + slack[two] + (state.tolerance("ETOL") if wedge else 0.0):
-            state.report(
-                3,
-                f"contact@{contacts[one]} stands before contact@{contacts[two]} in the list of "
-                f"block@{block}, but lies {behind} behind it",
-            )
+            pair = f"contact@{contacts[one]} stands before contact@{contacts[two]}"
+            state.report(3, f"{pair} in the list of block@{block}, but lies {behind} behind it")

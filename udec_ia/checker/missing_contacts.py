@@ -85,11 +85,8 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
         CROSSING(len(apart), o, apart, cross)
         for one, two in apart[cross].tolist():
             if not _thin_tips(state, o, joined, one, two):
-                state.report(
-                    8,
-                    f"block@{o.block[one]} and block@{o.block[two]} overlap, "
-                    "but there is no contact between them",
-                )
+                pair = f"block@{o.block[one]} and block@{o.block[two]}"
+                state.report(8, f"{pair} overlap, but there is no contact between them")
 
 
 def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, contacts: Numbers) -> None:
@@ -108,11 +105,10 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, c
             _tip_at(o, point, reach, state.tolerance("BTOL"), (one, two))
             or _lies_in_third(o, point, state.tolerance("FTOL") / 2, (one, two))
         ):
+            pair = f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y})"
+            segment = f"the {'edge' if what == EDGE else 'arc'} of corner@{o.corner[other]}"
             state.report(
-                8,
-                f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y}), without "
-                f"a contact where the arc of corner@{o.corner[arc]} meets the "
-                f"{'edge' if what == EDGE else 'arc'} of corner@{o.corner[other]}",
+                8, f"{pair}, without a contact where the arc of corner@{o.corner[arc]} meets {segment}"
             )
 
 
