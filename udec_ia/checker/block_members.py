@@ -103,10 +103,10 @@ def _check_counts(state: State) -> None:
     rows = state.rows("block", state.owner["fdef"])
     for name, kind in COUNTS.items():
         count = state.column("fdef", name)
-        there = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))[
-            rows
-        ]
-        state.report_rows(5, "fdef", name, count, count != there, lambda k: f"but counting gives {there[k]}")  # noqa: B023
+        there = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
+        for k in np.flatnonzero(count != there[rows]):
+            text = f"{name} of fdef@{state.address['fdef'][k]} is {count[k]}"
+            state.report(5, f"{text}, but counting gives {there[rows[k]]}")
 
 
 def zoned(state: State) -> Numbers:
