@@ -17,7 +17,7 @@ from support.mechanics_scenes import on_base
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
 from udec_ia.facilities import facility_costs as cost
-from udec_ia.facilities.facilities_in_use import FACILITIES, facilities, idle
+from udec_ia.facilities.facilities_in_use import FACILITIES, facilities, facilities_without_effect
 from udec_ia.facilities.facility_costs import WITHOUT, costs
 from udec_ia.heap.accessors import puti
 from udec_ia.heap_tools.memory_use import junk
@@ -55,7 +55,7 @@ def used(m: Model) -> dict[str, int]:
 
 
 def vain(m: Model) -> dict[str, str]:
-    return {row[0]: row[1] for row in idle(m.array).rows}
+    return {row[0]: row[1] for row in facilities_without_effect(m.array).rows}
 
 
 def test_each_facility_says_how_to_do_without_it() -> None:
@@ -219,7 +219,7 @@ def test_damaged_lists_are_not_followed() -> None:
     block = int(m.table("block")["address"][0])
     puti(m.array.h, block, g.KB, block)
     assert used(m).keys() >= {"blocks and contacts"}
-    listing = idle(m.array)
+    listing = facilities_without_effect(m.array)
     assert "damaged" in listing.said[0]
     assert not [*listing.rows]
 

@@ -18,7 +18,7 @@ from udec_ia.kernels.audit.block_outlines import (
     short_edges,
     wrong_circles,
 )
-from udec_ia.reader.field_reading import INDEX, Numbers, told
+from udec_ia.reader.field_reading import INDEX, Numbers, kernel_rows
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
@@ -94,11 +94,11 @@ def check_outlines(state: State, o: Outlines) -> None:
     area, far = extent(state, o, rows)
     for b in np.flatnonzero(~(area > 0)):
         state.report(7, f"the area of block@{o.block[b]}, clockwise, is {area[b]}: not positive")
-    for k, length, room in told(SHORT_EDGES, blocks, 3, o, state.tolerance("FTOL"), of=float).tolist():
+    for k, length, room in kernel_rows(SHORT_EDGES, blocks, 3, o, state.tolerance("FTOL"), of=float).tolist():
         i = int(k)
         edge = f"from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} of block@{o.block[o.owner[i]]}"
         state.report(7, f"the edge {edge} is {length} long, too short for its roundings, which take {room}")
-    for k, x, y, radius in told(WRONG_CIRCLES, blocks, 4, o, of=float).tolist():
+    for k, x, y, radius in kernel_rows(WRONG_CIRCLES, blocks, 4, o, of=float).tolist():
         i = int(k)
         text = f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}"
         state.report(7, f"{text}, KRAD {o.r[i]}, but its edges ask for {x}, {y}, {radius}")

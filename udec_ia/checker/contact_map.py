@@ -1,16 +1,13 @@
 """Lists of blocks, loops of domains, Euler's formula and the outer domain: invariants 3, 4 and 5.
 
-Every contact stands in the lists of two blocks, so it can be passed in two ways: from the list of KB1 to that
-of KB2, and the other way round. To go on along a block to its next contact and to change the block there is a
-permutation of these passages. Its cycles are the faces of the map, and each must be the loop of one domain.
+Every contact can be passed in two ways: from the list of KB1 to that of KB2, and back. To go on along a block
+to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
+of the map, and each must be the loop of one domain.
 
-All lists are looked at together, as arrays; only what is wrong is looked at by itself.
-
-A domain is on the left of its loop. So the polygon of its loop, through contacts and corners, has a positive
-area, but for the overlaps. The outer domain has the ground on its outside, and minus the area of all that it
-encloses: no other is as low. The loop passes a virtual contact on both of the ways between its two blocks, so
-the two jumps cancel: each block's part of the loop counts as if it closed at the item before the contact.
-After an error that let blocks into each other areas prove nothing, and this is left out.
+A domain is on the left of its loop, so the polygon of the loop has a positive area, but for the overlaps. The
+outer domain has minus the area of all that it encloses: no other is as low. The loop passes a virtual contact
+in both directions, so each block's part counts as if it closed at the item before the contact. After an error
+that let blocks into each other areas prove nothing, and this is left out.
 """
 
 from __future__ import annotations
@@ -26,7 +23,7 @@ from udec_ia.heap.untrusted_lists import ill_linked, place_items
 from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.printable import counted
-from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names, told
+from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, kernel_rows, names
 from udec_ia.reader.list_walks import clockwise_link
 
 PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
@@ -65,7 +62,7 @@ def _check_items(state: State) -> None:
     of_lists = np.column_stack((rings.block, rings.first, rings.count)), rings.item, rings.side
     fields = (KNB, KR, KLB, *AHEAD, *BACK)
     steps = tuple(state.offset[name] - 1 for name in fields)
-    for k, which, noted, wanted in told(
+    for k, which, noted, wanted in kernel_rows(
         ILL_LINKED, len(rings.item), 4, state.h.ia, *of_lists, rings.before, rings.corner, steps
     ).tolist():
         item, block, name = rings.item[k], rings.block[rings.owner[k]], fields[which]

@@ -27,7 +27,7 @@ from udec_ia.kernels.audit.contact_positions import (
     unlike,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, told
+from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, kernel_rows
 
 TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(unlike, 1e6)  # contacts
 
@@ -70,7 +70,7 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
     noted, x, y = (state.column("contact", name)[touch.row] for name in ("KCN", "KXC", "KYC"))
     limit = state.tolerance("DTOL2")
     by_outlines = touch.overlap, touch.point, touch.slack
-    for k, what in told(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
+    for k, what in kernel_rows(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
         contact, overlap = contacts[k], touch.overlap[k]
         if what == OVERLAP:
             ends = f"corner@{o.corner[touch.i[k]]} and corner@{o.corner[touch.j[k]]}"
@@ -182,7 +182,7 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     near = state.tolerance("FTOL") + state.tolerance("HTOL")
     slack = touch.slack + near / 2
     of_lists = rings.lists, rings.contact, rings.row, rings.side
-    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
+    rows = kernel_rows(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
     for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):
         block = rings.block[owner]
         others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}

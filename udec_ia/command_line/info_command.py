@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 VERBS = ("info",)
 SCRIPT = """\
 from udec_ia.facilities.facilities_in_use import facilities
-from udec_ia.facilities.facilities_in_use import idle
+from udec_ia.facilities.facilities_in_use import facilities_without_effect
 from udec_ia.restart import info, look_into
 
 array = look_into({file!r})  # of a model: model.array
 print(info({file!r}))
-print(facilities(array).as_text() + idle(array).as_text(), end="")"""
+print(facilities(array).as_text() + facilities_without_effect(array).as_text(), end="")"""
 COST = """\
 from udec_ia import Model
 from udec_ia.facilities.facility_costs import costs
@@ -57,7 +57,7 @@ def _look(args: argparse.Namespace) -> Listing | Tables:
 def _known(args: argparse.Namespace) -> Tables:
     """What the file says about itself, and what its words show, if they can be read here."""
     from udec_ia.errors import UdecError
-    from udec_ia.facilities.facilities_in_use import facilities, idle
+    from udec_ia.facilities.facilities_in_use import facilities, facilities_without_effect
     from udec_ia.reader.listing import Listing, Tables
     from udec_ia.restart import info, look_into
 
@@ -66,7 +66,7 @@ def _known(args: argparse.Namespace) -> Tables:
         array = look_into(args.file)
     except UdecError:  # its words are those of another program: said above
         return Tables(parts)
-    return Tables(parts | {"facilities": facilities(array), "idle": idle(array)})
+    return Tables(parts | {"facilities": facilities(array), "idle": facilities_without_effect(array)})
 
 
 def _budget(args: argparse.Namespace) -> dict[str, float]:

@@ -246,7 +246,7 @@ LOADS = ("KUFX", "KUFY", "KUCXX", "KUCXY", "KUCYY")
 MODULI = ("bulk", "g")
 
 
-def idle(array: MainArray) -> Listing:
+def facilities_without_effect(array: MainArray) -> Listing:
     """What was asked for and has no effect in the state in `array`, and why."""
     scene = Scene(array)
     if not scene.lists_end:

@@ -1,16 +1,11 @@
 """Groups at new addresses: in the order of their lists (`udec renumber`), or in that of the map.
 
-A run gives groups the addresses that FIND has left, so in time neighbours of a list lie far apart, and each
-step along it waits for the memory of the machine. `renumber` gives each kind a stretch of IA() of its own, in
-the order of its list: blocks, contacts and the other main lists as they run, corners block by block
-clockwise, extensions, grid-points and zones in the order of their blocks. The lists themselves stay as they
-are. Their order is that of the sums of forces, so no bit of any result changes.
+`renumber` gives each kind a stretch of IA() of its own, in the order of its list. The lists, and with them
+the sums of forces, stay as they are, so no bit of any result changes.
 
-`arrange` puts the lists in a new order too, before the first cycle of a large model. SPLIT makes blocks,
-corners, contacts and domains by turns, wherever the lines run. Every pass of the cycle goes through one kind
-of group and looks at its neighbours in the map: so each kind is laid in strips across the model, and all
-passes read memory in nearly straight runs. Small models stay as they are: they fit the machine's caches, and
-their addresses are what a deck has seen.
+`arrange` also puts the lists in a new order before the first cycle of a large model: each kind is laid in
+strips across the model, so that all passes read memory in nearly straight runs. Small models stay as they
+are: they fit the machine's caches, and a deck has seen their addresses.
 """
 
 from __future__ import annotations
@@ -23,7 +18,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.relocation import relocate
-from udec_ia.heap_tools.rewrite_heap import junk_words, movable
+from udec_ia.heap_tools.rewrite_heap import groups_in_list_order, junk_words
 from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
@@ -38,7 +33,7 @@ def renumber(array: MainArray) -> Listing:
 
     Raises Unsound, and changes nothing, if a word is in no group or a pointer leads to no group of its kind.
     """
-    order, junk = movable(array), junk_words(array)
+    order, junk = groups_in_list_order(array), junk_words(array)
     moved = relocate(array, {kind: at for kind, at in order.items() if len(at)})
     changed = sum(int(np.count_nonzero(moved[at] != at)) for at in order.values())
     groups = sum(map(len, order.values()))

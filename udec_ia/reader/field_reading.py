@@ -111,7 +111,7 @@ def in_words(field: Field) -> str:
 ROOM = 100  # rows that are expected
 
 
-def told(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
+def kernel_rows(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
     """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
 
     groups: how many it goes through; of: int or float.
