@@ -181,10 +181,14 @@ def _linked(atlas: Atlas, link: str, start: int) -> Iterator[int]:
             raise Unsound(f"{source} points to {iad}: {leads_to(atlas, kind, np.array([iad]))[0]}")
         return iad
 
-    def step(iad: int) -> int:
-        return sound(int(atlas.gather(word, np.int64(iad))), f"{link} of {kind}@{iad}")
+    def in_words(iad: int) -> str:
+        return f"{link} of {kind}@{iad}"
 
-    yield from follow(kind, sound(start, "the address given"), step, word.field.role == "anticlockwise")
+    def step(iad: int) -> int:
+        return sound(int(atlas.gather(word, np.int64(iad))), in_words(iad))
+
+    closed = word.field.role == "anticlockwise"
+    yield from follow(kind, sound(start, "the address given"), step, in_words, closed)
 
 
 def _having(atlas: Atlas, name: str) -> dict[str, Word]:

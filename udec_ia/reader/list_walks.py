@@ -37,20 +37,22 @@ class Unsound(UdecError):
         super().__init__(20, relation)
 
 
-def follow(kind: str, first: Item, step: Callable[[Item], Item], closed: bool = False) -> Iterator[Item]:
+def follow(
+    kind: str, first: Item, step: Callable[[Item], Item], link: Callable[[Item], str], closed: bool = False
+) -> Iterator[Item]:
     """`first`, step(first), ... until 0 or, along a `closed` list, until it comes back to `first`.
 
-    kind: what the items are, for the message. Raises Unsound where an item comes again.
+    kind, link: what the items are, and the link of an item in words. Unsound where an item comes again.
     """
     seen: set[Item] = set()
-    item = first
+    item = before = first
     while item and not (closed and seen and item == first):
         if item in seen:
             address = item if isinstance(item, int) else item[0]
-            raise Unsound(f"it leads back to {kind}@{address}, where it did not begin")
+            raise Unsound(f"{link(before)} leads back to {kind}@{address}, where the list did not begin")
         seen.add(item)
         yield item
-        item = step(item)
+        before, item = item, step(item)
 
 
 def can_stand(h: Memory, iad: int, kind: str) -> bool:
@@ -82,11 +84,14 @@ def extension(h: Memory, block: int) -> int:
 def _listed(h: Memory, kind: str, first: int, link: Offset, source: str) -> Iterator[int]:
     """Groups of `kind` from `first` on, which `source` points to."""
 
+    def in_words(iad: int) -> str:
+        return f"the list link of {kind}@{iad}"
+
     def step(iad: int) -> int:
         following = iget(h, iad, link)
-        return following and expect(h, following, (kind,), f"the list link of {kind}@{iad}")
+        return following and expect(h, following, (kind,), in_words(iad))
 
-    yield from follow(kind, first and expect(h, first, (kind,), source), step)
+    yield from follow(kind, first and expect(h, first, (kind,), source), step, in_words)
 
 
 def groups(h: Memory, kind: str) -> Iterator[int]:
@@ -125,7 +130,11 @@ def next_item(h: Memory, block: int, iad: int) -> int:
 def boundary(h: Memory, block: int) -> Iterator[int]:
     """Corners and contacts of `block`, clockwise, from the corner KP on."""
     first = expect(h, iget(h, block, g.KP), ("corner",), f"KP of block@{block}")
-    yield from follow("item", first, lambda iad: next_item(h, block, iad), closed=True)
+
+    def link(iad: int) -> str:
+        return clockwise_link(h, block, iad)[0]
+
+    yield from follow("item", first, lambda iad: next_item(h, block, iad), link, closed=True)
 
 
 def corners(h: Memory, block: int) -> list[int]:
@@ -137,10 +146,13 @@ def reverse(h: Memory, block: int) -> Iterator[int]:
     """Corners of `block` along the reverse list, anticlockwise, from the corner KP on."""
     first = expect(h, iget(h, block, g.KP), ("corner",), f"KP of block@{block}")
 
-    def step(iad: int) -> int:
-        return expect(h, iget(h, iad, g.KR), ("corner",), f"KR of corner@{iad}")
+    def link(iad: int) -> str:
+        return f"KR of corner@{iad}"
 
-    yield from follow("corner", first, step, closed=True)
+    def step(iad: int) -> int:
+        return expect(h, iget(h, iad, g.KR), ("corner",), link(iad))
+
+    yield from follow("corner", first, step, link, closed=True)
 
 
 def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
@@ -162,7 +174,10 @@ def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
         following = next_item(h, block, item)
         return following, other_block(h, following, block) if kind_of(h, following) == "contact" else block
 
-    yield from follow("item", (contact, start), step, closed=True)
+    def link(here: tuple[int, int]) -> str:
+        return clockwise_link(h, here[1], here[0])[0]
+
+    yield from follow("item", (contact, start), step, link, closed=True)
 
 
 def other_block(h: Memory, contact: int, block: int) -> int:
