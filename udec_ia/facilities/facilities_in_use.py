@@ -19,10 +19,10 @@ from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.model_settings import PROPERTIES
-from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.printable import counted
 from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.list_walks import chain
 from udec_ia.reader.listing import Listing
 
 LISTS = {"block": ("KB", g.IBPNT), "contact": ("KC", g.ICPNT), "bound": ("KU", g.IBNPNT)}

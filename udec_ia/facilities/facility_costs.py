@@ -26,8 +26,8 @@ from udec_ia.kernels.links.relaxations import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_conditions import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
-from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.reader.list_walks import chain
 from udec_ia.reader.listing import Listing
 from udec_ia.running.cycle import cycle, prepare
 from udec_ia.running.history_series import Recording

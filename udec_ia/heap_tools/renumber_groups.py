@@ -23,8 +23,8 @@ from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
-from udec_ia.ops.common.block_ranges import chain
 from udec_ia.reader.group_tables import addresses
+from udec_ia.reader.list_walks import chain
 from udec_ia.reader.listing import Listing
 
 
