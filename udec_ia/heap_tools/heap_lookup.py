@@ -188,7 +188,7 @@ def _linked(atlas: Atlas, link: str, start: int) -> Iterator[int]:
         return sound(int(atlas.gather(word, np.int64(iad))), in_words(iad))
 
     closed = word.field.role == "anticlockwise"
-    yield from follow(kind, sound(start, "the address given"), step, in_words, closed)
+    yield from follow(sound(start, "the address given"), step, in_words, closed)
 
 
 def _having(atlas: Atlas, name: str) -> dict[str, Word]:

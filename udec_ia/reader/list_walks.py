@@ -38,18 +38,18 @@ class Unsound(UdecError):
 
 
 def follow(
-    kind: str, first: Item, step: Callable[[Item], Item], link: Callable[[Item], str], closed: bool = False
+    first: Item, step: Callable[[Item], Item], link: Callable[[Item], str], closed: bool = False
 ) -> Iterator[Item]:
     """`first`, step(first), ... until 0 or, along a `closed` list, until it comes back to `first`.
 
-    kind, link: what the items are, and the link of an item in words. Unsound where an item comes again.
+    link: names the link of an item, as "KL of corner@93". Raises Unsound where an item comes again.
     """
     seen: set[Item] = set()
     item = before = first
     while item and not (closed and seen and item == first):
         if item in seen:
-            address = item if isinstance(item, int) else item[0]
-            raise Unsound(f"{link(before)} leads back to {kind}@{address}, where the list did not begin")
+            *_, name = link(item).split()
+            raise Unsound(f"{link(before)} leads back to {name}, where the list did not begin")
         seen.add(item)
         yield item
         before, item = item, step(item)
@@ -102,7 +102,7 @@ def _listed(h: Memory, kind: str, first: int, link: Offset, source: str) -> Iter
         following = iget(h, iad, link)
         return following and expect(h, following, (kind,), in_words(iad))
 
-    yield from follow(kind, first and expect(h, first, (kind,), source), step, in_words)
+    yield from follow(first and expect(h, first, (kind,), source), step, in_words)
 
 
 def groups(h: Memory, kind: str) -> Iterator[int]:
@@ -145,7 +145,7 @@ def boundary(h: Memory, block: int) -> Iterator[int]:
     def link(iad: int) -> str:
         return clockwise_link(h, block, iad)[0]
 
-    yield from follow("item", first, lambda iad: next_item(h, block, iad), link, closed=True)
+    yield from follow(first, lambda iad: next_item(h, block, iad), link, closed=True)
 
 
 def corners(h: Memory, block: int) -> list[int]:
@@ -163,7 +163,7 @@ def reverse(h: Memory, block: int) -> Iterator[int]:
     def step(iad: int) -> int:
         return expect(h, iget(h, iad, g.KR), ("corner",), link(iad))
 
-    yield from follow("corner", first, step, link, closed=True)
+    yield from follow(first, step, link, closed=True)
 
 
 def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
@@ -188,7 +188,7 @@ def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
     def link(here: tuple[int, int]) -> str:
         return clockwise_link(h, here[1], here[0])[0]
 
-    yield from follow("item", (contact, start), step, link, closed=True)
+    yield from follow((contact, start), step, link, closed=True)
 
 
 def other_block(h: Memory, contact: int, block: int) -> int:
