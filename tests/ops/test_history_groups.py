@@ -90,6 +90,7 @@ def test_save_and_restart_go_on_recording(tmp_path: Path) -> None:
     whole.cycle(50)
     whole.cycle(60)
     first.cycle(50)
+    (tmp_path / "there").mkdir()
     saved = first.save((tmp_path / "there" / "half.h5").absolute())
     second = Model.restore(saved)
     second.out, second.name = tmp_path / "second", "other"
@@ -136,7 +137,7 @@ def test_histories_follow_groups_that_change_places(tmp_path: Path) -> None:
         one.history(1, "KXP", at=(0.5, 1))
         one.history(1, "KY", at=(0, 0.5))
         one.history(1, "KCFN", at=(1, 0))
-    moved.array = relocate(moved.array, np.random.default_rng(1))
+    moved.session.array = relocate(moved.array, np.random.default_rng(1))
     before = [one.address for one in definitions(m.array)]
     assert [one.address for one in definitions(moved.array)] != before
     for one in (m, moved):
