@@ -75,7 +75,7 @@ class Debugger:
         observers, self.model.session.observers = self.model.session.observers, [_CycleWatcher(self)]
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
-        self._before = list(self.model.session.deck_log)
+        self._before = list(self.model.session.log.lines)
         number = 0
         try:
             while True:
