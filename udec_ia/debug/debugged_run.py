@@ -228,7 +228,7 @@ class Debugger:
         return self.trace is not None or self.event < self.timeline.now
 
     def show(self, event: int) -> None:
-        """Look at the state after `event`, which was. Raises Gone."""
+        """Look at the state after `event`, which was. Raises UnreachableEvent."""
         if event != self.timeline.now:
             self._array = event, self.timeline.at(event)
         self.event, self.trace = event, None
@@ -293,7 +293,7 @@ class Debugger:
             condition.begin(self.model.array)
 
     def back(self, events: int) -> None:
-        """Look at what was `events` before. Raises Gone."""
+        """Look at what was `events` before. Raises UnreachableEvent."""
         self.show(max(self.event - events, self.timeline.earliest))
 
     def back_to(self, conditions: Sequence[StopCondition]) -> str:
