@@ -244,18 +244,9 @@ class Session:
         if self.logs_calls:
             self.log.add(method, args, named)
 
-    def log_part(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """Log the completed part of a run that has ended early, which no line of a deck says."""
-        self.log.add(method, args, named)
-
     def log_lines(self, lines: Sequence[str | Step]) -> None:
         """Log the lines of a deck."""
         self.log.add_lines(lines)
-
-    @property
-    def deck_log(self) -> list[str]:
-        """The lines of a deck that say what was done."""
-        return self.log.lines
 
     # ---- warnings and information
 
