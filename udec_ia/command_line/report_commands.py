@@ -170,10 +170,11 @@ def _diff(args: argparse.Namespace) -> Listing | Tables:
 
 
 def _diff_script(args: argparse.Namespace) -> str:
-    module, function = ("word_comparison", "raw") if args.raw else ("comparison_report", "diff")
+    function = "raw" if args.raw else "diff"
     named = "".join(f", {name}={value!r}" for name, value in _given(args).items())
     return (
-        f"from udec_ia.heap_tools.{module} import {function}\nfrom udec_ia.restart import look_into\n\n"
+        f"from udec_ia.heap_tools.comparison_report import {function}\n"
+        "from udec_ia.restart import look_into\n\n"
         f"one = look_into({str(args.file)!r})  # of a model: model.array\n"
         f"two = look_into({str(args.other)!r})\n"
         f"print({function}(one, two{named}).as_text(), end='')"
