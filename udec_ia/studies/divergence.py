@@ -91,7 +91,7 @@ def _worst(found: Compared, field: Differing) -> Difference:
     shares = np.full(len(field.one), np.inf)
     if field.field.real:
         with np.errstate(all="ignore"):
-            off = field.apart.absolute / _greatest(found.matching.sides, field.field.unit)
+            off = field.distances.absolute / _greatest(found.matching.sides, field.field.unit)
         shares = np.nan_to_num(off, nan=np.inf)
     row = int(np.argmax(shares))
     one, two = (column[row].item() for column in field.values)
