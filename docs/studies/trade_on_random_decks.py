@@ -192,7 +192,6 @@ def judge_deck(kind: str, text: str, tolerance: float, folder: Path) -> Verdict:
     return Verdict(kind, tolerance, best.setting.name, error(best.result.quantities, true), times, cheapest)
 
 
-
 def main() -> int:
     """Study as many decks as are asked for, and print what came of them."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])

@@ -1,6 +1,6 @@
 """Writes docs/verification.md and its pictures: the results of problems with exact answers.
 
-    python docs/studies/verification_page.py docs
+python docs/studies/verification_page.py docs
 """
 
 from __future__ import annotations

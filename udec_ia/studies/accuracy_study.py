@@ -35,8 +35,8 @@ class AccuracyStudy:
     """The study of one deck. rows: all settings. references: of the quantities, None without a value.
 
     known: quantities that are compared. levels: rows of the reference, the step halved from one to the next.
-    best: the recommended one. fraction: that of the deck at first, None if it does not matter. separation: where
-    the finest runs part. solved: what SOLVE reports in the deck as it is, "" for rest. notes: sentences.
+    best: the recommended one. fraction: that of the deck at first, None if it does not matter. separation:
+    where the finest runs part. solved: what SOLVE reports in the deck as it is. notes: sentences.
     """
 
     deck: Deck
