@@ -118,16 +118,16 @@ def _why_unknown(study: AccuracyStudy, name: str, one: Extrapolation) -> str:
 
 def _loading_path(study: AccuracyStudy) -> str:
     """Whether the result depends on the loading path, and by how much."""
-    separation = study.separation
+    split = study.separation
     if not study.deck.has("solve"):
         scatters = any(one and one.error and math.isnan(one.order) for one in study.references.values())
-        if separation is None or not scatters:
+        if split is None or not scatters:
             return "not asked: the deck follows a motion, without SOLVE"
         one, two = (row.setting.name for row in study.levels[-2:])
         return (
-            f"the motion depends on small differences: {one} and {two} part at {separation.time:.4g} s, at the "
-            f"block that was at ({separation.x:.4g}, {separation.y:.4g}); at the end it is {separation.apart:.3g} m "
-            f"elsewhere, and the greatest displacement is {separation.moved:.3g} m"
+            f"the motion depends on small differences: {one} and {two} part at {split.time:.4g} s, at the "
+            f"block that was at ({split.x:.4g}, {split.y:.4g}); at the end it is {split.apart:.3g} m "
+            f"elsewhere, and the greatest displacement is {split.moved:.3g} m"
         )
     found = path_differences(study)
     slips = SLIPPED in study.solved
