@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import monotonic
 
 import pytest
 
@@ -66,11 +65,9 @@ def test_static_runs_first_and_then_the_cheapest(tmp_path: Path) -> None:
 def test_starting_runs_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A budget of a second ends after what has to be started to know anything, and the answer says so."""
     (tmp_path / "x.dat").write_text(FALL.replace("CYCLE 9", "CYCLE 5000"))
-    begin = monotonic()
     main(["trade", str(tmp_path / "x.dat"), "--budget", "1s", "--jobs", "2", "--out", str(tmp_path / "out")])
-    assert monotonic() - begin < 25  # two processes start and load the program, on a machine that is busy
     assert "budget" in capsys.readouterr().out
-    assert len([*(tmp_path / "out" / "runs").glob("*/result.json")]) <= 4
+    assert len([*(tmp_path / "out" / "runs").glob("*/result.json")]) == 1
 
 
 def test_words_that_cannot_run_a_deck_are_left_out(tmp_path: Path) -> None:
