@@ -95,6 +95,7 @@ def test_all_commands_are_said_but_those_on_files_and_the_session() -> None:
         "restart",
         "stop",
         "end",
+        "help",
         "default",
     }
     assert spell(Model.balance, (), {}) == []

@@ -208,6 +208,7 @@ class Session:
         """
         if not self.started:
             self.start()
+            self.log_lines(["START"])
         if self.writes.made:  # by the function that is obeyed as a whole, and it stays if that is taken back
             self.note_writes()
         if (sound and self.written) or (shapes and self.unproved):
