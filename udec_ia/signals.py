@@ -1,8 +1,8 @@
 """Ctrl-C and SIGTERM wait until they can do no harm.
 
 Python raises KeyboardInterrupt between any two of its steps: half-way through a change of the map, and in the
-midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only recorded. It is
-handed to the handler that was there before, which raises, as soon as the command is done. Commands that
+midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only recorded.
+It is handed to the handler that was there before, which raises, as soon as the command is done. Commands that
 take long let it through on the way: a run between two pieces of its cycles (`poll`), what only looks or draws
 at any time (`passing`). A second Ctrl-C does not wait: the command is taken back (model/undo.py).
 

@@ -1,9 +1,9 @@
 """What is in a restart file: each object is judged by its header before a byte of it is read.
 
 A checksum detects accidents, not intent: anybody who makes a file can seal it. An HDF5 file can point to
-other files and to itself, and can hold numbers that take no room until they are read. A restart file needs none
-of that. Only what a restart file is known to have is ever opened, by the name that it is known by, and it
-must stand there itself, not a link; what is read must have the type and shape that are expected and lie in
+other files and to itself, and can hold numbers that take no room until they are read. A restart file needs
+none of that. Only what a restart file is known to have is ever opened, by the name that it is known by, and
+it must stand there itself, not a link; what is read must have the type and shape that are expected and lie in
 the file as it is, unpacked; and all of it together is no more than the file. So reading takes memory and
 time in proportion to the size of the file, whatever is in it, and opens no other.
 """

@@ -83,11 +83,8 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
     with refusing(path):
         with opened(path) as file:
             seen = read_state(file, read_header(file))
-            series = (
-                read_histories(file, seen.array, bool(seen.mark))
-                if has_readable_histories(seen.array)
-                else []
-            )
+            known = has_readable_histories(seen.array)
+            series = read_histories(file, seen.array, bool(seen.mark)) if known else []
             deck, laws = read_deck(file), read_laws(file)
         faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
         if not force:
