@@ -13,7 +13,7 @@ from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.untrusted_lists import gaps
-from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers, told
+from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers, kernel_rows
 
 JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
 GAPS = InterpretWhenSmall(gaps, 9e6)  # places where a group could begin
@@ -97,7 +97,7 @@ def _check_tiling(state: State, junk: dict[int, int]) -> None:
         return f"{names[int(state.kind_at[(iad - 1) // state.ratio])]}@{iad}"
 
     to_size, places = JSIZE[0] - 1, len(state.kind_at)
-    rows = told(GAPS, places, 3, state.h.ia, state.kind_at, sizes, to_size, state.ratio, state.free)
+    rows = kernel_rows(GAPS, places, 3, state.h.ia, state.kind_at, sizes, to_size, state.ratio, state.free)
     for before, end, start in rows.tolist():
         left = name(before) if before else "the start of the heap"
         right = name(start) if start != state.free else "MFREE"
