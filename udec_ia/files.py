@@ -90,7 +90,7 @@ def _alike(path: Path, content: Content) -> Judge:
     """Judges by the first bytes, which must be those of `content`."""
 
     def judge(front: bytes, _: int) -> str:
-        alike = front[:SIGNATURE] == bytes(content[:SIGNATURE])
+        alike = front.startswith(bytes(content[:SIGNATURE]))
         return "" if alike else f"exists, but is not a {path.suffix[1:].upper()} file of this program"
 
     return judge
