@@ -142,7 +142,7 @@ def keep_rights(file: Path, before: os.stat_result) -> None:
 
 
 def takes_files(folder: Path) -> bool:
-    """False if no file can be put into `folder`, as far as that can be told before it is made."""
+    """False if no file can be put into `folder`, as far as is known before it is made."""
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 

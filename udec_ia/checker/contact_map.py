@@ -62,11 +62,11 @@ def _check_items(state: State) -> None:
     of_lists = np.column_stack((rings.block, rings.first, rings.count)), rings.item, rings.side
     fields = (KNB, KR, KLB, *AHEAD, *BACK)
     steps = tuple(state.offset[name] - 1 for name in fields)
-    for k, which, noted, wanted in kernel_rows(
+    for k, which, stored, wanted in kernel_rows(
         ILL_LINKED, len(rings.item), 4, state.h.ia, *of_lists, rings.before, rings.corner, steps
     ).tolist():
         item, block, name = rings.item[k], rings.block[rings.owner[k]], fields[which]
-        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {noted}"
+        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {stored}"
         if name == KNB:
             why = f"the corner stands in the list of block@{block}"
         elif name == KR:
