@@ -268,9 +268,9 @@ class Undo:
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
 
     def _begin(self, session: Undoable) -> None:
-        if session.writes.made:
+        if session.writes.pending:
             session.note_writes()
-            session.writes.made = False
+            session.writes.pending = False
         self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
         self.before = Before(session)
         self.busy = True
