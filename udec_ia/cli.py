@@ -77,7 +77,7 @@ def _run(args: argparse.Namespace) -> int:
     try:
         values = given(args.set)
     except ValueError as error:
-        print(f"udec: {error}", file=sys.stderr)
+        print(f"udec: {visible(str(error))}", file=sys.stderr)
         return MISUSE
     try:
         model = Model(build=args.build, mtop=args.mtop, out=out, constitutive=args.constitutive)
@@ -137,7 +137,7 @@ def _saved(interrupt: BaseException | None) -> str:
     """Where a run that was interrupted is saved, however many interrupts came on top of the first."""
     while interrupt is not None:
         if isinstance(interrupt, KeyboardInterrupt) and interrupt.args and interrupt.args[0]:
-            return f": the results so far are saved in {interrupt.args[0]}"
+            return f": the results so far are saved in {visible(interrupt.args[0])}"
         interrupt = interrupt.__context__
     return ""
 

@@ -77,7 +77,7 @@ def look(kind: str, cycles: int) -> tuple[list[int], list[str]]:
         changes.append(len(now ^ before))
         before = now
     moved = float(np.hypot(*(np.array([m.table("block")[k] for k in ("KX", "KY")]) - places)).max())
-    share = f"{m.session.monitors.chatter.share:.2f}" + (f", told by {told[1]}" if told[1:] else "")
+    share = f"{m.session.monitors.chatter.share:.2f}" + (f", warned by {told[1]}" if told[1:] else "")
     return changes, [
         f"{np.mean(changes):.2f}",
         str(len(before)),

@@ -37,7 +37,7 @@ def run(*args: str, cwd: Path = ROOT, **more: str) -> subprocess.CompletedProces
     return subprocess.run(command, env=env, cwd=cwd, capture_output=True, text=True, timeout=500, check=False)
 
 
-def planted(every: int, **more: str) -> list[str]:
+def walk_planted(every: int, **more: str) -> list[str]:
     """The lines of tests/support/planted_pointers.py."""
     done = run(str(TESTS / "support" / "planted_pointers.py"), str(every), **more)
     assert done.returncode == 0, done.stderr
@@ -47,7 +47,7 @@ def planted(every: int, **more: str) -> list[str]:
 @pytest.fixture(scope="module")
 def interpreted() -> list[str]:
     """Of some wrong pointers, interpreted."""
-    return planted(EVERY, UDEC_CHECKED="1", NUMBA_DISABLE_JIT="1")
+    return walk_planted(EVERY, UDEC_CHECKED="1", NUMBA_DISABLE_JIT="1")
 
 
 def proven(lines: list[str]) -> set[str]:
@@ -66,7 +66,7 @@ def proven(lines: list[str]) -> set[str]:
 
 def test_the_words_are_those_of_the_ordinary_build(interpreted: list[str]) -> None:
     """And the kinds of groups that FIND and LOSE have noted are those that a census finds."""
-    assert planted(1, NUMBA_DISABLE_JIT="1") == interpreted[:3]
+    assert walk_planted(1, NUMBA_DISABLE_JIT="1") == interpreted[:3]
     assert interpreted[2] == "True"
 
 
@@ -77,7 +77,7 @@ def test_wrong_pointers_are_named_where_kernels_are_interpreted(interpreted: lis
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_compiled_kernels_say_the_same(interpreted: list[str]) -> None:
     """And come to the same bits. Of all pointers of all kinds; none ends the process, or goes in a circle."""
-    lines = planted(1, UDEC_CHECKED="1")
+    lines = walk_planted(1, UDEC_CHECKED="1")
     assert lines[:3] == interpreted[:3]
     assert lines[3::EVERY] == interpreted[3:]
     assert len(lines) > 500

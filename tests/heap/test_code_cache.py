@@ -20,17 +20,17 @@ ROOT = Path(__file__).parents[2]
 SIGNATURES = [("int32", "float64"), ("int64", "float64")]
 
 
-def kept(folder: Path) -> CodeFile:
+def code_file(folder: Path) -> CodeFile:
     return CodeFile(str(folder), "twice-1.py311", None)
 
 
 def test_what_is_kept_is_found_by_its_types(tmp_path: Path) -> None:
     """Two processes that know nothing of one another keep code for different types."""
-    one, two = kept(tmp_path), kept(tmp_path)
+    one, two = code_file(tmp_path), code_file(tmp_path)
     assert one.load(SIGNATURES[0]) is None
     one.save(SIGNATURES[0], b"narrow")
     two.save(SIGNATURES[1], b"wide")
-    for reader in (one, two, kept(tmp_path)):
+    for reader in (one, two, code_file(tmp_path)):
         assert [reader.load(key) for key in SIGNATURES] == [b"narrow", b"wide"]
     two.save(SIGNATURES[0], b"narrow again")
     assert one.load(SIGNATURES[0]) == b"narrow again"
@@ -38,7 +38,7 @@ def test_what_is_kept_is_found_by_its_types(tmp_path: Path) -> None:
 
 def test_code_for_other_types_is_not_taken(tmp_path: Path) -> None:
     """Even if its file should have the name of ours."""
-    cache = kept(tmp_path)
+    cache = code_file(tmp_path)
     for key in SIGNATURES:
         cache.save(key, key)
     names = sorted(tmp_path.iterdir())

@@ -50,7 +50,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
+def fake_time(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
     """A clock that goes when it is told to."""
     now = [100.0]
     monkeypatch.setattr(compile_time, "monotonic", lambda: now[0])
@@ -77,36 +77,36 @@ def test_what_is_compiled_is_told_and_what_is_found_on_disk_is_not(
     assert compile_time.compile_seconds() > spent
 
 
-def test_the_clock_of_a_run_stands_still_meanwhile(clock: list[float]) -> None:
+def test_the_clock_of_a_run_stands_still_meanwhile(fake_time: list[float]) -> None:
     start = compile_time.working_time()
-    clock[0] += 1
+    fake_time[0] += 1
     with compiling():
-        clock[0] += 30
+        fake_time[0] += 30
         assert compile_time.working_time() - start == 1
     with suppress(KeyboardInterrupt), compiling():
-        clock[0] += 5
+        fake_time[0] += 5
         raise KeyboardInterrupt
-    clock[0] += 2
+    fake_time[0] += 2
     assert compile_time.working_time() - start == 3
     assert compile_time.compile_seconds() == 35
 
 
-def test_the_rate_is_that_of_the_cycles(clock: list[float]) -> None:
+def test_the_rate_is_that_of_the_cycles(fake_time: list[float]) -> None:
     h, out = two_blocks().h, io.StringIO()
     report = Report(lambda: h, 4000, out, None)
     with compiling():
-        clock[0] += 60
-    clock[0] += 4
+        fake_time[0] += 60
+    fake_time[0] += 4
     report(4000)
     report.close()
     assert out.getvalue().startswith("cycle 4000 of 4000: 1,000 cycles/s, ")
 
 
-def test_the_summary_says_what_went_into_compiling(clock: list[float]) -> None:
+def test_the_summary_says_what_went_into_compiling(fake_time: list[float]) -> None:
     with compiling():
-        clock[0] += 7
+        fake_time[0] += 7
     model = Model()
     assert "compiling" not in model.summary()
     with compiling():
-        clock[0] += 12.34
+        fake_time[0] += 12.34
     assert model.summary().endswith(" s, 12.3 s of it compiling")

@@ -64,7 +64,7 @@ def test_with_any_number_of_words_a_command_is_obeyed_or_changes_nothing(command
     for words in range(first, len(before.h.ia), step):
         model = Model(build)
         model.start()
-        model.array = before.copy()
+        model.session.array = before.copy()
         assert model.array.refit(words)
         try:
             COMMANDS[command](model)

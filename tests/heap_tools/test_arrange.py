@@ -61,7 +61,7 @@ def test_where_groups_lie_does_not_change_a_bit_of_the_physics(how: str) -> None
     if how == "list order":
         relocate(there.array, {kind: table["address"] for kind, table in rows(there).items()})
     else:
-        there.array = naive.relocate(there.array, np.random.default_rng(2))
+        there.session.array = naive.relocate(there.array, np.random.default_rng(2))
     assert differences(essence(here.array), essence(there.array)) == []
     for m in (here, there):
         m.cycle(100)

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.census import census
-from naive.convert import common, put_together, take_apart
 from naive.relocate import differences, essence
+from naive.word_schemes import common, put_together, take_apart
 from support import random_deformable_scenes as soft_scenes
 from support import random_scenes as scenes
 from support.every_group_kind import every_kind
@@ -165,7 +165,7 @@ def test_a_run_in_integers_of_another_width_goes_on_to_the_last_bit(to: str, tmp
     here.cycle(30)
     there = Model(to, out=tmp_path / "there")
     there.restart(here.save(tmp_path / "here.h5"))
-    there.array = convert(here.array, scheme(to)).array
+    there.session.array = convert(here.array, scheme(to)).array
     for m in (here, there):
         m.cycle(50)
         m.split(-1, 0.7, 1.2, 0.7)
@@ -187,7 +187,7 @@ def test_a_cycle_that_stopped_half_way_goes_on_to_the_last_bit(tmp_path: Path) -
         with pytest.raises(UdecError, match="error 1:"):
             m.cycle(cycles)
         phases.add(int(m.h.ci[g.JPHASE]))
-        m.array = convert(m.array, scheme("i64r64")).array
+        m.session.array = convert(m.array, scheme("i64r64")).array
         renumber(m.array)
         m.array.refit(None)
         m.cycle(cycles - int(m.h.ci[g.MCTOT]))
@@ -229,7 +229,7 @@ def test_wider_reals_go_on(narrow: Model, tmp_path: Path) -> None:
     """Sound in every digit, cut and cycled; near to what the narrow ones do for a while."""
     wide = Model("i32r64", out=tmp_path)
     wide.restart(narrow.save(tmp_path / "narrow.h5"))
-    wide.array = convert(wide.array, scheme("i32r64")).array
+    wide.session.array = convert(wide.array, scheme("i32r64")).array
     other = Model.restore(tmp_path / "narrow.h5", out=tmp_path)
     for m in (wide, other):
         m.cycle(20)
@@ -263,7 +263,7 @@ def test_narrower_reals(to: str, tmp_path: Path) -> None:
     m.save(tmp_path / "wide.h5")
     there = Model(to, out=tmp_path)
     there.restart(tmp_path / "wide.h5")
-    there.array = made.array
+    there.session.array = made.array
     there.cycle(100)
     assert there.check() == []
 
@@ -280,7 +280,7 @@ def test_what_follows_from_the_corners_is_what_round_makes_of_them(narrow: Model
     settle(mine)
     m = Model("i32r64")
     m.start()
-    m.array = theirs
+    m.session.array = theirs
     m.round(float(theirs.h.cr[g.DTOL]))
     for kind, names in (("corner", ("KXCP", "KYCP", "KRAD")), ("contact", ("KXC", "KYC", "KCN"))):
         one, two = table(mine, kind), table(m.array, kind)
@@ -313,7 +313,7 @@ def test_random_scenes_in_reals_of_the_other_width(play: Any, seed: int) -> None
         assert made.broken == []
         there = Model(other)
         there.start()
-        there.tell, there.array = m.tell, made.array
+        there.tell, there.session.array = m.tell, made.array
         if not scene.ended:
             there.cycle(20)
             assert check(there.array) == []

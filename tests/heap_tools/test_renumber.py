@@ -26,7 +26,7 @@ TABLE = read_table()
 def at_random_addresses(request: pytest.FixtureRequest) -> Model:
     """Groups of every kind, anywhere, and some junk."""
     m = every_kind(request.param)
-    m.array = relocate(m.array, np.random.default_rng(3))
+    m.session.array = relocate(m.array, np.random.default_rng(3))
     m.split(0.2, -2, 0.2, 2)
     m.delete(0, 0.2, 0, 1)
     assert m.h.ci[g.JUNK] != 0

@@ -102,7 +102,7 @@ def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
     def shuffle(model: Model) -> Model:
         other = quiet(Model())
         other.start()
-        other.array = relocate(model.array, rng)
+        other.session.array = relocate(model.array, rng)
         assert other.check() == []
         return other
 

@@ -72,7 +72,7 @@ def at_random() -> Between:
     rng = np.random.default_rng(4)
 
     def shuffle(m: Model) -> None:
-        m.array = relocate(m.array, rng)
+        m.session.array = relocate(m.array, rng)
         assert m.check() == []
 
     return shuffle
@@ -93,7 +93,7 @@ def to_and_fro(m: Model) -> None:
     bits = m.array.scheme.real_bits
     names = [f"i{wide}r{bits}" for wide in (64, 16, 32) if wide <= bits]
     for name in (*names, m.array.scheme.name):
-        m.array = convert(m.array, scheme(name)).array
+        m.session.array = convert(m.array, scheme(name)).array
     assert m.check() == []
 
 

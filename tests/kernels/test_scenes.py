@@ -196,7 +196,7 @@ def test_addresses_do_not_change_a_bit(seed: int) -> None:
     def shuffle(model: Model) -> Model:
         other = Model()
         other.start()
-        other.array = relocate(model.array, rng)
+        other.session.array = relocate(model.array, rng)
         assert other.check() == []
         return other
 

@@ -67,7 +67,7 @@ def limited(m: Model, mtop: int) -> Model:
     """`m` in a main array of `mtop` words, which cannot grow."""
     other = Model()
     other.start()
-    other.array = MainArray(m.array.scheme, mtop)
+    other.session.array = MainArray(m.array.scheme, mtop)
     here, there = other.array.h, m.array.h
     size = len(here.ia)
     here.ia[:] = there.ia[:size]

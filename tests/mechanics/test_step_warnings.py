@@ -21,7 +21,7 @@ def resting(build: str = "i32r64", ks: float = 1e8, d: float = 0.1, gravity: flo
     return m
 
 
-def told(m: Model) -> list[str]:
+def collect_warnings(m: Model) -> list[str]:
     """The keys of all warnings from now on."""
     keys: list[str] = []
     m.tell = lambda warning: keys.append(getattr(warning, "key", ""))
@@ -33,7 +33,7 @@ def told(m: Model) -> list[str]:
 @pytest.mark.parametrize("share", [0.5, 0.9, 1.0])
 def test_impacts_are_warned_of_near_the_bound_if_nothing_damps(build: str, damps: bool, share: float) -> None:
     m = resting(build)
-    said = told(m)
+    said = collect_warnings(m)
     if damps:
         m.damping(local=0.5)
     m.fraction(share, safe=True)
@@ -45,7 +45,7 @@ def test_impacts_are_warned_of_near_the_bound_if_nothing_damps(build: str, damps
 def test_a_block_that_is_thrown_up_is_told_of_before_and_stopped_with_a_cure() -> None:
     """With hardly any shear stiffness the bound is the limit of the swing itself, and each landing gains."""
     m = resting(ks=1e6, d=0.45)
-    said = told(m)
+    said = collect_warnings(m)
     m.fraction(0.9, safe=True)
     with pytest.raises(UdecError, match=r"more energy than was put in(.|\n)*take FRACTION 0\.45 SAFE"):
         m.cycle(3000)
@@ -64,7 +64,7 @@ def test_a_safe_step_is_told_as_the_share_that_was_asked_for(damp: dict[str, Any
 
 def test_what_reals_resolve_is_told_once_though_its_numbers_change() -> None:
     m = resting("i32r32", gravity=0.001)
-    said = told(m)
+    said = collect_warnings(m)
     m.damping(0.5, 100, "mass")
     m.fraction(0.1, safe=True)
     for place in (1.0, 30.0, 100.0):

@@ -136,7 +136,7 @@ def test_histories_follow_groups_that_change_places(tmp_path: Path) -> None:
         one.history(1, "KXP", at=(0.5, 1))
         one.history(1, "KY", at=(0, 0.5))
         one.history(1, "KCFN", at=(1, 0))
-    moved.array = relocate(moved.array, np.random.default_rng(1))
+    moved.session.array = relocate(moved.array, np.random.default_rng(1))
     before = [one.address for one in definitions(m.array)]
     assert [one.address for one in definitions(moved.array)] != before
     for one in (m, moved):

@@ -23,7 +23,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def said(m: Model, line: str) -> str:
+def run_line(m: Model, line: str) -> str:
     """What `line` prints."""
     printed = m.run(line)
     assert printed is not None
@@ -33,7 +33,7 @@ def said(m: Model, line: str) -> str:
 def refused_or_said(m: Model, line: str, column: int) -> str:
     """What `line` prints, or what error 24 says at `column`."""
     try:
-        return said(m, line)
+        return run_line(m, line)
     except UdecError as error:
         return error.message if (error.number, error.column) == (24, column) else str(error)
 
@@ -55,7 +55,7 @@ def refused_or_said(m: Model, line: str, column: int) -> str:
 def test_why_no_block_is_cut(line: str, reason: str) -> None:
     m = Model()
     m.block(0, 0, 0, 10, 10, 10, 10, 0)
-    assert said(m, f"SPLIT {line}").startswith(f"SPLIT: no block was cut: {reason}")
+    assert run_line(m, f"SPLIT {line}").startswith(f"SPLIT: no block was cut: {reason}")
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_why_a_block_with_a_notch_is_not_cut(line: str, reason: str) -> None:
     """Inside the notch is outside the block; its floor is an edge like others."""
     m = Model()
     m.block(*U)
-    assert reason in said(m, f"SPLIT {line}")
+    assert reason in run_line(m, f"SPLIT {line}")
 
 
 def test_a_line_that_ends_in_two_blocks_names_both() -> None:
@@ -80,7 +80,7 @@ def test_a_line_that_ends_in_two_blocks_names_both() -> None:
     m.block(0, 0, 0, 10, 10, 10, 10, 0)
     m.split(-1, 5, 11, 5)
     upper = int(m.table("block")[0]["address"])
-    assert f"begins inside block@1 at (2, 4) and ends inside block@{upper} at (2, 6);" in said(
+    assert f"begins inside block@1 at (2, 4) and ends inside block@{upper} at (2, 6);" in run_line(
         m, "SPLIT 2 4 2 6"
     )
 
@@ -89,7 +89,7 @@ def test_a_line_that_ends_in_two_blocks_names_both() -> None:
 def test_before_the_first_block(line: str) -> None:
     m = Model()
     m.start()
-    assert said(m, line).endswith("there is no block yet: create one with BLOCK")
+    assert run_line(m, line).endswith("there is no block yet: create one with BLOCK")
 
 
 TURNED = "x1 = 10 is not below x2 = 0, where a range is x1 x2 y1 y2"
@@ -121,10 +121,10 @@ def test_what_boundary_looks_for() -> None:
         UdecError, match=r"no edge with both ends in .*, the nearest is block@1's at \(0, 0\) to \(0, 10\)"
     ):
         m.boundary(-3, -2, 0, 9, stress=(1, 0, 0))
-    assert said(m, "BOUNDARY 0 1 0 1 FREE") == "BOUNDARY: no condition in range: there are none"
+    assert run_line(m, "BOUNDARY 0 1 0 1 FREE") == "BOUNDARY: no condition in range: there are none"
     m.boundary(0, 10, 0, 10, yvel=1)
-    assert "PRINT BOUNDARIES" in said(m, "BOUNDARY 0 1 0 1 FREE")
-    assert said(m, "BOUNDARY 10 0 0 10 FREE").endswith(TURNED)
+    assert "PRINT BOUNDARIES" in run_line(m, "BOUNDARY 0 1 0 1 FREE")
+    assert run_line(m, "BOUNDARY 10 0 0 10 FREE").endswith(TURNED)
 
 
 def test_initial_stress_needs_blocks_that_carry_it() -> None:

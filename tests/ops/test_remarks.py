@@ -18,7 +18,7 @@ from udec_ia.remark import Remark
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.dat"))
 
 
-class Told(list[str]):
+class KeyedRemarks(list[str]):
     """Warnings of a model, in order."""
 
     @property
@@ -27,9 +27,9 @@ class Told(list[str]):
         return [one.key if isinstance(one, Remark) else "" for one in self]
 
 
-def told(m: Model) -> Told:
+def collect_remarks(m: Model) -> KeyedRemarks:
     """The warnings that `m` is going to give."""
-    said = Told()
+    said = KeyedRemarks()
     m.tell = said.append
     return said
 
@@ -49,7 +49,7 @@ def soft(out: Path, laws: str | None = None, **moduli: float) -> Model:
 )
 def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: Path) -> None:
     m = Model(out=tmp_path)
-    said = told(m)
+    said = collect_remarks(m)
     for _ in range(2):
         m.property(3, **{name: given})
     (text,) = said
@@ -62,14 +62,14 @@ def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: 
 
 def test_a_property_that_is_not_named(tmp_path: Path) -> None:
     m = Model(out=tmp_path)
-    said = told(m)
+    said = collect_remarks(m)
     m.property(2)
     assert said.keys == ["no-property"]
 
 
 def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.property(1, density=3000)
     assert said == []
     m.cycle(1)
@@ -89,7 +89,7 @@ def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
 def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, tmp_path: Path) -> None:
     """A cut near a corner leaves an edge of a thousandth; who gives a length by ROUND knows."""
     m = Model(out=tmp_path)
-    said = told(m)
+    said = collect_remarks(m)
     m.property(1, density=2000, kn=1e8, ks=1e8)
     m.block(0, 0, 0, 1, 1, 1, 1, 0)
     m.split(-1, 0.5, 2, 0.5)
@@ -106,7 +106,7 @@ def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, 
 @pytest.mark.parametrize(("moduli", "lacking"), [({"g": 1e9}, "BULK"), ({"bulk": 1e9}, "G")])
 def test_a_modulus_alone(moduli: dict[str, float], lacking: str, tmp_path: Path) -> None:
     m = soft(tmp_path, **moduli)
-    said = told(m)
+    said = collect_remarks(m)
     for _ in range(2):
         m.cycle(1)
     (text,) = said
@@ -114,14 +114,14 @@ def test_a_modulus_alone(moduli: dict[str, float], lacking: str, tmp_path: Path)
     assert f"PROPERTY MATERIAL=1 {lacking}=..." in text
     m.start()
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.cycle(1)
     assert said == []
 
 
 def test_a_modulus_alone_is_nothing_to_rigid_blocks(tmp_path: Path) -> None:
     m = soft(tmp_path, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.change(0, 1, 1, 2, "rigid")
     m.cycle(1)
     assert said == []
@@ -130,7 +130,7 @@ def test_a_modulus_alone_is_nothing_to_rigid_blocks(tmp_path: Path) -> None:
 def test_properties_that_no_law_in_use_looks_at(tmp_path: Path) -> None:
     """Of materials that are used, once; not where a block or a contact follows a law of the user's."""
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.property(1, dilation=0.2, block_cohesion=1e5)
     m.property(2, dilation=0.2)
     for _ in range(2):
@@ -139,7 +139,7 @@ def test_properties_that_no_law_in_use_looks_at(tmp_path: Path) -> None:
     assert said.keys == ["unused-property"]
     assert "DILATION and BCOHESION of material 1" in text
     m = soft(tmp_path, "joint-dilation", bulk=1e9, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.property(1, dilation=0.2)
     m.change(0, 1, 1, 2, "rigid", constitutive=2)
     m.cycle(1)
@@ -149,7 +149,7 @@ def test_properties_that_no_law_in_use_looks_at(tmp_path: Path) -> None:
 def test_rest_without_damping(tmp_path: Path) -> None:
     """Said by SOLVE, once, and not if anything damps."""
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = told(m)
+    said = collect_remarks(m)
     m.cycle(1)
     assert said == []
     for _ in range(2):
@@ -159,7 +159,7 @@ def test_rest_without_damping(tmp_path: Path) -> None:
         m.start()
         m = soft(tmp_path, bulk=1e9, g=1e9)
         m.damping(0.001, 10, damping)
-        said = told(m)
+        said = collect_remarks(m)
         m.solve(0.1, limit=1)
         assert said == []
 
@@ -187,7 +187,7 @@ def test_what_the_reals_resolve_is_said_before_the_run(
 ) -> None:
     """The last digit of a coordinate times KN, against half the weight of a block, 10 kN/m."""
     m = wall(build, tmp_path, shift)
-    said = told(m)
+    said = collect_remarks(m)
     m.cycle(0)
     m.cycle(0)
     assert said.keys == ["coarse-reals"] * due
@@ -228,7 +228,7 @@ def test_a_remark_is_a_text_that_keeps_its_key() -> None:
 def test_the_examples_are_not_remarked_on(deck: Path, tmp_path: Path) -> None:
     """Up to the first cycle of each of their CYCLEs; the steps are safe as well."""
     m = Model(out=tmp_path)
-    said = told(m)
+    said = collect_remarks(m)
     m.run(re.sub(r"(CYCLE|SOLVE) .*", "CYCLE 1", re.sub(r"(?m)^PLOT.*\n", "", deck.read_text())))
     assert not set(said.keys) & {"degrees-for-tangent", "missing-modulus", "no-damping", "step-above-bound"}
 
@@ -248,7 +248,7 @@ def test_loads_on_fixed_blocks_only(tmp_path: Path) -> None:
     m.block(0, 0, 0, 2, 1, 2, 1, 0)
     m.split(-1, 1, 2, 1)
     m.fix(0, 1, 0, 1)
-    said = told(m)
+    said = collect_remarks(m)
     m.boundary(0, 1, 0, 1, xforce=10.0)
     m.cycle(1)
     m.cycle(1)
@@ -293,7 +293,7 @@ def test_slivers_are_named_before_the_run(tmp_path: Path) -> None:
     m.block(0, 0, 0, 2, 4, 2, 4, 0)
     m.split(-1, 1, 5, 1)
     m.split(-1, 1.02, 5, 1.02)
-    said = told(m)
+    said = collect_remarks(m)
     m.cycle(0)
     text = said[said.keys.index("slivers")]
     assert "1 of 3 blocks" in text
@@ -310,7 +310,7 @@ def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None
     m.split(2, 1, 2, 3)
     m.change(0, 4, 0, 1, material=2)
     m.fix(0, 4, 0, 1)
-    said = told(m)
+    said = collect_remarks(m)
     m.cycle(1)
     m.property(3, friction=0.1)  # of no block
     m.cycle(1)
@@ -327,7 +327,7 @@ def test_initial_tension_is_remarked(
     stress: tuple[float, float, float], warned: bool, tmp_path: Path
 ) -> None:
     m = soft(tmp_path, bulk=1e9, g=5e8)
-    said = told(m)
+    said = collect_remarks(m)
     m.insitu(0, 1, 1, 2, *stress)
     assert said.keys == ["initial-tension"] * warned
     assert all("4e+06" in one for one in said)
@@ -335,7 +335,7 @@ def test_initial_tension_is_remarked(
 
 def test_a_tiny_fraction_is_remarked(tmp_path: Path) -> None:
     m = soft(tmp_path)
-    said = told(m)
+    said = collect_remarks(m)
     m.fraction(0.01)
     assert said == []
     m.fraction(1e-300)

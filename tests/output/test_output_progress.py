@@ -18,7 +18,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def clock(monkeypatch: pytest.MonkeyPatch, seconds_per_look: float) -> None:
+def fake_time(monkeypatch: pytest.MonkeyPatch, seconds_per_look: float) -> None:
     """A clock that advances by the same time whenever it is looked at."""
     now = [0.0]
 
@@ -39,7 +39,7 @@ def run(stream: io.StringIO, total: int = 1000) -> str:
 
 
 def test_a_long_run_in_a_pipe_gives_ten_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock(monkeypatch, 60.0)
+    fake_time(monkeypatch, 60.0)
     lines = run(io.StringIO()).splitlines()
     assert len(lines) == LINES
     assert [line.split(":")[0] for line in lines] == [f"cycle {n} of 1000" for n in range(100, 1001, 100)]
@@ -48,12 +48,12 @@ def test_a_long_run_in_a_pipe_gives_ten_lines(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_few_cycles_give_no_more_lines_than_updates(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock(monkeypatch, 60.0)
+    fake_time(monkeypatch, 60.0)
     assert len(run(io.StringIO(), 30).splitlines()) == 3
 
 
 def test_a_short_run_in_a_pipe_leaves_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock(monkeypatch, 0.001)
+    fake_time(monkeypatch, 0.001)
     (line,) = run(io.StringIO()).splitlines()
     assert line.startswith("cycle 1000 of 1000: ")
 

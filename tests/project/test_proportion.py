@@ -43,7 +43,7 @@ def grid(n: int) -> Model:
     """n blocks in a square, the lowest row fixed."""
     model = Model()
     model.start()
-    model.array = cut(n).copy()
+    model.session.array = cut(n).copy()
     return model
 
 
@@ -69,7 +69,7 @@ def times(build: Callable[[int], Model], run: Callable[[Model], object], n: int)
         model = build(size)
         state, best = model.array, float("inf")
         for _ in range(3):
-            model.array = state.copy()
+            model.session.array = state.copy()
             start = process_time()
             run(model)
             best = min(best, process_time() - start)

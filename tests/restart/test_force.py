@@ -22,7 +22,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.restart import info, look_into, see
+from udec_ia.restart import info, look_into, read_stored_state
 
 PRINTED = ["blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones", "boundaries"]
 
@@ -157,7 +157,7 @@ def test_a_run_that_comes_upon_damage_leaves_a_file_that_tells(model: Model) -> 
     rescue = model.out / "rescue.h5"
     assert f"the damaged state is saved in {rescue}" in str(caught.value)
     assert "the saved state is for inspection only: invariant" in out.getvalue()
-    assert see(rescue).mark
+    assert read_stored_state(rescue).mark
     run_deck(Model.restore(rescue, force=True, out=model.out), "SAVE first.h5 FORCE\n", out)
     with pytest.raises(UdecError) as caught:  # whatever the error is, there is a file
         run_deck(Model.restore(rescue, force=True, out=model.out), "FIX 0 1\n", out)
@@ -167,7 +167,7 @@ def test_a_run_that_comes_upon_damage_leaves_a_file_that_tells(model: Model) -> 
 
 def test_a_sound_state_is_not_marked(model: Model) -> None:
     path = model.save(model.out / "sound.h5", force=True)
-    assert see(path).mark == []
+    assert read_stored_state(path).mark == []
     assert Model.restore(path).check() == []
 
 
@@ -204,7 +204,7 @@ def test_whatever_is_damaged_can_be_looked_at(saved: Path, tmp_path: Path) -> No
         forced = Model.restore(path, force=True, out=tmp_path)
         found = forced.check()
         assert [str(one) for one in found] == [str(one) for one in Model.check_file(path)]
-        assert bool(found) == bool(see(path).mark), trial
+        assert bool(found) == bool(read_stored_state(path).mark), trial
         for what in PRINTED:
             with suppress(Unsound):
                 forced.print(what)

@@ -17,7 +17,7 @@ from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.layout.table import TABLE, read_table
-from udec_ia.restart import see
+from udec_ia.restart import read_stored_state
 
 ROOT = Path(__file__).parents[2]
 NEXT = read_table().layout + 1
@@ -89,7 +89,7 @@ def test_two_programs_take_turns(tmp_path: Path) -> None:
     saved, theirs = one.save(tmp_path / "one.h5"), tmp_path / "theirs.h5"
     said = run(tree, "-c", SCRIPT, str(saved), str(theirs), str(tmp_path / "other"))
     assert said == "14 5 4 10\n"
-    assert "known here, and 0" in see(theirs).said[0]
+    assert "known here, and 0" in read_stored_state(theirs).notes[0]
     two = Model.restore(theirs, out=tmp_path / "two")
     one.cycle(3)
     one.delete(0, 1, 0, 1)

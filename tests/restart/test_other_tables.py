@@ -24,7 +24,7 @@ from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.written_state import TranslationError, words_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import TABLE, parse, read_table
-from udec_ia.restart import info, look_into, see
+from udec_ia.restart import info, look_into, read_stored_state
 
 TEXT = TABLE.read_text()
 OURS = read_table()
@@ -207,7 +207,7 @@ def test_a_file_by_another_table_is_read_by_names(name: str, model: Model, tmp_p
     told_of = [(one.name, one.numbers.tobytes()) for one in other.histories()]
     assert told_of == [(one.name, one.numbers.tobytes()) for one in model.histories()]
     assert other.check() == []
-    said = ", ".join(see(path).news)
+    said = ", ".join(read_stored_state(path).news)
     for one in case.news:
         assert one in said, said
     assert bool(case.news) == bool(said)

@@ -21,7 +21,7 @@ from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.reader.atlas import Atlas
-from udec_ia.view import Page, page
+from udec_ia.view import Page, view_page
 
 INTS = {16: "h", 32: "i", 64: "q"}
 REALS = {32: "f", 64: "d"}
@@ -96,7 +96,8 @@ def test_every_field_of_every_group(build: str) -> None:
     m = every_kind(build)
     table, (state,) = held(text_of(m))
     there = groups(table, state)
-    assert (state["scheme"], state["used"], state["shown"]) == (build, *[int(m.h.ci[page.MFREE]) - 1] * 2)
+    used = int(m.h.ci[view_page.MFREE]) - 1
+    assert (state["scheme"], state["used"], state["shown"]) == (build, used, used)
     for group in GROUPS:
         rows = m.table(group.name)
         assert there[group.name] == sorted(rows["address"].tolist())
@@ -128,13 +129,13 @@ def test_spans_are_those_of_the_atlas() -> None:
 
 def test_what_there_is_no_room_for_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     m = every_kind()
-    monkeypatch.setattr(page, "LIMIT", 2000)
+    monkeypatch.setattr(view_page, "LIMIT", 2000)
     pages = Page()
     pages.add(m.array, "one")
     pages.add(m.array, "two")
     assert (
         pages.left_out()[1]
-        == f"two has {int(m.h.ci[page.MFREE]) - 1} words in use: those beyond 1000 are left out"
+        == f"two has {int(m.h.ci[view_page.MFREE]) - 1} words in use: those beyond 1000 are left out"
     )
     for state in held(pages.text())[1]:
         sizes = unpack(state["sizes"], "d")
@@ -193,20 +194,20 @@ def test_nothing_is_fetched() -> None:
 
 def test_scripts_build_on_those_before() -> None:
     """They become one script: what they import stands before them, and no name is given twice."""
-    assert {path.name for path in page.WEB.glob("*.js")} == {*page.SCRIPTS}
+    assert {path.name for path in view_page.WEB.glob("*.js")} == {*view_page.SCRIPTS}
     known: dict[str, str] = {}
-    for script in page.SCRIPTS:
-        text = (page.WEB / script).read_text()
+    for script in view_page.SCRIPTS:
+        text = (view_page.WEB / script).read_text()
         for names, source in re.findall(r"^import \{([^}]*)\} from \"\./(.*?)\";$", text, re.M):
             for name in filter(None, map(str.strip, names.split(","))):
                 assert known[name] == source
                 assert len(re.findall(rf"\b{name}\b", text)) > 1, (script, name)
-                assert re.search(rf"^export .*\b{name}\b", (page.WEB / source).read_text(), re.M)
+                assert re.search(rf"^export .*\b{name}\b", (view_page.WEB / source).read_text(), re.M)
         for name in re.findall(
             r"^(?:export )?(?:async )?(?:const|let|class|function) \[?(\$|\w+)", text, re.M
         ):
             assert known.setdefault(name, script) == script, name
-    assert not re.search(r"^(import|export)\b", page.script(page.SCRIPTS), re.M)
+    assert not re.search(r"^(import|export)\b", view_page.script(view_page.SCRIPTS), re.M)
 
 
 def test_model_view(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from support.view_page import HOSTILE, ViewCase, arrived, needs_browser, selecte
 
 from udec_ia import Model
 from udec_ia.layout import offsets as g
-from udec_ia.view import Page, page
+from udec_ia.view import Page, view_page
 
 pytestmark = needs_browser
 
@@ -117,7 +117,7 @@ def test_whatever_the_words_say_the_page_shows_it(browser: Browser, viewed: View
 def test_what_is_left_out_is_said(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, viewed: ViewCase
 ) -> None:
-    monkeypatch.setattr(page, "LIMIT", 1000)
+    monkeypatch.setattr(view_page, "LIMIT", 1000)
     pages = Page()
     pages.add(viewed.model.array, "cut")
     cut = pages.write(tmp_path / "cut.html")

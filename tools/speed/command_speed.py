@@ -271,7 +271,7 @@ COMMANDS = (
 def prepared(scene: MainArray, folder: Path) -> Model:
     """A model of its own in the state of the scene."""
     model = Model(out=folder)
-    model.array = scene.copy()
+    model.session.array = scene.copy()
     model.session.started = True
     return model
 

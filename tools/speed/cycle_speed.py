@@ -154,7 +154,7 @@ def bench_cycles(sizes: list[int], skew: float, cycles: int) -> None:
         model.cycle(SETTLE)
         rest = model.array
         for name, prepare in STATES.items():
-            model.array = rest.copy()
+            model.session.array = rest.copy()
             if prepare is not None:
                 prepare(model)
             run_unwatched(model.h, 2, RIGID)

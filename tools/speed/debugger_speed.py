@@ -23,7 +23,7 @@ from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas
-from udec_ia.reader.places import place
+from udec_ia.reader.places import find_number
 
 QUIET = re.compile(r"(PLOT|PRINT|SAVE|STOP|END)\b.*", re.IGNORECASE)  # commands that do not run
 
@@ -56,7 +56,7 @@ def seconds_back(debugger: Debugger, words: int, seed: int) -> dict[str, list[fl
         atlas = Atlas(timeline.at(event).h)
         kind = str(rng.choice([kind for kind in KINDS if len(atlas.groups[kind])]))
         field = TABLE.group(kind).fields[int(rng.integers(len(TABLE.group(kind).fields)))]
-        word = place(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
+        word = find_number(atlas, f"{kind}@{int(rng.choice(atlas.groups[kind]))}.{field.name}")
         jobs = (
             lambda event=event: timeline.at(event - 1),
             lambda event=event, word=word: find_last_hit(timeline, event, WordChange(word)),

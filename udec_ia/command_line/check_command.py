@@ -18,11 +18,11 @@ VERBS = ("check",)
 COLUMNS = ("invariant", "what is wrong")
 SCRIPT = """\
 from udec_ia.checker import check, unjudged
-from udec_ia.restart import see
+from udec_ia.restart import read_stored_state
 
-seen = see({file!r})  # of a model: model.check()
+seen = read_stored_state({file!r})  # of a model: model.check()
 found = check(seen.array)
-print(*seen.said, *(found or ["sound"]), *unjudged(seen.array, found), sep="\\n")"""
+print(*seen.notes, *(found or ["sound"]), *unjudged(seen.array, found), sep="\\n")"""
 
 
 def add_commands(commands: Any) -> None:
@@ -36,11 +36,11 @@ def _look(args: argparse.Namespace) -> Listing:
     from udec_ia.checker import check, unjudged
     from udec_ia.printable import printable
     from udec_ia.reader.listing import Listing
-    from udec_ia.restart import see
+    from udec_ia.restart import read_stored_state
 
-    seen = see(args.file)
+    seen = read_stored_state(args.file)
     found = check(seen.array)
     many = counted(len(found), "violation")
     said = [f"{printable(str(args.file))}: {many if found else 'sound'}"]
     rows: list[tuple[Any, ...]] = [(one.invariant, one.message) for one in found]
-    return Listing(said + seen.said + unjudged(seen.array, found), COLUMNS, rows, int(bool(found)))
+    return Listing(said + seen.notes + unjudged(seen.array, found), COLUMNS, rows, int(bool(found)))

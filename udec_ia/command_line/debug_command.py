@@ -9,6 +9,7 @@ from typing import Any
 
 from udec_ia.command_line.command_options import MISUSE, given, variables, word_scheme
 from udec_ia.deck.deck_statements import read_deck
+from udec_ia.printable import visible
 
 VERBS = ("debug",)
 
@@ -38,7 +39,7 @@ def _debug(args: argparse.Namespace) -> int:
     try:
         values = given(args.set)
     except ValueError as error:
-        print(f"udec debug: {error}", file=sys.stderr)
+        print(f"udec debug: {visible(str(error))}", file=sys.stderr)
         return MISUSE
     script = None if args.commands is None else read_deck(args.commands).splitlines()
     model = Model(build=args.build, out=args.out, constitutive=args.constitutive, name=args.deck.stem)

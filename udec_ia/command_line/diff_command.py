@@ -65,15 +65,15 @@ def _called(args: argparse.Namespace) -> tuple[str, str]:
 
 def _diff(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.heap_tools.comparison_report import diff, raw
-    from udec_ia.restart import see
+    from udec_ia.restart import read_stored_state
 
     given = _given(args)
     try:
-        seen = [see(path) for path in (args.file, args.other)]
+        seen = [read_stored_state(path) for path in (args.file, args.other)]
     except UdecError as error:
         raise ValueError(str(error)) from error
     found = (raw if args.raw else diff)(seen[0].array, seen[1].array, **given)
-    said = [f"{name}: {text}" for one, name in zip(seen, given["called"], strict=True) for text in one.said]
+    said = [f"{name}: {text}" for one, name in zip(seen, given["called"], strict=True) for text in one.notes]
     return found.with_said(said)
 
 

@@ -177,7 +177,7 @@ def _dump(args: argparse.Namespace) -> Call:
         return Call("heap_tools.heap_dump", "common")
     given = () if args.words is None else (args.words,)
     if args.raw:
-        return Call("output.dump", "raw", given)
+        return Call("output.word_dump", "raw", given)
     return Call("heap_tools.heap_dump", "dump", given, radix)
 
 

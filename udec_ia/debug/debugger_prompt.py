@@ -16,7 +16,7 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
-from udec_ia.printable import printable
+from udec_ia.printable import visible
 from udec_ia.reader.atlas import TABLE
 from udec_ia.signals import dealt_with, hold, passing
 
@@ -41,8 +41,7 @@ class PrintableOutput:
 
     def write(self, text: str) -> int:
         """Write `text`. Tabs become spaces."""
-        lines = (line.expandtabs() for line in text.split("\n"))
-        return self.out.write("\n".join(printable(line, len(line)) for line in lines))
+        return self.out.write(visible(text.expandtabs()))
 
     def writelines(self, lines: Iterable[str]) -> None:
         """Write each of `lines`, which end in line feeds."""

@@ -50,11 +50,11 @@ class WordChange:
         self._seen: Any = None
 
     def begin(self, array: MainArray) -> None:
-        """See Probe."""
+        """See StopCondition."""
         self._seen = self.place.value(array.h)
 
     def hit(self, array: MainArray) -> str:
-        """See Probe."""
+        """See StopCondition."""
         before, now = self._seen, self.place.value(array.h)
         self._seen = now
         if before == now or (before != before and now != now):
@@ -87,12 +87,12 @@ class ContactChange:
         self._cycle = 0
 
     def begin(self, array: MainArray) -> None:
-        """See Probe."""
+        """See StopCondition."""
         self._codes, self._cycle = _codes(array), int(array.h.ci[g.MCTOT])
         self._counts = array.h.ci[GROUPS_MADE].tolist()
 
     def hit(self, array: MainArray) -> str:
-        """See Probe."""
+        """See StopCondition."""
         counts = array.h.ci[GROUPS_MADE].tolist()
         if self.what != "recoded" and counts == self._counts:
             return ""
@@ -146,11 +146,11 @@ class GroupCondition:
         return found
 
     def begin(self, array: MainArray) -> None:
-        """See Probe."""
+        """See StopCondition."""
         self._seen = {*self._find(array)}
 
     def hit(self, array: MainArray) -> str:
-        """See Probe."""
+        """See StopCondition."""
         now = {*self._find(array)}
         new, self._seen = now - self._seen, now
         return f"{self.text}: {', '.join(f'{self.kind}@{iad}' for iad in sorted(new))}" if new else ""
@@ -167,12 +167,12 @@ class GroupBirth:
         self._cycle = 0
 
     def begin(self, array: MainArray) -> None:
-        """See Probe."""
+        """See StopCondition."""
         self._counts, self._cycle = array.h.ci[GROUPS_MADE].tolist(), int(array.h.ci[g.MCTOT])
         self._there = self._found(array)
 
     def hit(self, array: MainArray) -> str:
-        """See Probe."""
+        """See StopCondition."""
         counts = array.h.ci[GROUPS_MADE].tolist()
         ran, self._cycle = int(array.h.ci[g.MCTOT]) != self._cycle, int(array.h.ci[g.MCTOT])
         if counts == self._counts:

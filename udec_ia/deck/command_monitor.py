@@ -23,7 +23,7 @@ from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.printable import counted, printable
+from udec_ia.printable import counted, printable, visible
 from udec_ia.signals import hold, passing, poll
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
@@ -161,7 +161,7 @@ class Monitor:
             self._write(str(result))
 
     def _write(self, text: str) -> None:
-        self.out.write(text + "\n")
+        self.out.write(visible(text) + "\n")
         self.out.flush()
 
     def rescue(self, *, sound: bool = True) -> str | None:

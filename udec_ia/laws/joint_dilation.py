@@ -1,18 +1,19 @@
 """Joints that dilate and weaken as they slip: `--constitutive joint-dilation`, number 2.
 
-Springs KN and KS, and a shear force of at most  c + f Fn.  What part of the shear displacement u is slip, the
-forces tell: s = u - Fs/KS, which is 0 as long as the joint holds. With w = min(|s|/CRITICAL, 1)
+Springs KN and KS, and a shear force of at most c + f Fn. The slip is the
+shear displacement u less its elastic part: s = u - Fs/KS, which is 0 as long as the joint sticks. With
+w = min(|s|/CRITICAL, 1)
 
     strength   c, f fall from COHESION, FRICTION to RCOHESION, RFRICTION, in proportion to w
     dilation   the joint opens by DILATION |s|, until |s| = CRITICAL and no farther
 
-so that peak strength and full dilation go together, and so do residual strength and none. A joint that opens
-against its normal spring gains the normal force KN DILATION |ds|; blocks that are free to move apart do.
-With CRITICAL = 0, which it is unless given, the joint neither weakens nor dilates: Coulomb's law, number 1.
+so that peak strength goes with full dilation, and residual strength with none. A joint that dilates against
+its normal spring gains the normal force KN DILATION |ds|; free blocks move apart. With the default CRITICAL =
+0 the joint neither weakens nor dilates: Coulomb's law, number 1.
 
-Strength is that of the normal force and the slip before the step, as steps are small. The slip is the net
-one: going back, a joint closes and regains its strength on the path that it came. A joint that has opened
-altogether begins anew when it closes, since an open contact forgets its slip.
+Strength follows from the normal force and the slip before the step, as steps are small. The slip is the net
+slip: on the way back a joint closes and regains its strength. A joint that has opened starts without slip
+when it closes again.
 """
 
 

@@ -1,21 +1,20 @@
 """Mohr-Coulomb plasticity with tension cut-off, in plane strain: `--constitutive mohr-coulomb`, number 2.
 
-The stress increment is elastic at first. Principal stresses s1 <= s3 (tension positive) that then break
-one of the limits are put back onto it:
+The stress increment is elastic at first. Principal stresses s1 <= s3 (tension positive) beyond one of the
+limits are then returned to it:
 
     shear    s1 = N s3 - 2 c sqrt(N)    N = (1 + sin phi)/(1 - sin phi), BFRICTION = tan phi, BCOHESION = c
     tension  s3 = t                     t = BTENSION, and at most c/tan phi, the tip of the shear limit
 
-Plastic strain in shear follows the potential s1 - s3 M, with M for the dilation angle psi (BDILATION =
-tan psi) as N for phi: the area grows by sin psi for a unit of plastic shear strain, so with psi = phi the
-flow is associated and with psi = 0 it keeps the area. In tension the flow is associated. Where both limits
-are broken the stress goes to their corner. Directions of principal stress stay.
+Plastic strain in shear follows the potential s1 - s3 M, with M for the dilation angle psi (BDILATION = tan
+psi) as N for phi: the area grows by sin psi for a unit of plastic shear strain, so with psi = phi the flow is
+associated and with psi = 0 it keeps the area. In tension the flow is associated. If both limits are exceeded
+the stress goes to their corner. Directions of principal stress do not change.
 
-A zone of the 1980 program keeps three stresses; there is none out of the plane. The law therefore takes it
-for the middle one of the principal stresses, as the solutions of limit analysis do: it never yields and,
-as all plastic strain is in the plane, it never influences the others. In places where the stress out of the
-plane is the greatest or the least, which takes a nearly hydrostatic state in the plane or an unlike initial
-stress, true yielding begins earlier.
+A zone stores three stresses, as in 1980, and not the out-of-plane stress. The law assumes that this is the
+intermediate principal stress, as solutions of limit analysis do. It then never yields and, as all plastic
+strain is in the plane, it never influences the others. If it is in fact the greatest or least stress, true
+yielding begins earlier. That requires a nearly hydrostatic state in the plane or an unusual initial stress.
 """
 
 from math import sqrt
@@ -28,14 +27,14 @@ def passive(tangent):
 
 
 def principal(s1, s3, m):
-    """Principal stresses s1 <= s3 within the limits, for those that were reached elastically."""
+    """Principal stresses s1 <= s3 within the limits, from the elastic ones."""
     n = passive(m.block_friction)
     strength = 2 * m.block_cohesion * sqrt(n)
     t = m.block_tension
     if m.block_friction > 0:
         t = min(t, m.block_cohesion / m.block_friction)
     corner = n * t - strength
-    if s3 > t:  # tension, unless the way back ends outside the shear limit
+    if s3 > t:  # tension, unless the return ends outside the shear limit
         back = min(t, s1 - (s3 - t) * m.alam2 / m.alam1)
         if back >= corner:
             return back, t

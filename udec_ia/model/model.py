@@ -10,21 +10,16 @@ Every command is obeyed as a whole or not at all, whatever ends it (undo.py).
 from __future__ import annotations
 
 import copy
-import inspect
 import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from functools import update_wrapper, wraps
 from pathlib import Path
-from typing import Any, Concatenate, Generic, ParamSpec, Self, TextIO, TypeVar, Unpack, get_type_hints
+from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
 from udec_ia.advice.input_warnings import (
     check_fraction,
-    check_new_material,
     check_properties,
-    check_spin,
     check_tension,
-    describe_inertia,
 )
 from udec_ia.advice.step_warnings import describe_step
 from udec_ia.checker import check, unjudged
@@ -32,93 +27,38 @@ from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import Memory, getr
+from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import Properties
-from udec_ia.layout.offsets import DTOL, KTD, MCTOT
-from udec_ia.model.model_runs import recording_of, run_cycles, solve_as_given, solve_statically
+from udec_ia.layout.offsets import MCTOT
+from udec_ia.model import block_commands, model_runs, saved_states
+from udec_ia.model.method_forms import InSession, of_session, on_shapes, takes_keywords
 from udec_ia.model.model_session import NAME, Session
-from udec_ia.model.saved_states import restart_from, save_state
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
 from udec_ia.ops.commands import boundary_conditions as bounds
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, number_of_conditions, set_function
-from udec_ia.ops.commands.change_or_delete_blocks import change, delete
+from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, set_function
+from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
-from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate, generate_automatically
 from udec_ia.ops.commands.initial_stress import insitu
-from udec_ia.ops.commands.split_blocks import split, why_uncut
-from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
-from udec_ia.ops.common.number_limits import not_negative, real, reals, rows, whole
+from udec_ia.ops.commands.split_blocks import split
+from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.output.printed_tables import printout
 from udec_ia.output.word_dump import dump
 from udec_ia.printable import counted
 from udec_ia.reader.group_tables import table
 from udec_ia.running.critical_step import bound
-from udec_ia.running.history_series import SOLVE_LIMIT, Series
-from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of
+from udec_ia.running.history_series import Series
+from udec_ia.running.solve_result import Solution
 
 P = ParamSpec("P")
 R = TypeVar("R")
 T = TypeVar("T")
-
-
-class InSession(Generic[T]):
-    """An attribute of a Model that its session holds under the same name."""
-
-    def __set_name__(self, _: type, name: str) -> None:
-        self.name = name
-
-    def __get__(self, model: Model | None, _: type | None = None) -> T:
-        value: Any = self if model is None else getattr(model.session, self.name)
-        return value  # type: ignore[no-any-return]
-
-    def __set__(self, model: Model, value: T) -> None:
-        setattr(model.session, self.name, value)
-
-
-def on_shapes(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Model, P], R]:
-    """`op` as a method of the same arguments, for an operation that needs sound outlines."""
-
-    def method(model: Model, /, *args: P.args, **named: P.kwargs) -> R:
-        model.session.ensure_ready(shapes=True)
-        return op(model.array, *args, **named)
-
-    update_wrapper(method, op)
-    return method
-
-
-def takes_keywords(names: type) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """The method's **values are the keys of the TypedDict `names`, all optional. TypeError for any other."""
-
-    def described(method: Callable[P, R]) -> Callable[P, R]:
-        """`method` with the names in its signature, which are checked when it is called."""
-        plain = inspect.signature(method)
-        fixed = [one for one in plain.parameters.values() if one.kind is not one.VAR_KEYWORD]
-        named = [
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
-            for name, kind in get_type_hints(names).items()
-        ]
-        signature = plain.replace(parameters=[*fixed, *named])
-
-        @wraps(method)
-        def checked(*args: P.args, **values: P.kwargs) -> R:
-            try:
-                signature.bind(*args, **values)
-            except TypeError as error:
-                raise TypeError(f"{method.__name__}() {error}") from None
-            return method(*args, **values)
-
-        checked.__signature__ = signature  # type: ignore[attr-defined]
-        return checked
-
-    return described
 
 
 class Model:
@@ -195,33 +135,8 @@ class Model:
         """START: a cold start; all that was there is gone."""
         self.session.start()
 
-    @outside_array
-    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
-        """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
-
-        Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
-        It may replace a restart file; error 31 if anything else stands there, or if it cannot be written. A
-        folder is created within `out` only.
-        force: also a state that is unsound, whatever has made it so; the file is marked with the result of
-        `check`, and RESTART takes it only by force.
-        """
-        return save_state(self.session, path, force)
-
-    @outside_array
-    def restart(
-        self, path: str | Path | None = None, *, force: bool = False, unchecked: bool = False
-    ) -> None:
-        """RESTART: continue from the restart file `path`, by default restart.h5 in the folder `out`.
-
-        The words are those of the file's scheme; `mtop` limits them, whatever the limit was when they were
-        saved. Existing pictures are kept: new ones take the next numbers. Error 29 if the file cannot be used
-        or `check` finds its state unsound, 1 if it holds more than `mtop`; the model is then as it was. A
-        state of which an error has ended a run is proved in its links and codes only.
-        force: take an unsound state, too, to look at it and to mend it through `h`; commands that follow
-        links prove the state first. unchecked: prove links and codes only; commands that cut or load
-        outlines, and SAVE, prove the rest.
-        """
-        restart_from(self.session, path, force, unchecked)
+    save = outside_array(of_session(saved_states.save))
+    restart = outside_array(of_session(saved_states.restart))
 
     @classmethod
     def restore(
@@ -287,15 +202,7 @@ class Model:
         self.session.forget_boxes()
         return delete(self.array, (x1, x2, y1, y2))
 
-    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
-        """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
-        self.session.ensure_ready(shapes=command == "split")
-        if command == "split":
-            return why_uncut(self.array, self.session.split_boxes, a, b, c, d)
-        if command != "boundary":
-            return why_no_block(self.array, (a, b, c, d))
-        there = "PRINT BOUNDARIES shows where they are" if number_of_conditions(self.h) else "there are none"
-        return limits_turned((a, b, c, d)) or there
+    why_none = of_session(block_commands.why_none)
 
     @changes_array
     def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
@@ -309,78 +216,8 @@ class Model:
         self.session.ensure_ready()
         return model_settings.set_fixity(self.array, (x1, x2, y1, y2), False)
 
-    @changes_array
-    def change(
-        self,
-        x1: float,
-        x2: float,
-        y1: float,
-        y2: float,
-        type: str | None = None,
-        material: int | None = None,
-        constitutive: int | None = None,
-    ) -> int:
-        """CHANGE: attributes of the blocks in the range. Returns their number."""
-        self.session.ensure_ready()
-        conditions = number_of_conditions(self.array.h)
-        kind = None if type is None else str(type).lower()
-        changed = change(self.array, (x1, x2, y1, y2), kind, material, constitutive)
-        if changed and material is not None:
-            self.session.remark(check_new_material(self.array, changed, material))
-        self._warn_of_lost(conditions)
-        return changed
-
-    @changes_array
-    def generate(
-        self,
-        x1: float,
-        x2: float,
-        y1: float,
-        y2: float,
-        mode: str,
-        gridpoints: list[tuple[float, float]] | None = None,
-        zones: list[tuple[int, int, int]] | None = None,
-        edge: float | None = None,
-        mixed: bool = False,
-    ) -> int:
-        """GENERATE: divide the first block in the range into zones. Returns its address.
-
-        mode: "manual", with `gridpoints` and `zones`, or "automatic", with `edge` (m). mixed: zones 1 and 2,
-        3 and 4 ... are pairs for mixed discretisation.
-        """
-        self.session.ensure_ready(shapes=True)
-        self.session.forget_boxes()
-        points = rows(2, gridpoints=gridpoints)
-        triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
-        conditions = number_of_conditions(self.array.h)
-        ib = block_to_zone(self.array, (x1, x2, y1, y2))
-        spin = float(getr(self.array.h, ib, KTD))
-        if mode.lower() == "manual":
-            if not points or not triples:
-                raise UdecError(
-                    26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ..."
-                )
-            if edge is not None:
-                raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
-            near = NEAR * float(self.array.h.cr[DTOL])
-            for remark in generate(self.array, ib, [(x, y) for x, y in points], triples, near, mixed):
-                self.tell(remark)
-        elif mode.lower() == "automatic":
-            if points or triples:
-                blamed = "gridpoints" if points else "zones"
-                raise UdecError(10, f"{blamed.upper()} are for MANUAL zones", parameter=blamed)
-            if edge is None:
-                raise UdecError(
-                    7, "EDGE d", "AUTOMATIC EDGE d makes zones with sides of about d", parameter="mode"
-                )
-            self.inform(generate_automatically(self.array, ib, real(edge=edge), mixed))
-        else:
-            raise UdecError(22, mode, "take manual or automatic", parameter="mode")
-        self._warn_of_lost(conditions)
-        self.session.remark(describe_inertia(self.array, ib), self.session.inform)
-        self.session.remark(check_spin(self.array, ib, spin))
-        return ib
-
+    change = changes_array(of_session(block_commands.change))
+    generate = changes_array(of_session(block_commands.generate))
     boundary = changes_array(on_shapes(bounds.boundary))
 
     @changes_array
@@ -436,15 +273,6 @@ class Model:
         self.session.forget_boxes()
         self.session.written = self.session.unproved = False
 
-    def _warn_of_lost(self, conditions: int) -> None:
-        """Warn if there are less than `conditions` boundary conditions now."""
-        lost = conditions - number_of_conditions(self.array.h)
-        if lost > 0:
-            self.session.tell(
-                f"{counted(lost, 'boundary condition')} went with what "
-                f"{'they' if lost > 1 else 'it'} acted on: give them again with BOUNDARY"
-            )
-
     # ---- materials, gravity, damping, time-step, energy
 
     @changes_common
@@ -464,33 +292,7 @@ class Model:
         self.session.ensure_ready(sound=False)
         model_settings.set_gravity(self.array, gx, gy)
 
-    @changes_common
-    @takes_keywords(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
-    def damping(
-        self,
-        /,
-        fcrit: float | None = None,
-        freq: float | None = None,
-        only: str | None = None,
-        **modes: float | None,
-    ) -> None:
-        """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
-
-        Or one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f
-        (kernels.drive.damping_modes).
-        """
-        self.session.ensure_ready(sound=False)
-        asked = {one: modes.get(one.argument) for one in MODES}
-        given = {one: f for one, f in asked.items() if f is not None and f is not False}
-        if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
-            advice = "fcrit and freq, or one of " + ", ".join(one.name for one in MODES)
-            raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
-        for mode, f in given.items():
-            model_settings.set_damping_mode(self.array, mode, float(f))
-        if not given:
-            if fcrit is None or freq is None:
-                raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
-            model_settings.set_damping(self.array, fcrit, freq, only.lower() if only else None)
+    damping = changes_common(of_session(block_commands.damping))
 
     @keeps_step
     def energy(self, state: str = "on") -> None:
@@ -527,43 +329,8 @@ class Model:
 
     # ---- running
 
-    @outside_array
-    def cycle(self, n: int) -> int:
-        """CYCLE: n calculation cycles. Returns how many were completed."""
-        self.session.ensure_ready()
-        not_negative(self.array, n=whole(n=n))
-        return run_cycles(self.session, n, recording_of(self.session), self._log_cycles)
-
-    def _log_cycles(self, n: int) -> None:
-        """Log the `n` cycles of a run that has ended early."""
-        self.session.log_part(Model.cycle, (n,), {})
-
-    @outside_array
-    def solve(
-        self, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False, criterion: str = MAX
-    ) -> Solution:
-        """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
-
-        static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
-        (running/static_relaxation.py).
-        criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
-
-        The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
-        at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
-        strain energy is not greater than `ratio` either. What is returned is true if that was reached.
-        """
-        session = self.session
-        session.ensure_ready()
-        not_negative(self.array, ratio=ratio, limit=whole(limit=limit))
-        criterion = criterion_of(criterion)
-        if not static:
-            return solve_as_given(session, ratio, limit, criterion, self._log_cycles)
-        named = {"static": True} | ({"criterion": criterion} if criterion == MEAN else {})
-
-        def log_part(done: int) -> None:
-            session.log_part(Model.solve, (ratio, done), named)
-
-        return solve_statically(session, ratio, limit, criterion, log_part)
+    cycle = outside_array(of_session(model_runs.cycle))
+    solve = outside_array(of_session(model_runs.solve))
 
     @shows
     def step_limits(self) -> str:

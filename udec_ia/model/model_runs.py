@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
 from udec_ia.advice.damping_report import UNDAMPED, describe_damping
 from udec_ia.advice.input_warnings import check_damping, check_input
@@ -14,11 +15,13 @@ from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.model.model_session import Session
-from udec_ia.running.cycle import cycle, finish
-from udec_ia.running.history_series import NEVER, Recording
+from udec_ia.ops.common.number_limits import not_negative, whole
+from udec_ia.running.cycle import cycle as run
+from udec_ia.running.cycle import finish
+from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
 from udec_ia.running.observer import Observer
-from udec_ia.running.solve_result import MEAN, Solution, solution_of
+from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solution_of
 from udec_ia.running.static_relaxation import STATIC, statically
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
@@ -26,25 +29,53 @@ PICTURES = 40  # pictures that an animation takes during one CYCLE command
 LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended early
 
 
-def solve_as_given(session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart) -> Solution:
-    """SOLVE with the damping and the time-step that were given."""
+def cycle(session: Session, n: int) -> int:
+    """CYCLE: n calculation cycles. Returns how many were completed."""
+    session.ensure_ready()
+    not_negative(session.array, n=whole(n=n))
+    return _run_cycles(session, n, _recording(session), partial(_log_cycles, session))
+
+
+def solve(
+    session: Session, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False, criterion: str = MAX
+) -> Solution:
+    """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
+
+    static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
+    (running/static_relaxation.py).
+    criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
+
+    The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
+    at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
+    strain energy is not greater than `ratio` either. What is returned is true if that was reached.
+    """
+    session.ensure_ready()
+    not_negative(session.array, ratio=ratio, limit=whole(limit=limit))
+    criterion = criterion_of(criterion)
+    if static:
+        return _solve_statically(session, ratio, limit, criterion)
     found = list(check_damping(session.array))
     session.remark(found)
     if found:  # CYCLE need not say it again
         session.skip_remark(UNDAMPED)
-    return _run_to_rest(session, ratio, limit, criterion, log_part)
+    return _run_to_rest(session, ratio, limit, criterion, partial(_log_cycles, session))
 
 
-def solve_statically(
-    session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart
-) -> Solution:
-    """SOLVE STATIC."""
+def _log_cycles(session: Session, n: int) -> None:
+    """Log the `n` cycles of a run that has ended early."""
+    session.log_part(cycle, (n,), {})
+
+
+def _solve_statically(session: Session, ratio: float, limit: int, criterion: str) -> Solution:
     session.inform(STATIC)
+    named = {"static": True} | ({"criterion": criterion} if criterion == MEAN else {})
     undo = session.undo
     begun = undo.before
     try:
         with statically(session.array):
-            return _run_to_rest(session, ratio, limit, criterion, log_part)
+            return _run_to_rest(
+                session, ratio, limit, criterion, lambda done: session.log_part(solve, (ratio, done), named)
+            )
     finally:
         if undo.before is not begun:  # cycles are to stay, and with them what stood before
             undo.confirm_run(session)
@@ -54,8 +85,8 @@ def _run_to_rest(session: Session, ratio: float, limit: int, criterion: str, log
     """Up to `limit` cycles to rest."""
     array, monitors = session.array, session.monitors
     diagnosis = RestDiagnosis(monitors.friction_until_rest(array))
-    recording = recording_of(session, ratio, criterion == MEAN)
-    cycles = run_cycles(session, limit, recording, log_part, [diagnosis])
+    recording = _recording(session, ratio, criterion == MEAN)
+    cycles = _run_cycles(session, limit, recording, log_part, [diagnosis])
     solution = diagnosis.complete(array, solution_of(array, ratio, criterion, cycles))
     session.recorder.solutions.append(solution)
     if solution:
@@ -63,12 +94,12 @@ def _run_to_rest(session: Session, ratio: float, limit: int, criterion: str, log
     return solution
 
 
-def recording_of(session: Session, ratio: float = NEVER, mean: bool = False) -> Recording:
+def _recording(session: Session, ratio: float = NEVER, mean: bool = False) -> Recording:
     """What a run records. ratio, mean: the force ratio at which it ends, as of SOLVE."""
     return Recording(session.array, session.recorder.series, ratio, mean, session.monitors.chatter.marks)
 
 
-def run_cycles(
+def _run_cycles(
     session: Session, n: int, recording: Recording, log_part: LogPart, observers: Sequence[Observer] = ()
 ) -> int:
     """Up to `n` cycles, with progress and files; returns how many were completed.
@@ -93,7 +124,7 @@ def run_cycles(
         undo.confirm_piece(session)
 
     try:
-        done = cycle(
+        done = run(
             array,
             n,
             recording=recording,

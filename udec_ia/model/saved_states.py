@@ -14,9 +14,16 @@ from udec_ia.ops.common.array_growth import refit
 from udec_ia.printable import counted, printable
 
 
-def save_state(session: Session, path: str | Path | None, force: bool) -> Path:
-    """Write the restart file `path`, by default restart.h5 in the folder `out`; see Model.save."""
-    from udec_ia.restart import save
+def save(session: Session, path: str | Path | None = None, *, force: bool = False) -> Path:
+    """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
+
+    Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
+    It may replace a restart file; error 31 if anything else stands there, or if it cannot be written. A
+    folder is created within `out` only.
+    force: also a state that is unsound, whatever has made it so; the file is marked with the result of
+    `check`, and RESTART takes it only by force.
+    """
+    from udec_ia.restart import save as write
 
     if not force:
         session.prove_before_save()
@@ -29,25 +36,36 @@ def save_state(session: Session, path: str | Path | None, force: bool) -> Path:
         advice = "create it first, or give a name within the folder for files (--out)"
         raise UdecError(31, f"{folder} does not exist, and is outside the folder for files", advice)
     recorded = session.recorder.series
-    written = save(session.array, target, session.deck_log, session.laws.record(), recorded, broken)
+    written = write(session.array, target, session.deck_log, session.laws.record(), recorded, broken)
     session.add_files([written])
     if makes:
         session.inform(f"the folder {printable(str(folder))} did not exist and was created")
     return written
 
 
-def restart_from(session: Session, path: str | Path | None, force: bool, unchecked: bool) -> None:
-    """Continue from the restart file `path`, by default restart.h5 in the folder `out`; see Model.restart."""
+def restart(
+    session: Session, path: str | Path | None = None, *, force: bool = False, unchecked: bool = False
+) -> None:
+    """RESTART: continue from the restart file `path`, by default restart.h5 in the folder `out`.
+
+    The words are those of the file's scheme; `mtop` limits them, whatever the limit was when they were
+    saved. Existing pictures are kept: new ones take the next numbers. Error 29 if the file cannot be used
+    or `check` finds its state unsound, 1 if it holds more than `mtop`; the model is then as it was. A
+    state of which an error has ended a run is proved in its links and codes only.
+    force: take an unsound state, too, to inspect and to mend it through `h`; commands that follow
+    links prove the state first. unchecked: prove links and codes only; commands that cut or load
+    outlines, and SAVE, prove the rest.
+    """
     from udec_ia.restart import load
 
     if force and unchecked:
         raise ValueError("restart takes force or unchecked, not both")
     source = session.out / RESTART_FILE if path is None else path
-    array, deck_log, laws, series, said, unsound = load(source, force, unchecked)
+    array, deck_log, laws, series, notes, unsound = load(source, force, unchecked)
     refit(array, session.mtop)
     session.array = array
     session.continue_from(deck_log, series)
-    for sentence in said:
+    for sentence in notes:
         session.tell(sentence)
     if unsound:
         session.tell(

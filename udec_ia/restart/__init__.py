@@ -7,7 +7,16 @@ any byte is refused before a word of it is believed. `docs/restart-format.md` is
 """
 
 from udec_ia.restart.file_summary import info
-from udec_ia.restart.restart_reader import deck_in, load, look_into, see
+from udec_ia.restart.restart_reader import deck_in, load, look_into, read_stored_state
 from udec_ia.restart.restart_writer import load_to_change, save, save_changed
 
-__all__ = ["deck_in", "info", "load", "load_to_change", "look_into", "save", "save_changed", "see"]
+__all__ = [
+    "deck_in",
+    "info",
+    "load",
+    "load_to_change",
+    "look_into",
+    "read_stored_state",
+    "save",
+    "save_changed",
+]

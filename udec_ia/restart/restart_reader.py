@@ -36,7 +36,7 @@ FORCE = "udec check FILE lists all faults; RESTART FILE FORCE reads it for inspe
 MAX_TABLE = 2**18  # bytes of another field table, which is read like a program
 
 
-class Seen(NamedTuple):
+class StoredState(NamedTuple):
     """The array in a restart file, and what is to be said of it.
 
     news: in phrases, what its field table says in another way than that of this program; [] if nothing.
@@ -48,7 +48,7 @@ class Seen(NamedTuple):
     mark: list[str]
 
     @property
-    def said(self) -> list[str]:
+    def notes(self) -> list[str]:
         """The same in sentences, safe to print."""
         news = [printable(one, MAX_FAULT) for one in self.news]
         return [
@@ -61,7 +61,7 @@ class Restored(NamedTuple):
     """What a restart file holds.
 
     deck: the command lines that led to the state. laws: file and SHA-256 of each constitutive law of the
-    user's that it was calculated with. said: sentences on how it was read. unsound: what is wrong with its
+    user's that it was calculated with. notes: sentences on how it was read. unsound: what is wrong with its
     links and codes, which must not be followed then.
     """
 
@@ -69,7 +69,7 @@ class Restored(NamedTuple):
     deck: list[str]
     laws: dict[str, tuple[str, str]]
     series: list[Series]
-    said: list[str]
+    notes: list[str]
     unsound: list[str]
 
 
@@ -88,10 +88,10 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
         faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
         if not force:
             _refuse_unsound(seen.mark, faults)
-        return Restored(seen.array, deck, laws, series, seen.said, faults)
+        return Restored(seen.array, deck, laws, series, seen.notes, faults)
 
 
-def see(path: str | Path) -> Seen:
+def read_stored_state(path: str | Path) -> StoredState:
     """The array in the restart file `path`, in whatever state its heap is: to look at, not to go on with.
 
     Raises UdecError 29 if the file is not what `save` wrote.
@@ -102,8 +102,8 @@ def see(path: str | Path) -> Seen:
 
 
 def look_into(path: str | Path) -> MainArray:
-    """The array in the restart file `path` alone, as `see` has it."""
-    return see(path).array
+    """The array in the restart file `path` alone, as `read_stored_state` returns it."""
+    return read_stored_state(path).array
 
 
 def deck_in(path: str | Path) -> list[str]:
@@ -212,7 +212,7 @@ def read_header(file: Contents) -> Words:
     return Words(table, scheme, (), read_common(file, scheme, table))
 
 
-def read_state(file: Contents, front: Words) -> Seen:
+def read_state(file: Contents, front: Words) -> StoredState:
     """The array of the file, whose `front` was read before."""
     scheme, ours, theirs = front.scheme, read_table(), front.table
     mfree, mtop = front.integer("MFREE"), front.integer("MTOP")
@@ -232,7 +232,7 @@ def read_state(file: Contents, front: Words) -> Seen:
         array = _array(state)
         array.h.ia[: len(state.ia)] = state.ia
     array.fixed = bool(file.attribute_numbers("heap/IA", "mtop_fixed", "i1"))
-    return Seen(array, [] if theirs is ours else news(theirs, ours), read_mark(file))
+    return StoredState(array, [] if theirs is ours else news(theirs, ours), read_mark(file))
 
 
 def _read_words(file: Contents, scheme: Scheme, into: Any) -> None:

@@ -222,7 +222,7 @@ def load_to_change(path: str | Path) -> Restored:
         if not are_told(seen.array):
             raise RefusedError("does not say what its histories have recorded: the list of them is broken")
         series = recall(file, seen.array, bool(seen.mark))
-        return Restored(seen.array, read_deck(file), read_laws(file), series, seen.said, seen.mark)
+        return Restored(seen.array, read_deck(file), read_laws(file), series, seen.notes, seen.mark)
 
 
 def save_changed(

@@ -1,1 +1,1 @@
-"""What the checker goes through by brute force: it shares no routine with what it judges."""
+"""The checker's tests by brute force; they share no routine with the program that they check."""

@@ -1,4 +1,4 @@
-"""The outlines of blocks as arrays, and what their edges say of arcs.
+"""The outlines of blocks as arrays, and the arcs that follow from their edges.
 
 Clockwise corners p; the edge that ends at a corner, with its length z, its unit vector t and its outward
 normal (-ty, tx); the arc of a corner, of the circle with centre c and radius r. On an edge the roundings at
@@ -20,9 +20,9 @@ from udec_ia.kernels.geometry.contact_geometry import BLUNT
 class Outlines(NamedTuple):
     """The corners of all sound blocks, block by block, clockwise.
 
-    With one element for each block: block: address; first, count: where its corners stand; low, high: the box
-    around them (n x 2); fine: what the heap's reals may be off in a length that follows from the coordinates
-    as they are; slack: what a coordinate of a corner or circle may have gone off against the others.
+    With one element for each block: block: address; first, count: position of its corners; low, high: the box
+    around them (n x 2); fine: rounding error of a length that is calculated from the present coordinates;
+    slack: accumulated error of a coordinate of a corner or circle relative to the others.
 
     With one for each corner: corner: address; owner: index into `block`; before, after: index of the
     neighbours; p, c, t: corner, circle centre and edge (n x 2); z: length of the edge; r: radius; pointed:
@@ -75,19 +75,19 @@ def measure(o: Outlines, rounding: float, growth: float) -> None:
 
 @over_arrays
 def start_of(o: Outlines, j: int) -> float:
-    """How far from its start the edge that ends at corner j is free of the rounding before it."""
+    """Distance from the start of the edge that ends at corner j to the end of the rounding there."""
     return o.d if o.r[o.before[j]] > 0 else 0.0
 
 
 @over_arrays
 def end_of(o: Outlines, j: int) -> float:
-    """Where along the edge that ends at corner j its rounding begins."""
+    """Distance along the edge that ends at corner j to the start of its rounding."""
     return o.z[j] - (o.d if o.r[j] > 0 else 0.0)
 
 
 @over_arrays
 def fineness(o: Outlines, i: int, j: int) -> float:
-    """What the heap's reals may be off in a length between corners i and j."""
+    """Rounding error of a length between corners i and j."""
     return 2 * max(o.fine[o.owner[i]], o.fine[o.owner[j]])
 
 
@@ -101,7 +101,7 @@ def turn_at(o: Outlines, k: int) -> float:
 
 @over_arrays
 def fill_blocks(o: Outlines, centroid: Any, area: Any, far: Any) -> None:
-    """Area within the corners of each block, and how far the farthest is from its centroid (n x 2)."""
+    """Area within the corners of each block, and greatest distance of a corner from its centroid (n x 2)."""
     for b in range(len(o.block)):
         first, twice, square = o.first[b], 0.0, 0.0
         for k in range(first, first + o.count[b]):
@@ -115,9 +115,9 @@ def fill_blocks(o: Outlines, centroid: Any, area: Any, far: Any) -> None:
 
 @over_arrays
 def short_edges(o: Outlines, spare: float, found: Any) -> int:
-    """The number of edges that cannot hold the roundings at their ends, which may overlap by `spare`.
+    """Number of edges too short for the roundings at their ends, which may overlap by `spare`.
 
-    found: corner at the end, length, and what the roundings take, for as many as there is room for.
+    found: corner at the end, length, and length of both roundings, as far as there are rows.
     """
     n = 0
     for k in range(len(o.corner)):
@@ -131,9 +131,9 @@ def short_edges(o: Outlines, spare: float, found: Any) -> int:
 
 @over_arrays
 def circle_at(o: Outlines, k: int) -> tuple[float, float, float]:
-    """Centre and radius of the circle that the edges of corner k ask for: D tan(theta/2).
+    """Centre and radius of the circle that follows from the edges of corner k: D tan(theta/2).
 
-    A flat corner and a point of an edge have none: the corner itself, and radius 0.
+    For a flat corner and a point of an edge: the corner itself, and radius 0.
     """
     angle = turn_at(o, k)
     if o.pointed[k] or not abs(math.sin(angle)) >= _flat_at(o, k):
@@ -159,11 +159,11 @@ def fill_circles(o: Outlines, centre: Any, radius: Any) -> None:
 
 @over_arrays
 def wrong_circles(o: Outlines, found: Any) -> int:
-    """The number of corners whose circle is not the one that their edges ask for.
+    """Number of corners whose circle does not follow from their edges.
 
-    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by
-    (1 + (R/D)^2)/2 times as much. Where it is a matter of rounding whether a corner is flat, either will do.
-    found: corner, centre and radius, for as many as there is room for.
+    An edge is at least 2 D long, so an error s in its ends turns it by s/D and changes the radius by (1 +
+    (R/D)^2)/2 times as much. If rounding decides whether a corner is flat, both circles are accepted. found:
+    corner, centre and radius, as far as there are rows.
     """
     n = 0
     for k in range(len(o.corner)):
@@ -181,7 +181,7 @@ def wrong_circles(o: Outlines, found: Any) -> int:
 
 @over_arrays
 def deepest(o: Outlines, i: int, x: float, y: float, on_edge: bool) -> tuple[float, float]:
-    """The place of arc i that is deepest in the direction (x, y); on an edge a blunt one has an end."""
+    """The deepest place of arc i in the direction (x, y); for a blunt arc on an edge, one of its ends."""
     after = o.after[i]
     if on_edge and o.r[i] > BLUNT * o.d:
         if x * o.t[after, 0] + y * o.t[after, 1] > 0:
@@ -195,7 +195,7 @@ def deepest(o: Outlines, i: int, x: float, y: float, on_edge: bool) -> tuple[flo
 def arc_at(o: Outlines, k: int) -> tuple[float, float, float, float, float, float]:
     """Start, middle and end of the arc of corner k.
 
-    A corner that touches nothing, a concave one above all, is sharp: others meet its two edges.
+    A corner without contacts, such as a concave one, is sharp: others meet its two edges.
     """
     px, py = o.p[k, 0], o.p[k, 1]
     if not o.r[k] > 0:

@@ -1,4 +1,4 @@
-"""Where the outlines of two blocks touch, and where along each of them a contact lies."""
+"""Positions at which the outlines of two blocks touch, and positions of contacts along each outline."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from udec_ia.kernels.audit.block_outlines import Outlines, deepest, end_of, star
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 
-PASSED_OVER = -2  # a contact that stands in nobody's way
-OVERLAP, PLACE, LIMIT = 0, 1, 2  # what is wrong with a contact
+PASSED_OVER = -2  # a contact that does not restrict the order of others
+OVERLAP, PLACE, LIMIT = 0, 1, 2  # kinds of faults of a contact
 
 
 @over_arrays
@@ -35,10 +35,10 @@ def touching(o: Outlines, code: Any, i: Any, j: Any, overlap: Any, point: Any) -
 
 @over_arrays
 def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, limit: float, found: Any) -> int:
-    """The number of things that contacts have other than the outlines, and of overlaps beyond the limit.
+    """Number of contacts whose overlap or place differs from the outlines, and of overlaps beyond the limit.
 
-    noted, x, y: what the contacts have. found: contact, and OVERLAP, PLACE or LIMIT, for as many as there is
-    room for.
+    noted, x, y: overlap and place stored in the contacts. found: contact, and OVERLAP, PLACE or LIMIT, as far
+    as there are rows.
     """
     n = 0
     for k in range(len(noted)):
@@ -59,11 +59,11 @@ def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, lim
 
 @over_arrays
 def standing(o: Outlines, code: Any, corner: Any, others: Any, edge: int, places: Any) -> None:
-    """The places of contacts of these codes on one of their blocks, as checker/contact_places.py has them.
+    """The places of contacts of these codes on one of their blocks (see checker/contact_places.py).
 
-    corner, others: the corner on that block, and on the other; edge: code of those that stand on an edge.
-    places (n x 4): how far before the start of its segment a contact is, and beyond its end; the lever; and
-    the position along the outline.
+    corner, others: the corner on that block, and on the other; edge: code of contacts on an edge. places (n x
+    4): distance of a contact before the start of its segment, and beyond its end; the lever; and the position
+    along the outline.
     """
     for row in range(len(code)):
         k, other = corner[row], others[row]
@@ -89,7 +89,7 @@ def _on_arc_of_two(o: Outlines, k: int, other: int, place: Any) -> None:
 
 @over_arrays
 def _on_edge(o: Outlines, k: int, other: int, place: Any) -> None:
-    """On the edge that ends at corner k: what touches it must stand between its roundings."""
+    """On the edge that ends at corner k: a contact must lie between its roundings."""
     before, start, end = o.before[k], start_of(o, k), end_of(o, k)
     u, v = deepest(o, other, o.t[k, 1], -o.t[k, 0], True)
     along = (u - o.p[before, 0]) * o.t[k, 0] + (v - o.p[before, 1]) * o.t[k, 1]
@@ -101,7 +101,7 @@ def _on_edge(o: Outlines, k: int, other: int, place: Any) -> None:
 
 @over_arrays
 def _past(o: Outlines, k: int, other: int) -> float:
-    """How far what touches there of corner `other` has passed the bisector at corner k, clockwise."""
+    """Distance by which the touching part of corner `other` is past the bisector at corner k, clockwise."""
     after = o.after[k]
     x, y = (o.t[k, 0] + o.t[after, 0]) / 2, (o.t[k, 1] + o.t[after, 1]) / 2
     u, v = deepest(o, other, y, -x, True)
@@ -110,7 +110,7 @@ def _past(o: Outlines, k: int, other: int) -> float:
 
 @over_arrays
 def _along_arc(o: Outlines, k: int, x: float, y: float) -> float:
-    """Where the arc of corner k faces the direction (x, y): its length so far, and that of the edge."""
+    """Length along the arc of corner k to where it faces the direction (x, y), and length of the edge."""
     turn = max(turn_at(o, k), 0.0)
     tx, ty = o.t[k, 0], o.t[k, 1]
     angle = math.atan2(ty * y + tx * x, tx * y - ty * x)  # clockwise from the edge's normal
@@ -123,12 +123,12 @@ def _along_arc(o: Outlines, k: int, x: float, y: float) -> float:
 def disordered(
     lists: Any, contact: Any, row: Any, side: Any, index: Any, along: Any, slack: Any, found: Any
 ) -> int:
-    """The number of contacts that lie behind the next one in a list, with no corner between them.
+    """Number of contacts that lie behind the next one in a list, with no corner between them.
 
-    lists, contact, row, side: as in audit/domain_faces.py. index: by row, where a contact stands among those
-    that have a place; -1 for one that has none, PASSED_OVER for one that stands in nobody's way. along: the
-    places on each side; slack: by how much each may be off. found: list, index of both and by how much the
-    first is behind, for as many as there is room for.
+    lists, contact, row, side: as in audit/domain_faces.py. index: by row, number of a contact among those
+    that have a place; -1 for one without a place, PASSED_OVER for one that does not restrict the order of
+    others. along: the places on each side; slack: tolerance of each. found: list, index of both and distance
+    of the first behind the second, as far as there are rows.
     """
     n = 0
     for r in range(len(lists)):

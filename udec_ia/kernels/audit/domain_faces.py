@@ -11,12 +11,12 @@ from typing import Any
 
 from udec_ia.compiling.kernel_decorators import over_arrays
 
-UNKNOWN = -2  # of a place that no walk has come to
+UNKNOWN = -2  # of a place that no walk has reached
 
 
 @over_arrays
 def passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> None:
-    """The next passage around a domain for each that is known: see checker/contact_map.py."""
+    """The next passage around a domain for each known passage: see checker/contact_map.py."""
     for r in range(len(lists)):
         start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
         first = last = -1
@@ -33,14 +33,14 @@ def passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> N
 
 @over_arrays
 def _join(row: Any, side: Any, one: int, two: int, following: Any) -> None:
-    """After contact `one` of a list comes contact `two`."""
+    """Enter that contact `two` follows contact `one` of a list."""
     if row[one] >= 0 and row[two] >= 0:
         following[2 * row[one] + side[one]] = 2 * row[two] + 1 - side[two]
 
 
 @over_arrays
 def cycles(following: Any, smallest: Any) -> None:
-    """The least place in the cycle of each place; -1 for one that is in none, or leads to the last place."""
+    """The smallest place in the cycle of each place; -1 if it is in no cycle, or leads to the last place."""
     smallest[:] = UNKNOWN
     smallest[-1] = -1
     for start in range(len(following) - 1):
@@ -71,7 +71,7 @@ def pieces(one: Any, two: Any, smallest: Any) -> None:
 
 @over_arrays
 def _root(smallest: Any, k: int) -> int:
-    """The block of a piece that names itself. The way there is halved for whoever comes next."""
+    """The representative block of a piece; the path to it is halved for later calls."""
     while smallest[k] != k:
         smallest[k] = smallest[smallest[k]]
         k = smallest[k]
@@ -82,7 +82,7 @@ def _root(smallest: Any, k: int) -> int:
 def areas(
     lists: Any, contact: Any, row: Any, side: Any, virtual: Any, domains: Any, places: Any, twice: Any
 ) -> bool:
-    """Add up twice the area of each domain; False if a piece of an outline belongs to none, or lies nowhere.
+    """Sum up twice the area of each domain; False if a piece of an outline has no domain or no place.
 
     virtual, domains: by rows of contacts, whether it is virtual, and the rows of its two domains. places: of
     each item (n x 2); a virtual contact gets that of the item before.

@@ -1,8 +1,8 @@
-"""Where two outlines meet: an arc and an edge, two arcs, two edges that cross.
+"""Intersections of two outlines: an arc and an edge, two arcs, two edges that cross.
 
 Brute force: every arc of one block against every edge and arc of the other. A point of an arc is at most D
-away from its corner, another D deep under the edge or beside its end, and as much farther along the edge as
-the arc is awry; so boxes rule out most of them.
+away from its corner, another D deep under the edge or beside its end, and farther along the edge if the arc
+does not face it. So boxes rule out most pairs.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from udec_ia.kernels.geometry.contact_geometry import BLUNT
 
 AWRY = 0.5  # sine of the angle up to which the end of an arc that does not face an edge is tested against it
 AWRY_POINT = 0.2  # the same for a point of an edge: a contact is formed up to an angle of 0.25
-FAR = 3.0  # rounding lengths that a corner is away from an edge at most, where its arc meets the edge
-EDGE, ARC = 0, 1  # what an arc meets
+FAR = 3.0  # greatest distance, in rounding lengths, of a corner from an edge that its arc meets
+EDGE, ARC = 0, 1  # kinds of segments that an arc meets
 
 
 @over_arrays
 def lonely_meetings(
     o: Outlines, pairs: Any, contacts: Any, points: Any, near: float, late: float, rows: Any
 ) -> int:
-    """The number of meetings of two blocks that have no contact near.
+    """Number of intersections of two blocks without a contact near them.
 
-    pairs: two columns of blocks. contacts: the first of `points` that is a contact of theirs, and how many
-    follow. A contact is near within `near` and the overlap; and by D farther from a meeting that is `late`:
-    of a blunt arc, or beside one, as long as the overlap, or the way to the arc, is up to that. rows: corner
-    of the arc, the other corner, EDGE or ARC, point and overlap, for as many as there is room for.
+    pairs: two columns of blocks. contacts: index of their first contact in `points`, and number of their
+    contacts. A contact is near if its distance is at most `near` plus the overlap, and D more for an
+    intersection of, or beside, a blunt arc, if the overlap or the distance to the arc is at most `late`.
+    rows: corner of the arc, the other corner, EDGE or ARC, point and overlap, as far as there are rows.
     """
     found = 0
     for k in range(len(pairs)):
@@ -125,11 +125,11 @@ def _is_late(o: Outlines, i: int, j: int, x: float, y: float, depth: float, late
 
 @over_arrays
 def arc_in_edge(o: Outlines, i: int, j: int) -> tuple[bool, float, float, float]:
-    """Whether the place of arc i that is deepest under the edge of corner j is on it or in the block.
+    """True if the deepest place of arc i under the edge of corner j is on the edge or in the block.
 
-    Returns the place, and how deep it is. The deepest place of an arc that does not face the edge is one of
-    its ends; the centre of a blunt one may then be far away along the edge. A place of an edge that does not
-    face it has deeper ones beside it, where its own edge goes on.
+    Returns the place and its depth as well. The deepest place of an arc that does not face the edge is one of
+    its ends. The centre of a blunt arc may then be far away along the edge. A place of an edge that does not
+    face it has deeper places beside it, where its own edge continues.
     """
     k, after, blunt = o.before[j], o.after[i], o.r[i] > BLUNT * o.d
     tx, ty, start, end = o.t[j, 0], o.t[j, 1], start_of(o, j), end_of(o, j)
@@ -159,7 +159,7 @@ def arc_in_edge(o: Outlines, i: int, j: int) -> tuple[bool, float, float, float]
 
 @over_arrays
 def arc_in_arc(o: Outlines, i: int, j: int) -> tuple[bool, float, float, float]:
-    """Whether arcs i and j overlap along their line of centres, facing each other; where, and how much."""
+    """True if arcs i and j face each other and overlap along their line of centres; place and overlap."""
     x, y = o.c[j, 0] - o.c[i, 0], o.c[j, 1] - o.c[i, 1]
     distance = math.sqrt(x * x + y * y)
     depth = o.r[i] + o.r[j] - distance
@@ -182,9 +182,9 @@ def _faces(o: Outlines, k: int, x: float, y: float) -> bool:
 
 @over_arrays
 def crossing(o: Outlines, pairs: Any, cross: Any) -> None:
-    """True in `cross` for each pair of blocks whose straight edges cross, or of which one holds an arc's end.
+    """Set `cross` for pairs of blocks with crossing straight edges, or with an arc's end of one in the other.
 
-    Only what lies in the boxes of both can do so.
+    Only parts in the boxes of both blocks are tested.
     """
     for k in range(len(pairs)):
         a, b = pairs[k, 0], pairs[k, 1]

@@ -1,1 +1,1 @@
-"""What a block does: law of motion, zones, laws, boundary conditions, loads (report 2.6, 2.9)."""
+"""Motion and deformation of blocks: law of motion, zones, boundary conditions, loads (report 2.6, 2.9)."""

@@ -1,16 +1,16 @@
-"""Boundary conditions: given velocities, loads and non-reflecting edges (the report's further developments).
+"""Boundary conditions: prescribed velocities, loads and viscous edges (the report's further developments).
 
 A condition acts on a grid-point, on a block at its centroid, or at a corner of a block without grid-points:
 
-    velocity   V f takes the place of what the law of motion would give
+    velocity   V f replaces the result of the law of motion
     load       F f
     viscous    -C v, with C = rho Cp L along the normal of the edge and rho Cs L along the edge: a wave that
-               arrives is absorbed, and one is put in as a load of 2 rho C v L
+               arrives is absorbed; a load of 2 rho C v L sends a wave in
 
 f is 1, a sine or a FUNCTION of time, calculated with 64 bits in every word scheme and then rounded once.
-Loads keep the direction and the size that they had when they were given. The work of conditions is summed in
-WBOUND if an account of the energy is kept (kernels.energy.stored_energy). WDRIVE sums up what they put in,
-and not what they take: it distinguishes a driven run from one that gains energy from nowhere
+Loads keep their initial direction and size. The work of conditions is summed in WBOUND if an account of the
+energy is kept (kernels.energy.stored_energy). WDRIVE sums up the energy that they put in, without subtracting
+what they absorb. It distinguishes a driven run from one that gains energy from nowhere
 (advice.energy_monitor).
 """
 
@@ -45,7 +45,7 @@ def _function(h: Memory, isg: int, t: float) -> float:
 def set_signals(h: Memory) -> None:
     """Factors of all signals for the step that begins: their values halfway through it.
 
-    The sine is that of the C library in compiled and interpreted runs alike; NumPy has others of its own.
+    Compiled and interpreted runs use the sine of the C library; NumPy's may differ in the last digit.
     """
     t = float(h.cd[g.TIME] + np.float64(h.cr[g.TDEL]) * 0.5)
     isg = h.ci[g.ISGPNT]
@@ -62,7 +62,7 @@ def set_signals(h: Memory) -> None:
 
 @kernel
 def velocity_of(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
-    """Velocity of what condition `iu` acts on: a grid-point, or its block at (x, y)."""
+    """Velocity of the grid-point, or of the block at (x, y), on which condition `iu` acts."""
     ig, ib = iget(h, iu, g.KUG), iget(h, iu, g.KUB)
     if ig != 0:
         return getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)
@@ -77,7 +77,7 @@ def velocity_of(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
 
 @kernel
 def push_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
-    """Add a force to what condition `iu` acts on."""
+    """Add a force to the grid-point or block on which condition `iu` acts."""
     ig, ib = iget(h, iu, g.KUG), iget(h, iu, g.KUB)
     putr(h, ib, g.KBFX, getr(h, ib, g.KBFX) + fx)
     putr(h, ib, g.KBFY, getr(h, ib, g.KBFY) + fy)
@@ -118,7 +118,7 @@ def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) ->
 
 @kernel
 def _give_velocity(h: Memory, iu: int, factor: float) -> None:
-    """Set the velocities that condition `iu` gives; what that takes from those before is its work."""
+    """Set the velocities that condition `iu` prescribes; the change of kinetic energy is its work."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return
@@ -150,7 +150,7 @@ def _give_velocity(h: Memory, iu: int, factor: float) -> None:
 
 @kernel
 def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
-    """Force of condition `iu` at the velocities and the signal of now, and where it acts."""
+    """Force of condition `iu` at the present velocities and signal, and the point where it acts."""
     factor = real(h, 1.0)
     if iget(h, iu, g.KUS) != 0:
         factor = getr(h, iget(h, iu, g.KUS), g.KTNOW)
@@ -167,7 +167,7 @@ def load(h: Memory, iu: int) -> tuple[float, float, float, float]:
 
 @kernel
 def power_of_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> float:
-    """What the load (fx, fy) of condition `iu` puts in at the velocities of now; 0 if it takes."""
+    """Power of the load (fx, fy) of condition `iu` at the present velocities; 0 if it is negative."""
     if iget(h, iget(h, iu, g.KUB), g.KBFIX) == g.FIXED:
         return 0.0
     vx, vy = velocity_of(h, iu, x, y)
@@ -188,7 +188,7 @@ def power_of_loads(h: Memory) -> float:
 
 @kernel
 def push_loads(h: Memory, dt: float) -> None:
-    """Add the loads of all boundary conditions to the force sums, and what they put in during `dt` to WDRIVE.
+    """Add the loads of all boundary conditions to the force sums, and their work during `dt` to WDRIVE.
 
     dt: the time-step that begins, 0 between two cycles.
     """
@@ -204,7 +204,7 @@ def push_loads(h: Memory, dt: float) -> None:
 
 @kernel
 def drive(h: Memory, iu: int) -> None:
-    """Add to WDRIVE what the velocities that condition `iu` gives put in during the step that begins."""
+    """Add to WDRIVE the work of the velocities of condition `iu` during the step that begins."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return

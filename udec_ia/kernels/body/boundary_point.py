@@ -1,12 +1,12 @@
 """A point on the boundary of a block: its velocity, and a force that acts there (CVEL, PUTFCE; report 2.9).
 
     rigid                v = V + w x r              the force and its moment go to the block
-    simply-deformable    v = V + (w + e) r          they do, and the force adds to the applied stress
+    simply-deformable    v = V + (w + e) r          the same, and the force adds to the applied stress
     fully-deformable     on an edge v varies linearly between the two grid-points at its ends, and a force is
                          shared between them by the lever rule (CVELFD, FDE); at a corner both are those of
                          its grid-point, although the contact lies a little inside the corner (FDC)
 
-`soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code.
+`soft` is None in a scene of rigid blocks only: numba then compiles nothing for deformable blocks.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def velocity_at(h: Memory, ib: int, ic: int, x: float, y: float, soft: Any) -> t
 
 @kernel
 def force_soft(h: Memory, ib: int, ic: int, fx: float, fy: float, x: float, y: float) -> None:
-    """Share a force on deformable block `ib` out (PUTSTR, FDC, FDE)."""
+    """Distribute a force on deformable block `ib` (PUTSTR, FDC, FDE)."""
     if iget(h, ib, HEAD) == g.MSDEF:
         putstr(h, ib, fx, fy, x, y)
         return

@@ -7,15 +7,14 @@
 
 With N the shape function of a grid-point and A the area of a zone, e = 1/2 (dN/dx v + v dN/dx) summed over
 the three, and F = -A S dN/dx (tension positive). Strain and spin of a step are those of the geometry halfway
-through it: a zone that only turns, by however much, is not strained. BETA times the stress rate is added to
-what the grid-points feel, never to the stored stress.
+through it, so a rotation of any size causes no strain. BETA times the stress rate is added to the forces on
+grid-points, never to the stored stress.
 
-The block's own words follow from its grid-points: centroid, velocity and angular velocity are those of the
-momentum that they carry.
+The block's own words follow from its grid-points: centroid, velocity and angular velocity are those of their
+total momentum.
 
 Mixed discretisation (4.7): two successive zones that are a pair have one volumetric strain rate, the mean by
-area; so has their pressure after the law was asked. Triangles that are near to incompressible are too stiff
-otherwise.
+area; after the law they also share their pressure. Otherwise nearly incompressible triangles are too stiff.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ def putfdf(h: Memory, ig: int, fx: float, fy: float) -> None:
 def next_point_velocity(h: Memory, ig: int) -> tuple[float, float]:
     """Velocity of grid-point `ig` at the end of the step, from its force sum.
 
-    A component that KGFIX says is given stays as it is.
+    A component that KGFIX marks as prescribed stays unchanged.
     """
     dt, con1, con2, m = h.cr[g.TDEL], h.cr[g.CON1], h.cr[g.CON2], getr(h, ig, g.KGPM)
     fx, fy = getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX], getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY]
@@ -96,8 +95,9 @@ def pvelfd(h: Memory, ib: int) -> None:
 def sum_up(h: Memory, ib: int) -> None:
     """Centroid, velocity, angular velocity and moment of inertia of block `ib` from its grid-points.
 
-    Sums are taken around where the centroid was, moved as the first grid-point was: however far a block goes
-    in a step, that is inside it or near, and the moment of inertia is no difference of large numbers.
+    Sums are taken around the previous centroid, displaced with the first grid-point. However far a block
+    moves in a step, this point is inside it or near, so the moment of inertia is not a difference of large
+    numbers.
     """
     zero, dt = real(h, 0.0), h.cr[g.TDEL]
     mass, mx, my, px, py, turn, second = zero, zero, zero, zero, zero, zero, zero
@@ -254,7 +254,7 @@ def zone_pass(h: Memory, ib: int, laws: Any) -> None:
 
 @kernel
 def stand_still(h: Memory, ib: int) -> None:
-    """Fixed block `ib`: its grid-points forget their forces."""
+    """Reset the forces on the grid-points of fixed block `ib`."""
     zero = real(h, 0.0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:

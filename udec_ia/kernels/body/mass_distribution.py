@@ -1,4 +1,4 @@
-"""How the mass of a block is spread: Euler tensor (SDEF), masses of zones and grid-points (FDEF)."""
+"""Distribution of the mass of a block: Euler tensor (SDEF), masses of zones and grid-points (FDEF)."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _lump(h: Memory, ib: int) -> None:
 
 @kernel
 def share_mass(h: Memory, ib: int) -> None:
-    """Spread the mass KBM of block `ib` over what its type gives mass to."""
+    """Distribute the mass KBM of block `ib` as its type requires."""
     if iget(h, ib, HEAD) == g.MSDEF:
         _euler(h, ib)
     elif iget(h, ib, HEAD) == g.MFDEF:
@@ -81,7 +81,7 @@ def greatest_block(h: Memory) -> float:
 
 @kernel
 def make_masses(h: Memory, soft: Any) -> None:
-    """Masses and moments of inertia of all blocks from the densities as they are now."""
+    """Set masses and moments of inertia of all blocks from the present densities."""
     ib = h.ci[g.IBPNT]
     while ib != 0:
         makeb(h, ib, density_of(h, ib))

@@ -4,10 +4,10 @@ Central differences, velocities at half steps:
 
     v := (CON1 v + (F/m + g) dt) CON2      w := (CON1 w + (M/I) dt) CON2
 
-A velocity that a boundary condition gives stays as it is; a block that has both given does not turn.
+A velocity that a boundary condition prescribes stays unchanged; a block with both prescribed does not rotate.
 
-The corners are turned with the block by the rotation whose half angle has the tangent w dt/2: it keeps
-every length to rounding, so that a block does not grow while it spins.
+The corners rotate with the block by the rotation whose half angle has the tangent w dt/2. It keeps every
+length to rounding, so a spinning block does not grow.
 """
 
 from __future__ import annotations

@@ -1,18 +1,17 @@
 """Simply-deformable blocks: rigid motion and one strain rate (PUTSTR, STRAIN, STRESS; report 2.6, 3.2).
 
-Beside its three rigid degrees of freedom the block has three more, a uniform strain rate e. With J the
-Euler tensor, the integral of density times r r about the centroid, A the area, S the internal stress
-(tension positive) and SA the applied stress times area:
+Besides its three rigid degrees of freedom the block has three more, a uniform strain rate e. With J the Euler
+tensor, the integral of density times r r about the centroid, A the area, S the internal stress (tension
+positive) and SA the applied stress times area:
 
     velocity   v = V + w x r + e r             SA_ij = sum over contacts of F_i r_j
     motion     1/2 (de/dt J + J de/dt) = sym(SA) - A S
     damping    e := (C1B e + dt de/dt) C2B     DAMPING ... INTERNAL; nothing else damps e
 
-The centrifugal force of the block's own spin is left out of the motion, as in the report.
-In one step the corners are carried along by r := (1 - G/2)^-1 (1 + G/2) r with G = (w + e) dt: for a pure
-rotation that is the rigid block's rotation, and length is kept to rounding. Stress and strain rate turn
-with the block, so that spinning leaves their invariants as they are. The angular momentum stays when the
-moment of inertia changes.
+The centrifugal force of the block's own spin is neglected, as in the report. In one step the corners move by
+r := (1 - G/2)^-1 (1 + G/2) r with G = (w + e) dt. For a pure rotation that is the rotation of a rigid block,
+and lengths are kept to rounding. Stress and strain rate rotate with the block, so that their invariants do
+not change. The angular momentum is conserved when the moment of inertia changes.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ def reset_applied(h: Memory, ie: int) -> None:
 
 @kernel
 def straining_force(h: Memory, ie: int) -> tuple[float, float, float]:
-    """What strains extension `ie`: sym(SA) - A S, components 11, 12, 22."""
+    """Force that strains extension `ie`: sym(SA) - A S, components 11, 12, 22."""
     area, half = getr(h, ie, g.KSAREA), real(h, 0.5)
     f11 = getr(h, ie, g.KSA11) - area * getr(h, ie, g.KS111)
     f22 = getr(h, ie, g.KSA22) - area * getr(h, ie, g.KS122)

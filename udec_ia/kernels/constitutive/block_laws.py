@@ -1,8 +1,7 @@
 """Block laws by constitutive number: linear elasticity (1, CL1) and the user's (2 to 5; IV-4).
 
-`laws` is None in a pass that meets no law of the user's. numba then leaves out what stands behind
-`if laws is not None`, and such a pass pays nothing for all of this. Else it is a Laws
-(compiling/law_calls.py).
+`laws` is None in a pass without user's laws. numba then does not compile the branches `if laws is not None`,
+so such a pass has no extra cost. Otherwise it is a Laws (compiling/law_calls.py).
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from udec_ia.errors import LAW_FAILED
 from udec_ia.heap.accessors import HEAD, Memory, iget, real
 from udec_ia.layout import offsets as g
 
-IN_BLOCKS, AT_JOINTS = 0, 1  # rows of what numbers_in_use fills
+IN_BLOCKS, AT_JOINTS = 0, 1  # rows of the array that numbers_in_use fills
 
 
 @kernel
 def numbers_in_use(h: Memory, user: Any) -> None:
-    """user[IN_BLOCKS, n]: a deformable block of constitutive number n; 0 if there is none.
+    """Set user[IN_BLOCKS, n] to a deformable block of constitutive number n; 0 if there is none.
 
-    user[AT_JOINTS, n]: a contact of number n, or a block, whose contacts to come will be of its number.
+    user[AT_JOINTS, n]: a contact of number n, or a block of number n, which later contacts will have.
     """
     ib = h.ci[g.IBPNT]
     while ib != 0:
@@ -41,7 +40,7 @@ def numbers_in_use(h: Memory, user: Any) -> None:
 
 @inlined
 def failed(h: Memory, group: int, total: float) -> bool:
-    """True, and error 35, if the sum of what a law returned for block or contact `group` is not finite."""
+    """True, and error 35, if the sum of a law's results for block or contact `group` is not finite."""
     if np.isfinite(total):
         return False
     if h.ci[g.NERR] == 0:
@@ -75,8 +74,7 @@ def stress_increment(
 
     s11, s12, s22: stress before the increment, tension positive. e11, e12, e22: components of the strain
     tensor. group: the block, which error 35 names if the law returns no finite numbers; the increments are 0
-    then.
-    A number for which there is no block law is linear elasticity.
+    then. A number without a block law is linear elasticity.
     """
     if laws is not None:
         i = number - FIRST

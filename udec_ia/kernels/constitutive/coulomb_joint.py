@@ -1,15 +1,15 @@
 """Constitutive number 1: a spring normal to the contact, one along it, and Coulomb friction; report 2.6.
 
-    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0, and what the shear spring stored is lost
+    dFn = KN du_n;  no tension: Fn <= 0 or a gap make Fn = Fs = 0, and the energy of the shear spring is lost
     dFs = KS du_s;  |Fs| <= COH + F Fn, else the contact slips
 
-The normal displacement is the change of the geometric overlap, so that Fn and overlap cannot drift
-apart however far a block rolls; the shear displacement is the relative velocity times the time-step.
-Stiffness damping adds BETA times the rate of the spring forces to what the blocks feel, never to the
-stored forces; it vanishes along a contact that slips and in an open one.
+The normal displacement is the change of the geometric overlap, so that Fn and overlap stay consistent however
+far a block rolls. The shear displacement is the relative velocity times the time-step. Stiffness damping adds
+BETA times the rate of the spring forces to the forces on the blocks, never to the stored forces. It vanishes
+along a slipping contact and in an open one.
 
-When the law is called, the contact holds its new overlap, and still the forces and the shear displacement
-before the step. The law returns those after it and the forces of the dashpots.
+When the law is called, the contact has its new overlap, but the forces and the shear displacement before the
+step. The law returns those after the step, and the forces of the dashpots.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def lose_shear(h: Memory, ic: int, fs: float) -> None:
-    """Contact `ic` opens: friction takes what its shear spring held, on the way to the shear force `fs`."""
+    """Contact `ic` opens: add the energy of its shear spring to the friction, at the shear force `fs`."""
     held = getr(h, ic, g.KCFS)
     if held != 0:
         ks = joint_of(h, ic).ks
@@ -33,10 +33,10 @@ def lose_shear(h: Memory, ic: int, fs: float) -> None:
 def coulomb_forces(
     h: Memory, ic: int, joint: Joint, before: float, closing: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
-    """Forces of contact `ic`, which overlaps, after one step, its shear displacement, and of its dashpots.
+    """Forces of closed contact `ic` after one step, its shear displacement, and the forces of its dashpots.
 
     Normal and shear force; displacement; normal and shear force. joint: of the contact. before: the overlap
-    before the step; that after it is in the contact. closing, sliding: relative velocities along the normal
+    before the step; the contact has the one after it. closing, sliding: relative velocities along the normal
     and across.
     """
     zero, kn, ks = real(h, 0.0), joint.kn, joint.ks

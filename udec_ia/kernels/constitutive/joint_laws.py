@@ -1,14 +1,15 @@
 """Joint laws by constitutive number: springs and Coulomb friction (1), the user's (2 to 5), and others.
 
-The contact pass asks here for the forces of a contact. Number 1, and a number without a joint law, is
-coulomb_joint.py. All others have a law of their own, which returns increments of the forces and knows nothing
-of the map, the energy account or the dashpots. Such a law is one function, called in `force_increments`:
+The contact pass gets the forces of a contact from this file. Number 1, and a number without a joint law, is
+coulomb_joint.py. All others have a law of their own, which returns increments of the forces. It does not
+depend on the map, the energy account or the dashpots. Such a law is one function, called in
+`force_increments`:
 
-    a law of the user's       CLJ2 to CLJ5 (Appendix IV-4), called by its address
+    a user's law              CLJ2 to CLJ5 (Appendix IV-4), called by its address
     a law of the program      a number above these, and one branch in `force_increments`
 
-A contact with a law of its own is closed as long as its normal force is positive, whatever its overlap: a
-joint that dilates holds its blocks apart. It closes when blocks overlap, and it has no tensile strength.
+A contact with a law of its own is closed as long as its normal force is positive, whatever its overlap, since
+dilation may hold the blocks apart. It closes when blocks overlap, and it has no tensile strength.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def has_own_law(h: Memory, laws: Laws, ic: int) -> bool:
-    """True if contact `ic` follows a law of its own; else it has springs and Coulomb friction."""
+    """True if contact `ic` has a law of its own; otherwise it has springs and Coulomb friction."""
     i = iget(h, ic, g.KCC) - FIRST
     return i >= JOINTS or (i >= 0 and is_given(laws, i + JOINTS))
 
@@ -46,10 +47,10 @@ def force_increments(
 def own_forces(
     h: Memory, laws: Laws, ic: int, joint: Joint, before: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
-    """As coulomb_forces, by the law of its own that contact `ic` follows.
+    """Forces as of coulomb_forces, by the law of contact `ic`.
 
     Increments that are not finite are 0, and error 35. Stiffness damping is BETA times the rate of the
-    forces. WFRIC grows by the work that the springs KN and KS have not stored.
+    forces. WFRIC grows by the work that the springs KN and KS do not store.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     fn, fs, overlap, us = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), getr(h, ic, g.KCN), getr(h, ic, g.KCS)
@@ -77,8 +78,8 @@ def joint_forces(
 ) -> tuple[float, float, float, float, float]:
     """Normal and shear force of contact `ic` after a step, shear displacement, and forces of its dashpots.
 
-    laws: None in a pass that meets number 1 only. own: of `has_own_law`. before: overlap before the step; the
-    contact holds that after it. closing, sliding: relative velocities along the normal and across.
+    laws: None in a pass with number 1 only. own: of `has_own_law`. before: overlap before the step; the
+    contact has the one after it. closing, sliding: relative velocities along the normal and across.
     """
     joint = joint_of(h, ic)
     if laws is not None and own:
@@ -88,7 +89,7 @@ def joint_forces(
 
 @inlined
 def is_idle(h: Memory, ic: int, own: bool, overlap: float) -> bool:
-    """True if contact `ic` bears no force with that overlap, or, with its own law, is open by BTOL."""
+    """True if contact `ic` carries no force with that overlap, or, with its own law, is open by BTOL."""
     if own:
         return getr(h, ic, g.KCFN) == 0 or overlap < -h.cr[g.BTOL]
     return overlap <= 0 or getr(h, ic, g.KCFN) == 0
@@ -96,7 +97,7 @@ def is_idle(h: Memory, ic: int, own: bool, overlap: float) -> bool:
 
 @inlined
 def no_force(h: Memory, ic: int) -> None:
-    """Contact `ic` bears no force, and its law has forgotten what it stored."""
+    """Reset the forces of contact `ic` and the state of its law."""
     zero = real(h, 0.0)
     putr(h, ic, g.KCFN, zero)
     putr(h, ic, g.KCFS, zero)

@@ -1,13 +1,12 @@
 """Joint properties of a contact: its material, stiffness, strength and stored energy, and whether it slips.
 
-A contact belongs to a joint, and takes the properties of that from its material. Which material that is
-follows from one rule, in `assign_material`, whenever a contact is created, hooked to other blocks, or one of
-its blocks changes. Whoever needs the properties asks `joint_of` for them: the laws, the energy account, the
-time-step, the diagnoses. So a rule by which two materials make a joint, or a stiffness per length, has one
-place to go to.
+A contact belongs to a joint and has the properties of its material. `assign_material` sets the material when
+a contact is created, moved to other blocks, or one of its blocks changes. All users of the properties call
+`joint_of`: the laws, the energy account, the time-step, the diagnoses. So a rule for joints between two
+materials, or a stiffness per length, would change this file only.
 
-Residual strength and dilation are of no concern to number 1 (coulomb_joint.py). The user's laws find them
-with all other properties in the Material that they are called with, which is that of `material_of`.
+Number 1 (coulomb_joint.py) does not use residual strength and dilation. User's laws get them, with all other
+properties, from the material of `material_of`.
 """
 
 from __future__ import annotations
@@ -73,7 +72,7 @@ def strength(joint: Joint, fn: float) -> Any:
 
 @inlined
 def is_stuck(h: Memory, ic: int) -> bool:
-    """True if contact `ic` does not slip: it bears no force, or a shear force below its strength."""
+    """True if contact `ic` does not slip: it carries no force, or a shear force below its strength."""
     fn = getr(h, ic, g.KCFN)
     return abs(getr(h, ic, g.KCFS)) < strength(joint_of(h, ic), fn) or fn == 0
 

@@ -1,15 +1,14 @@
 """The contact pass: forces from relative displacements (FORD, CVEL, PUTFCE); report 2.6.
 
-Each contact in its turn: where it is; the relative velocity of its two blocks; its law (constitutive); and
-the forces on its blocks. That reads the map and writes to the contact alone, but for the forces on the
-blocks. Contacts that have to look at their neighbours, or to change the map, wait until all others have had
-their turn (map_changes.py).
+For each contact in turn the pass calculates its place, the relative velocity of its two blocks, its law
+(constitutive), and the forces on its blocks. It reads the map and writes only to the contact and the force
+sums of its blocks. Contacts that depend on their neighbours, or change the map, wait until all others are
+done (map_changes.py).
 
-The energy account is given the new forces while the contact still holds the old ones
-(energy/work_account.py).
+The energy account gets the new forces while the contact still has the old ones (energy/work_account.py).
 
-The same forces are summed for all blocks after something other than the cycle has changed the map or the type
-of a block (`sum_all_forces`).
+After a command that changes the map or the type of a block, `sum_all_forces` sums the same forces for all
+blocks.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ def put_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
 def push(
     h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
 ) -> None:
-    """Let the blocks of contact `ic` feel its forces; error 15 if it overlaps by more than DTOL2."""
+    """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2."""
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
     putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
@@ -62,7 +61,7 @@ def push(
 
 @inlined
 def has_to_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) -> bool:
-    """True if contact `ic` may have to change the map, or to look at its neighbours. margin: see coord."""
+    """True if contact `ic` may change the map, or depends on its neighbours. margin: see coord."""
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
         return True
     return is_idle(h, ic, own, overlap) and not is_still(h, overlap)
@@ -70,9 +69,9 @@ def has_to_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) ->
 
 @inlined
 def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: bool) -> int:
-    """Force and displacement calculation for contact `ic` (FORD); 0, or how it has to wait for changes.
+    """Calculate force and displacement of contact `ic` (FORD); returns 0, or its address if it has to wait.
 
-    That is its own address, negative if it follows a law of its own (joint_laws.py). Others: as in ford_all.
+    The address is negative if the contact has a law of its own (joint_laws.py). Others: as in ford_all.
     """
     own = joints is not None and has_own_law(h, joints, ic)
     nx, ny, overlap, margin = coord(h, ic)
@@ -99,7 +98,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
 
 @inlined
 def look_ahead(h: Memory, ic: int) -> int:
-    """Fetch what contact `ic` is going to look at; returns the contact after it, 0 where there is none."""
+    """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none."""
     if ic == 0:
         return int64(0)
     fetch(h, ic, g.NVCN, LEAD)
@@ -110,7 +109,7 @@ def look_ahead(h: Memory, ic: int) -> int:
 
 @kernel
 def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, waiting: Any) -> None:
-    """All contacts that are not virtual; the first whose overlap is too great raises error 15.
+    """Calculate all contacts that are not virtual; the first whose overlap is too large raises error 15.
 
     soft, joints: as in run_cycles. change_map: of map_changes.py. account: energy.work_account.note_contact,
     or 0 if none is kept. waiting: room for the addresses of all contacts.

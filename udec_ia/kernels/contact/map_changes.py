@@ -1,20 +1,20 @@
 """Changes of the map in the contact pass: contacts get another code or place, and contacts are deleted.
 
-The force of a contact needs the contact alone, its two blocks and its material. Whatever looks at its
-neighbours, or changes the map, waits until all others have their forces (ford.py): then the contacts that had
-to wait are brought up to date here, one after the other in list order, and get their forces at last. So what
-the others feel does not depend on the order in which they are visited.
+The force of a contact depends on the contact, its two blocks and its material. Work that depends on
+neighbours, or changes the map, waits until all others have their forces (ford.py). The contacts that wait are
+then updated here in list order, and get their forces last. So the forces of all others do not depend on the
+order of the list.
 
-A contact waits if it is no longer where its code and its corners say, if its corner has no arc any more, if
-it has no force and is to look at its neighbours (domain_pass.py) or is open too far, or if it overlaps so
-much that its tip may have been squeezed through.
+A contact waits if its code and corners do not fit its place any more, if its corner has lost its arc, if it
+has no force and must be compared with its neighbours (domain_pass.py) or is open too far, or if it overlaps
+so much that its tip may have been squeezed through.
 
 In a notch a corner touches both edges: it gets its contact with the second from ETOL before that on
-(detect/contact_search.py), and for a while it holds both. Out of the notch, by more than D, the contact with
-the edge that it has left has no place. It goes if it carries nothing; or its force goes over to the other
-contact. In a slight notch the places at which a corner touches the two edges may be nearer than FTOL. Then it
-has one contact, which goes from edge to edge where their bisector is, as at a straight corner. A contact with
-a law of its own, whose memory only that law knows, stays until it opens.
+(detect/contact_search.py), and for a while it holds both. When it has left the notch by more than D, the
+contact with the edge behind it has no place. It is deleted if it carries no force; otherwise its force is
+transferred to the other contact. In a slight notch the places at which a corner touches the two edges may be
+nearer than FTOL. Then it has one contact, which passes from edge to edge at their bisector, as at a straight
+corner. A contact with a law of its own, which may have a memory, stays until it opens.
 """
 
 from __future__ import annotations
@@ -92,14 +92,14 @@ def heir(h: Memory, ic: int) -> int:
 
 @inlined
 def held(h: Memory, ic: int) -> float:
-    """Energy in the springs of contact `ic`."""
+    """Energy stored in the springs of contact `ic`."""
     normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
     return (normal + shear) * real(h, 0.5)
 
 
 @kernel
 def hand_over(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
-    """Contact `jc` takes the force of contact `ic`, of the normal (nx, ny); ENERGY notes what is lost."""
+    """Transfer the force of contact `ic`, with normal (nx, ny), to contact `jc`; ENERGY records the loss."""
     fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
     fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
     if iget(h, ic, g.KB1) != iget(h, jc, g.KB1):
@@ -114,7 +114,7 @@ def hand_over(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
 
 @kernel
 def over_bisector(h: Memory, ic: int, ib: int) -> bool:
-    """Let contact `ic` go on to the next edge of block `ib`, if its corner is past a bisector there."""
+    """Move contact `ic` to the next edge of block `ib`, if its corner is past a bisector there."""
     arc, edge = arc_and_edge(h, ic)
     code, ia = iget(h, ic, g.KCCOD), iget(h, edge, g.KR)
     if getr(h, edge, g.KRAD) < 0 and past(h, edge, arc) > h.cr[g.GTOL]:
@@ -124,9 +124,9 @@ def over_bisector(h: Memory, ic: int, ib: int) -> bool:
 
 @kernel
 def leave_notch(h: Memory, ic: int, nx: float, ny: float) -> bool:
-    """Contact `ic`, of the normal (nx, ny), has a force; if it is out of a notch, that goes where it belongs.
+    """Transfer the force of contact `ic`, of the normal (nx, ny), if its corner has left a notch.
 
-    True if the contact is on another edge now.
+    Returns True if the contact is on another edge now.
     """
     if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
         return False
@@ -139,13 +139,13 @@ def leave_notch(h: Memory, ic: int, nx: float, ny: float) -> bool:
     return False
 
 
-ALL, NOBODY = -1, np.zeros(0, np.int64)  # all contacts, whoever waits
+ALL, NOBODY = -1, np.zeros(0, np.int64)  # all contacts; none that waits
 TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
 
 
 @kernel
 def restart(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Settle contact `ic` in a changed geometry, its forces as they are; normal (x, y) and overlap."""
+    """Update contact `ic` to a changed geometry and keep its forces; returns normal (x, y) and overlap."""
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, g.KCN, overlap)
     return nx, ny, overlap
@@ -183,7 +183,7 @@ def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: 
 def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """True if contact `ic`, of the normal (nx, ny), and a neighbour on the same segment are past each other.
 
-    If it is open, something has slipped through its gap.
+    If it is open, a block has passed through its gap.
     """
     code = iget(h, ic, g.KCCOD)
     after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
@@ -208,7 +208,7 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 @inlined
 def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """True if open contact `ic` has turned away, been overtaken, or has a third block in its gap."""
+    """True if open contact `ic` separates no domains: turned away, overtaken, or a third block in its gap."""
     if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
         return True
     return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
@@ -216,7 +216,7 @@ def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool
 
 @kernel
 def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """True if contact `ic` overlaps by more than a narrow tip can stand.
+    """True if contact `ic` overlaps by more than the width of a narrow tip.
 
     Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
     arc's centre is in the other block and the contact has passed a neighbour: the tip is squeezed out between
@@ -235,7 +235,7 @@ def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
 
 @inlined
 def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
-    """Delete contact `ic` if it is open too far or no wall any more, or idle beside a twin.
+    """Delete contact `ic` if it is open too far, separates no domains any more, or is idle beside a twin.
 
     A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
     """
@@ -256,16 +256,16 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
 
 @inlined
 def opens(h: Memory, ic: int) -> None:
-    """Contact `ic` overlaps no more, and loses what its springs held."""
+    """Contact `ic` opens and loses the energy of its springs."""
     lose_shear(h, ic, getr(h, ic, g.KCFS))
     no_force(h, ic)
 
 
 @inlined
 def loses(h: Memory, ic: int, overlap: float) -> float:
-    """Energy that goes with contact `ic`, open by now to `overlap`: by a law of the user's it may hold some.
+    """Energy lost with contact `ic`, now open to `overlap`; with a user's law it may store some.
 
-    That is what its springs hold, and what its normal force has done in half of this step.
+    It is the energy of its springs, and the work of its normal force in half of this step.
     """
     fn = getr(h, ic, g.KCFN)
     if fn == 0:
@@ -276,13 +276,13 @@ def loses(h: Memory, ic: int, overlap: float) -> float:
 
 @inlined
 def is_still(h: Memory, overlap: float) -> bool:
-    """True if a contact without a force need not look at its neighbours, nor go, with that overlap."""
+    """True if a contact without a force and with that overlap needs no comparison and no deletion."""
     return h.cr[g.ULOOK] < h.cr[g.HTOL] and overlap >= -h.cr[g.BTOL]
 
 
 @kernel
 def change(h: Memory, ic: int, own: bool) -> bool:
-    """Bring contact `ic` up to date; False if it goes. own: whether it follows a law of the user's."""
+    """Update contact `ic`; False if it is deleted. own: True if it has a user's law."""
     nx, ny, overlap = settle(h, ic)
     if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
         nx, ny, overlap = settle(h, ic)
@@ -301,7 +301,7 @@ def change(h: Memory, ic: int, own: bool) -> bool:
 
 @kernel
 def settle_all(h: Memory) -> None:
-    """Bring every contact up to date with a changed geometry, its force as it is; it may go."""
+    """Update every contact to a changed geometry and keep its force; contacts may be deleted."""
     ic = h.ci[g.ICPNT]
     while ic != 0:
         following = iget(h, ic, g.KC)
@@ -313,10 +313,10 @@ def settle_all(h: Memory) -> None:
 
 @outlined
 def change_map(h: Memory, waiting: Any, n: int) -> bool:
-    """Bring the first `n` contacts of `waiting` up to date; those that go are 0 there afterwards.
+    """Update the first `n` contacts of `waiting`; deleted ones are 0 there afterwards.
 
-    waiting: their addresses; negative if they follow a law of the user's. ALL for `n`: a command has
-    changed the geometry, and all contacts follow it.
+    waiting: their addresses; negative if they have a user's law. ALL for `n`: a command has changed the
+    geometry, and all contacts are updated.
     """
     if n == ALL:
         settle_all(h)

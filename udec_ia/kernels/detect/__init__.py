@@ -1,1 +1,1 @@
-"""Which contacts there must be: fictitious displacements, the search in a domain, what goes by unseen."""
+"""Contact detection: fictitious displacements, search in a domain, blocks that penetrate within a step."""

@@ -1,15 +1,15 @@
-"""Search for contacts: which segments of a domain are near enough (UPDT), and which overlap too much.
+"""Search for contacts: segments of a domain that are near enough (UPDT), and segments that overlap too much.
 
 A contact is formed where two segments of different blocks come nearer than ATOL (report 2.2): an arc and an
-edge, or two arcs. The arc must face what it is near to: the other side of its block is someone else's
-business. Small domains try all pairs. In large ones - the outer domain, an open cavity - every segment is
-entered in the cells of a grid that its surroundings cover, and only segments that share a cell are tried, so
-that the cost grows with the length of the boundary and not with its square.
+edge, or two arcs. The arc must face the other segment; the far side of its block belongs to another domain.
+Small domains test all pairs. In large ones, such as the outer domain or an open cavity, every segment is
+entered in the grid cells that it covers, with a margin. Only segments with a common cell are tested, so the
+cost grows with the length of the boundary and not with its square.
 
-A contact is formed while its overlap is at most CTOL, and no block that moves gets deeper than that unseen.
-Where outlines change otherwise, by ROUND or by CHANGE, a corner that stood free in the void beside its
-neighbours may lie deeper in one of them, and would never get a contact. Two blocks that overlap border on one
-domain, so `deep_overlap` tests all segments that face each other in every domain.
+A contact is formed while its overlap is at most CTOL. The program detects every moving block that penetrates
+deeper without a contact. If ROUND or CHANGE alters outlines, a corner that was free beside its neighbours may
+lie deeper in one of them, and would never get a contact. Two blocks that overlap border on one domain, so
+`deep_overlap` tests all segments that face each other in every domain.
 """
 
 from __future__ import annotations
@@ -42,21 +42,20 @@ from udec_ia.kernels.map.domain_segments import (
 from udec_ia.layout import offsets as g
 
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
-STRAY = -1  # no code: what overlaps can have no contact
-SMALL = 48  # segments of a domain in which all pairs are tried
+STRAY = -1  # not a code: an overlap that can have no contact
+SMALL = 48  # segments of a domain up to which all pairs are tested
 
 
 @kernel
 def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
-    """How far the centre of corner `ip` has passed corner `iq` towards the edge that leaves or reaches it.
+    """Distance of the centre of corner `ip` past corner `iq` along the edge that leaves or reaches it.
 
-    Past the arc of `iq`, if it has one: by the same number that tells arc_on_arc whether the centre is over
-    the arc, so that rounding cannot leave a place between arc and edge that is neither. along: distance
-    from `iq` along the edge to what touches it, which counts for a blunt corner, as that may be the end of
-    its arc: as far as a contact that is there stays on the edge, GTOL before its end
-    (contact_reclassification.py). It counts at a concave corner, too: from ETOL before it on, as a blunt arc
-    in the notch is deep in the edge at once. Two edges that meet in an edge point share what is within FTOL
-    of their bisector.
+    If `iq` has an arc, the distance is past the arc. arc_on_arc tests the same number, so rounding cannot
+    leave a gap between arc and edge. along: distance from `iq` along the edge to the touching point. It
+    counts for a blunt corner, where this may be the end of its arc, up to GTOL before the end of the edge,
+    where a contact leaves it (contact_reclassification.py). It also counts at a concave corner, from ETOL
+    before it, since a blunt arc in a notch is deep in the edge at once. Two edges that meet in an edge point
+    share the zone within FTOL of their bisector.
     """
     rad = getr(h, iq, g.KRAD)
     if rad > 0 and is_blunt(h, ip):
@@ -107,7 +106,7 @@ def arc_on_arc(h: Memory, ip: int, iq: int, limit: float) -> tuple[bool, float]:
 
 @kernel
 def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
-    """True if a contact on the arc of corner `ip` of block `ib` stands on segment (jp, jarc) already."""
+    """True if the arc of corner `ip` of block `ib` already has a contact with segment (jp, jarc)."""
     ic = prevcp(h, ib, ip)
     while is_contact(h, ic):
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
@@ -122,7 +121,7 @@ def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
 
 @kernel
 def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bool:
-    """True if near item `iad` of block `ib` a contact with block `jb` stands within FTOL of (x, y)."""
+    """True if a contact with block `jb` near item `iad` of block `ib` lies within FTOL of (x, y)."""
     ahead, behind = nextcp(h, ib, iad), int64(iad)
     for _ in range(AROUND):
         for ic in (ahead, behind):
@@ -136,7 +135,7 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
 
 @inlined
 def _passed(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
-    """What lies `way` beyond contact `ic` of block `ib`: if that is with block `jb`, too, FTOL is too far."""
+    """The distance `way` beyond contact `ic` of block `ib`, increased if that is also with block `jb`."""
     if other(h, ib, ic) == jb and way > h.cr[g.FTOL]:
         return way + h.cr[g.ETOL]
     return way
@@ -146,10 +145,11 @@ def _passed(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
 def _misplaced(
     h: Memory, ib: int, ip: int, arc: bool, iad: int, jb: int, x: float, y: float, nx: float, ny: float
 ) -> float:
-    """By how much a contact at (x, y) lies outside the exposure of a segment that follows item `iad`.
+    """Distance of a contact at (x, y) outside the exposure of a segment that follows item `iad`.
 
-    (nx, ny): its normal, away from block `ib`. Two contacts with the same block `jb` come out of order only
-    where a tip is inside another: what passes the other one by more than FTOL counts as ETOL further outside.
+    (nx, ny): its normal, away from block `ib`. Two contacts with the same block `jb` are out of order only if
+    a tip is inside another. A contact that is past the other one by more than FTOL counts as ETOL further
+    outside.
     """
     worst = real(h, 0.0)
     before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
@@ -198,7 +198,7 @@ def _unless_stray(h: Memory, ib: int, jb: int, overlap: float, x: float, y: floa
 
 @kernel
 def _taken(h: Memory, seg: Any, i: int, j: int, gap: Any) -> bool:
-    """True if a third block stands in the gap of the contact that segments `i` and `j` would have."""
+    """True if a third block is in the gap of the contact that segments `i` and `j` would have."""
     ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
     return taken_between(h, ib, iad, nextcp(h, ib, iad), jb, gap) or taken_between(
         h, jb, jad, nextcp(h, jb, jad), ib, gap
@@ -207,11 +207,11 @@ def _taken(h: Memory, seg: Any, i: int, j: int, gap: Any) -> bool:
 
 @kernel
 def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
-    """Code of the contact that segments `i` and `j` should have, 0 for none, and how urgent it is.
+    """Code of the contact that segments `i` and `j` should have, 0 for none, and its urgency.
 
-    STRAY if their blocks overlap there, and no contact can be made. Urgent is the greatest overlap at the
-    place in the list where the contact belongs. An open contact that would be given up at once, because
-    something stands in its gap, is not made but asked for again.
+    STRAY if their blocks overlap there, and no contact can be made. The urgency is the overlap, less the
+    distance outside the contact's place in the list. An open contact with a block in its gap, which would be
+    given up at once, is not made but requested again.
     """
     zero = real(h, 0.0)
     ib, ip, iarc = seg[i, BLOCK], seg[i, CORNER], seg[i, ARC]
@@ -261,7 +261,7 @@ def _ends(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float, floa
 
 @kernel
 def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float, float]:
-    """Surroundings of segment `i`: x and y from, x and y to; grown by `margin` on all sides."""
+    """Box around segment `i`: lower x and y, upper x and y; extended by `margin` on all sides."""
     ax, ay, bx, by, radius = _ends(h, seg, i)
     grow = radius + margin
     return min(ax, bx) - grow, min(ay, by) - grow, max(ax, bx) + grow, max(ay, by) + grow
@@ -269,7 +269,7 @@ def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float
 
 @inlined
 def goes_before(code: int, urgent: float, best: int, highest: float) -> bool:
-    """True if a contact of that code and urgency goes before the best one until now; STRAY comes last."""
+    """True if a contact of that code and urgency precedes the best one so far; STRAY is last."""
     if code > 0:
         return best <= 0 or urgent > highest
     return code == STRAY and best == 0
@@ -324,7 +324,7 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 
 @kernel
 def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
-    """As _search_pairs, but only pairs that share a cell of a grid as wide as the mean edge is long."""
+    """As _search_pairs, for pairs with a common cell of a grid whose spacing is the mean edge length."""
     total = real(h, 0.0)
     half = h.cr[g.ATOL] * real(h, 0.5)
     for i in range(n):
@@ -359,7 +359,7 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
 def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """The most urgent contact that `n` segments of a domain need: code and two rows; code 0 for none.
 
-    STRAY if nothing can be done any more, and two blocks overlap without a contact.
+    STRAY if no contact can be made any more, and two blocks overlap without one.
     """
     h.ci[g.NTIPS] = 0
     if n <= SMALL:
@@ -369,7 +369,7 @@ def search(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
 
 @kernel
 def _boxes(h: Memory, seg: Any, n: int, reach: float) -> Any:
-    """Surroundings of the segments, grown so that those of two that overlap by up to `reach` meet."""
+    """Boxes around the segments, extended so that the boxes of two that overlap by up to `reach` meet."""
     boxes = np.empty((n, 4), np.float64)
     half = reach * real(h, 0.5)
     for i in range(n):

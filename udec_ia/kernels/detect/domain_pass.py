@@ -1,24 +1,24 @@
 """The domain pass: fictitious displacements that trigger updates (ACCUM; report 2.2).
 
 In every domain the greatest relative velocities in x and in y between any two of its corners and contact
-points are multiplied by the time-step and summed. When the sum exceeds ETOL = ATOL/sqrt(2), something
-may have come near enough to touch, and the domain is updated.
+points are multiplied by the time-step and summed. When the sum exceeds ETOL = ATOL/sqrt(2), segments may be
+near enough for a contact, and the domain is updated.
 
-A contact point counts with the velocities of both its blocks: any point of a domain's boundary then moves
-no faster than two points that were looked at, and no contact can be missed.
+A contact point counts with the velocities of both its blocks: then no point of a domain's boundary is faster
+than the compared points, and no contact can be missed.
 
-A domain is updated already when the sum would exceed ETOL in the next step, so that what is nearly near
-enough has its contact before it touches. In a step with a relative displacement of more than ETOL two blocks
-can go from no overlap to one of more than CTOL, with which no contact is formed: if any have, that is an
-error. Why nothing else can be missed is said in tunnelling.py.
+A domain is updated when the sum would exceed ETOL in the next step, so that contacts form before segments
+touch. In a step with a relative displacement of more than ETOL, two blocks can change from no overlap to one
+of more than CTOL, at which no contact can form. This is an error. tunnelling.py proves that no other case can
+be missed.
 
-While everything is slow the pass need not run at all: no relative velocity exceeds twice the fastest
-block's, so that bound is summed instead (UPEND) and added to every domain before it reaches HTOL, a
-hundredth of ETOL. A scene at rest pays nothing for its domains.
+The pass may wait while all blocks are slow. No relative velocity exceeds twice that of the fastest block, so
+this bound is summed instead (UPEND), and added to every domain before it reaches HTOL, a hundredth of ETOL. A
+scene at rest spends no time on its domains.
 
-An open contact looks at its neighbours (map_changes.py) in a cycle in which a domain is going to be updated,
-or the greatest displacement within any domain, summed since they last looked (ULOOK), has reached HTOL. What
-flies together pays nothing for that.
+Open contacts are compared with their neighbours (map_changes.py) in a cycle in which a domain will be
+updated, or in which the greatest displacement within any domain since the last comparison (ULOOK) has reached
+HTOL. Blocks that fly together cause no comparison.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
     far = real(h, np.inf)
     lx, ly, hx, hy = far, far, -far, -far
     one, two = iget(h, item, g.KB1), iget(h, item, g.KB2)
-    all_real = h.ci[g.NVIRT] == 0  # saves a look at the far end of every contact
+    all_real = h.ci[g.NVIRT] == 0  # saves reading the far end of every contact
     while True:
         if all_real or iget(h, item, g.KCCOD) != g.VIRTUAL:
             x, y = getr(h, item, g.KXC), getr(h, item, g.KYC)
@@ -68,7 +68,7 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
 
 @inlined
 def look_ahead(h: Memory, idm: int) -> int:
-    """Fetch what domain `idm` is going to look at; returns the domain after it, 0 where there is none."""
+    """Prefetch the words that domain `idm` needs; returns the next domain, 0 if there is none."""
     if idm == 0:
         return int64(0)
     ic = iget(h, idm, g.KDLOOP)
@@ -77,17 +77,17 @@ def look_ahead(h: Memory, idm: int) -> int:
     if ic != 0:
         fetch(h, iget(h, ic, g.KL1), g.NVCR)
         fetch(h, iget(h, ic, g.KL2), g.NVCR)
-        fetch(h, iget(h, ic, g.KB1), g.NVDO)  # the first words hold the velocities
+        fetch(h, iget(h, ic, g.KB1), g.NVDO)  # the first words contain the velocities
         fetch(h, iget(h, ic, g.KB2), g.NVDO)
     return iget(h, idm, g.KD)
 
 
 @kernel
 def accumulate(h: Memory, fastest: float, soft: Any) -> int:
-    """Sum the fictitious displacements of one step; returns what comes next, a value of JPHASE.
+    """Sum the fictitious displacements of one step; returns the next phase, a value of JPHASE.
 
-    AT_WAYS if in a domain something has moved by more than ETOL in this step, else AT_DOMAINS if a domain is
-    to be updated, else AT_CONTACTS. fastest: a bound on the velocity of any point of any block in this step.
+    AT_WAYS if a part of a domain has moved by more than ETOL in this step, else AT_DOMAINS if a domain must
+    be updated, else AT_CONTACTS. fastest: a bound on the velocity of any point of any block in this step.
     """
     dt = h.cr[g.TDEL]
     bound = (fastest + fastest) * dt

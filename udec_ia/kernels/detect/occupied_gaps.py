@@ -1,14 +1,14 @@
 """Open contacts whose gap a third block occupies.
 
-A contact stays in the map while it is open by less than BTOL, and its domains end at it like at a wall.
-Something narrow, or something fast, can pass through the wall: then it is near something else in a domain
-that is not its own, and would never get a contact with it. So a contact in whose gap another block stands is
-no contact: none is formed there, and one that stands there is given up, which merges its two domains.
+A contact stays in the map while it is open by less than BTOL, and separates its two domains like a wall. A
+narrow or fast block can pass through the wall. It is then near a block in another domain, and would never get
+a contact with it. So a contact with another block in its gap is not allowed: none is formed there, and an
+existing one is given up, which merges its two domains.
 
-What comes into a gap slowly has a contact with one of the two blocks, for a gap is narrower than 2 ATOL. In
-the lists it stands beside the contact, which looks at these neighbours each time something in a domain has
-moved by HTOL, a 280th of the rounding length (map_changes.py, domain_pass.py). What may have come there in
-one step is looked for by the update (update.py).
+A block that enters a gap slowly has a contact with one of the two blocks, since a gap is narrower than 2
+ATOL. In the lists it is next to the contact, which is compared with these neighbours each time a part of a
+domain has moved by HTOL, a 280th of the rounding length (map_changes.py, domain_pass.py). The update searches
+for blocks that entered within one step (update.py).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from udec_ia.kernels.map.bridge import delc, nextd, to_virtual
 from udec_ia.kernels.map.domain_segments import ARC, BLOCK, CORNER, loop_start
 from udec_ia.layout import offsets as g
 
-BESIDE = 3  # items looked at in a list for a neighbour: there may be a corner between
+BESIDE = 3  # items of a list that are searched for a neighbour: there may be a corner between
 
 
 @kernel
@@ -74,9 +74,9 @@ def _arc_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float,
 
 @inlined
 def _lies_beside(h: Memory, ia: int, ip: int, iq: int, x: float, y: float, nx: float, ny: float) -> bool:
-    """True if corner `ip`, its circle and both its edges, lies on one side of the line along a gap.
+    """True if corner `ip`, with its circle and both edges, lies on one side of the line along a gap.
 
-    Then it does not stand in it. ia, iq: the corners before and after.
+    Then it is not in the gap. ia, iq: the corners before and after.
     """
     a = nx * (getr(h, ia, g.KYP) - y) - ny * (getr(h, ia, g.KXP) - x)
     b = nx * (getr(h, ip, g.KYP) - y) - ny * (getr(h, ip, g.KXP) - x)
@@ -96,9 +96,9 @@ def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
 
 @inlined
 def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
-    """True if block `ib` holds the point (x, y), so deep that it would overlap by FTOL with what comes there.
+    """True if the point (x, y) is so deep in block `ib` that a segment there would overlap by FTOL.
 
-    ip: a corner near it, iq: the next one; they save time.
+    ip: a corner near it, iq: the next one, where the search begins.
     """
     if not _lies_behind(h, ip, x, y):
         return False
@@ -111,7 +111,7 @@ def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
 def stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
     """True if corner `ip` of block `ib`, rounded, or an edge at it crosses a gap, or the block fills it.
 
-    The gap is 2 `half` wide along the unit vector (nx, ny), its middle is at (x, y).
+    The gap has the width 2 `half` along the unit vector (nx, ny) and its middle at (x, y).
     """
     iq = next_corner(h, ib, ip)
     if not _lies_beside(h, iget(h, ip, g.KR), ip, iq, x, y, nx, ny) and (
@@ -145,9 +145,10 @@ def _third(h: Memory, ib: int, jb: int, item: int) -> int:
 
 @inlined
 def _taken_by(h: Memory, ib: int, jb: int, item: int, gap: Any) -> bool:
-    """True if the third block that contact `item` of block `ib` leads to stands between it and block `jb`.
+    """True if the third block that contact `item` of block `ib` leads to is between it and block `jb`.
 
-    gap: what `meet` says of the contact of `ib` and `jb`. Where these overlap it must reach into the overlap.
+    gap: the result of `meet` for the contact of `ib` and `jb`. If these overlap, the third block must reach
+    into the overlap.
     """
     kb = _third(h, ib, jb, item)
     if kb == 0:
@@ -160,7 +161,7 @@ def _taken_by(h: Memory, ib: int, jb: int, item: int, gap: Any) -> bool:
 
 @kernel
 def taken_between(h: Memory, ib: int, before: int, after: int, jb: int, gap: Any) -> bool:
-    """True if a third block with a contact beside one place in the list of block `ib` stands in the gap.
+    """True if a third block with a contact beside one place in the list of block `ib` is in the gap.
 
     before, after: the items at the place. jb, gap: as in _taken_by.
     """
@@ -170,7 +171,7 @@ def taken_between(h: Memory, ib: int, before: int, after: int, jb: int, gap: Any
 
 @kernel
 def gap_taken(h: Memory, ic: int, gap: Any) -> bool:
-    """True if a third block that has a contact beside contact `ic` stands in its gap."""
+    """True if a third block that has a contact beside contact `ic` is in its gap."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
     return taken_between(h, ib, iget(h, ic, g.KLB1), iget(h, ic, g.KL1), jb, gap) or taken_between(
         h, jb, iget(h, ic, g.KLB2), iget(h, ic, g.KL2), ib, gap
@@ -205,9 +206,9 @@ def _jumped(h: Memory, ib: int, ip: int, ic: int, gap: Any) -> bool:
 
 @kernel
 def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
-    """Give up one contact around domain `idm` in whose gap a third block stands, or which it has jumped over.
+    """Give up one contact around domain `idm` that has a third block in its gap, or over which it has jumped.
 
-    Returns whether one was found, and the domain that then takes the place of `idm`.
+    Returns True if one was found, and the domain that replaces `idm`.
     """
     found = np.empty(n, np.int64)
     m = _open_contacts(h, idm, found)
@@ -241,7 +242,7 @@ def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
 
 @kernel
 def give_up(h: Memory, idm: int, ic: int) -> int:
-    """Contact `ic` around domain `idm` goes; returns the domain that then takes the place of `idm`."""
+    """Delete contact `ic` around domain `idm`; returns the domain that replaces `idm`."""
     h.ci[g.NBROKE] += 1
     if iget(h, ic, g.KD1) == iget(h, ic, g.KD2):
         to_virtual(h, ic)

@@ -1,11 +1,10 @@
-"""Depth of a point in a rounded block, and whether two thin tips have gone through each other.
+"""Depth of a point in a rounded block, and thin tips that have passed through each other.
 
-Two blocks that touch in two places close a space between them: a walk round it goes along one block from the
-first contact to the second, and along the other block back again. So of two contacts that lie beside each
-other the second comes after the first on one block and before it on the other. Where two tips, thinner than
-the overlaps that are allowed, have passed through each other, the segments on the far sides meet too, and
-there a contact would come after the first on both blocks. Each of the two domains that it made would be the
-outside of one block, and none the space between.
+Two blocks that touch in two places enclose a space. A loop around it follows one block from the first contact
+to the second, and the other block back. So of two adjacent contacts the second follows the first on one block
+and precedes it on the other. If two tips, thinner than the allowed overlap, have passed through each other,
+the segments on their far sides also meet. A contact there would follow the first on both blocks. Each of its
+two domains would be the outside of one block, and neither the space between.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def _from(h: Memory, ip: int, x: float, y: float, back: float) -> tuple[float, float]:
-    """Vector from the point (x, y) to where corner `ip` was a time `back` ago."""
+    """Vector from the point (x, y) to the place of corner `ip` a time `back` ago."""
     px, py = getr(h, ip, g.KXP) - getr(h, ip, g.KXDP) * back, getr(h, ip, g.KYP) - getr(h, ip, g.KYDP) * back
     return px - x, py - y
 
 
 @kernel
 def _under_arc(h: Memory, ip: int, x: float, y: float, back: float, depth: float) -> float:
-    """The lesser of `depth` and that of the point (x, y) under the arc of corner `ip`, if it is there at all.
+    """The smaller of `depth` and the depth of the point (x, y) under the arc of corner `ip`, if it is there.
 
-    Between the arc and the tip that it cuts off the depth is negative. back: as in depth_in.
+    Between the arc and the tip that the rounding removes, the depth is negative. back: as in depth_in.
     """
     rad = getr(h, ip, g.KRAD)
     cx, cy = getr(h, ip, g.KXCP), getr(h, ip, g.KYCP)
@@ -51,8 +50,8 @@ def _under_arc(h: Memory, ip: int, x: float, y: float, back: float, depth: float
 def depth_in(h: Memory, ib: int, x: float, y: float, back: float) -> float:
     """Distance of the point (x, y) from the rounded outline of block `ib`, negative if it lies outside.
 
-    The block is looked at as it was a time `back` ago, when its corners moved as they do now. Outside a
-    corner the distance is that from the edges that meet there.
+    The block is taken as it was a time `back` ago, at the present velocities of its corners. Outside a corner
+    the distance is that from the edges that meet there.
     """
     inside = False
     nearest = real(h, np.inf)
@@ -85,8 +84,8 @@ def depth_in(h: Memory, ib: int, x: float, y: float, back: float) -> float:
 def do_not_meet(h: Memory, ib: int, jb: int, gap: Any) -> bool:
     """True if two segments of blocks `ib` and `jb` overlap, but not the blocks: each lies behind a thin tip.
 
-    gap: what `contact_geometry.meet` says of them: normal from `ib` to `jb`, overlap, and the point in its
-    middle. Where blocks overlap, the end of the one lies in the other, if not both do.
+    gap: the result of `contact_geometry.meet`: normal from `ib` to `jb`, overlap, and the point in its
+    middle. If blocks overlap, the end of at least one lies in the other.
     """
     nx, ny, overlap, x, y = gap
     half, slack, now = overlap * real(h, 0.5), h.cr[g.GTOL], real(h, 0.0)
@@ -95,13 +94,13 @@ def do_not_meet(h: Memory, ib: int, jb: int, gap: Any) -> bool:
     return depth_in(h, ib, x - nx * half, y - ny * half, now) <= -slack
 
 
-AROUND = 6  # items looked at on either side for a contact of the same two blocks
-TURNS = 1  # corners passed on the way to a contact that lies beside another: the way round has two at least
+AROUND = 6  # items searched on either side for a contact of the same two blocks
+TURNS = 1  # corners between two adjacent contacts; the path around the block has at least two
 
 
 @kernel
 def _comes(h: Memory, ib: int, iad: int, ic: int, ahead: bool) -> bool:
-    """True if contact `ic` comes soon after item `iad` of block `ib`, going ahead, or before it."""
+    """True if contact `ic` comes soon after item `iad` of block `ib`, or before it if not `ahead`."""
     item = nextcp(h, ib, iad) if ahead else iad
     turns = 0
     for _ in range(AROUND):

@@ -1,27 +1,26 @@
-"""Has a block gone into another one in a single step, too fast for a contact (error 15)?
+"""Blocks that penetrate another block within a single step, too fast for a contact (error 15).
 
-The argument why two blocks never overlap by more than CTOL without a contact or an error:
+Two blocks never overlap by more than CTOL without a contact or an error, for these reasons:
 
 1.  After an update of a domain every two segments of its boundary that are nearer than ATOL have a contact,
-    or one near them that stands for both (contact_search.py); two that overlap where none can be made are
+    or one near them that represents both (contact_search.py); an overlap at which no contact can be made is
     error 15.
 2.  Until the next update its points approach each other by at most ETOL in x and in y, so by ATOL at most:
     KUMAX sums their greatest relative displacement, and above ETOL the domain is updated in the same cycle
-    (domain_pass.py). So without a contact nothing has come to touch before that cycle.
+    (domain_pass.py). So no segments without a contact touch before that cycle.
 3.  A step of at most ETOL then makes an overlap of at most CTOL, with which a contact can be made.
-4.  In a longer step blocks may come to lie deeper in each other, or pass right through each other. So after a
-    step of more than ETOL the ways of all corners of the domain are followed: none of them may have been
-    deeper in another block of the domain than CTOL, nor have come in and gone out again when it was deeper
-    than FTOL; and no edge may lie deeper than CTOL in another block. That is what this file does.
-5.  Contacts part domains like walls. One that is open is no wall any more as soon as another block comes
-    between the two (occupied_gaps.py); one that is closed ends the run if a tip is squeezed through it
-    (map_changes.py).
-6.  Commands that change outlines flag all domains, which are updated before the next cycle; what is too
-    deep then is refused, and nothing is changed (ops/commands/corner_rounding.py).
+4.  In a longer step blocks may penetrate deeper, or pass through each other. So after a step of more than
+    ETOL this file follows the paths of all corners of the domain. No corner may have been deeper in another
+    block of the domain than CTOL, or have entered and left it at a depth of more than FTOL. No edge may lie
+    deeper than CTOL in another block.
+5.  Contacts separate domains like walls. An open one is given up when another block comes between the two
+    (occupied_gaps.py). A closed one ends the run if a tip is squeezed through it (map_changes.py).
+6.  Commands that change outlines flag all domains, which are updated before the next cycle. A command that
+    would cause a deeper overlap is refused, and nothing is changed (ops/commands/corner_rounding.py).
 
-The way of a corner is seen from the other block: a point is carried back to where it was before the step with
-its own block, and forth again with the other one, so that however fast the two may turn, the way from there
-to where it is now is what the other block has seen. An arc is followed at its two ends and in the middle.
+The path of a corner is relative to the other block: a point is moved back to its place before the step with
+its own block, and forward with the other one. The path from there to its present place is that in the frame
+of the other block, however fast the two rotate. An arc is followed at its two ends and in the middle.
 """
 
 from __future__ import annotations
@@ -41,11 +40,9 @@ from udec_ia.kernels.geometry.contact_geometry import tangents
 from udec_ia.kernels.map.domain_segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.layout import offsets as g
 
-POINTS = 3  # of an arc that are followed
-STEPS = 8  # places looked at while a point goes by CTOL in x or in y
-LOOKS = (
-    20_000  # places looked at on one way: a thousand rounding lengths in a step are more than can be followed
-)
+POINTS = 3  # points of an arc that are followed
+STEPS = 8  # places tested while a point moves by CTOL in x or in y
+LOOKS = 20_000  # places on one path: a thousand rounding lengths in a step are too many to follow
 
 
 @kernel
@@ -66,9 +63,9 @@ def _turned(h: Memory, ib: int, rx: float, ry: float, way: int) -> tuple[float, 
 
 @kernel
 def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
-    """Where the point (x, y) of block `ib`, near its corner `ip`, was before this step.
+    """Place of the point (x, y) of block `ib`, near its corner `ip`, before this step.
 
-    A fixed block stays where it is, whatever velocity RSET has given it.
+    A fixed block does not move, even if RSET has given it a velocity.
     """
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return x, y
@@ -82,7 +79,7 @@ def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, floa
 
 @kernel
 def carried(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
-    """Where block `ib` has carried in this step what was at (x, y), near its edge that ends at `ip`."""
+    """New place of a point that was at (x, y) and moved with block `ib`, near its edge that ends at `ip`."""
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return x, y
     dt = h.cr[g.TDEL]
@@ -117,7 +114,7 @@ def arc_point(h: Memory, ip: int, k: int) -> tuple[float, float]:
 
 @kernel
 def _surroundings(h: Memory, jb: int) -> tuple[float, float, float, float]:
-    """Where block `jb` is or, if it deforms freely, was, and CTOL around: x and y from, x and y to."""
+    """Box around block `jb` (around its old place if it has zones), extended by CTOL: lower, upper ends."""
     far = real(h, np.inf)
     lx, ly, hx, hy = far, far, -far, -far
     first = iget(h, jb, g.KP)
@@ -135,7 +132,7 @@ def _surroundings(h: Memory, jb: int) -> tuple[float, float, float, float]:
 
 @kernel
 def _between(start: float, way: float, low: float, high: float) -> tuple[float, float]:
-    """The parts of a way along one axis at which it comes between `low` and `high`, and goes."""
+    """Fractions of a path along one axis at which it enters and leaves the range `low` to `high`."""
     if way == 0:
         return (0.0, 1.0) if low <= start <= high else (1.0, 0.0)
     one, two = np.float64((low - start) / way), np.float64((high - start) / way)
@@ -144,12 +141,12 @@ def _between(start: float, way: float, low: float, high: float) -> tuple[float, 
 
 @kernel
 def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float, float]:
-    """How deep point `k` of the arc of corner `ip` of block `ib` lay in block `jb`.
+    """Depths of point `k` of the arc of corner `ip` of block `ib` in block `jb`.
 
-    Before this step, on its way at most, and now; no further than to the first place that is too deep, and
-    infinite if the way is too long to be followed, as where a block in the way has strained beyond measure. A
-    fully-deformable block `jb` is looked at as it was then; another one carries the point's first place
-    along, however fast it turns. What lies far from the block is passed over, however long the way.
+    Depth before this step, greatest depth on the path, and depth now; only up to the first place that is too
+    deep. Infinite if the path is too long to follow, as near a block with an extreme strain. A
+    fully-deformable block `jb` is taken as it was before the step; any other one moves the point's first
+    place along. Parts of the path far from the block are skipped, however long they are.
     """
     x, y = arc_point(h, ip, k)
     fx, fy = was_at(h, ib, ip, x, y)
@@ -181,7 +178,7 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
 def _has_gone_in(h: Memory, ib: int, ip: int, jb: int) -> bool:
     """True if in this step the arc of corner `ip` of block `ib` was deeper than CTOL in block `jb`.
 
-    Or deeper than FTOL, and it has come in and gone out again.
+    Also True if it was deeper than FTOL and has entered and left the block.
     """
     for k in range(POINTS if getr(h, ip, g.KRAD) > 0 else 1):
         before, deepest, now = _depths(h, ib, ip, jb, k)
@@ -194,14 +191,14 @@ def _has_gone_in(h: Memory, ib: int, ip: int, jb: int) -> bool:
 def edge_lies_in(h: Memory, ip: int, jb: int, jp: int) -> bool:
     """True if the edge that ends at corner `ip` lies deeper than CTOL in block `jb`, behind its edge `jp`.
 
-    Where two tips have slid past each other, no corner need lie in the other block. The edge is looked at in
-    the middle of what the two edges have in common, between its roundings.
+    If two tips have slid past each other, there may be no corner in the other block. The edge is tested in
+    the middle of the common part of the two edges, between its roundings.
     """
     ia, ja = iget(h, ip, g.KR), iget(h, jp, g.KR)
     ax, ay = getr(h, ia, g.KXP), getr(h, ia, g.KYP)
     ux, uy = getr(h, ip, g.KXP) - ax, getr(h, ip, g.KYP) - ay
     zz = ux * ux + uy * uy
-    zero, share = real(h, 0.0), h.cr[g.DTOL] / np.sqrt(zz)  # a rounding's share of the edge
+    zero, share = real(h, 0.0), h.cr[g.DTOL] / np.sqrt(zz)  # share of the edge that a rounding takes
     low = share if getr(h, ia, g.KRAD) > 0 else zero
     high = real(h, 1.0) - (share if getr(h, ip, g.KRAD) > 0 else zero)
     first = ((getr(h, ja, g.KXP) - ax) * ux + (getr(h, ja, g.KYP) - ay) * uy) / zz
@@ -226,7 +223,7 @@ def _include(boxes: Any, i: int, x: float, y: float) -> None:
 
 @kernel
 def ways(h: Memory, seg: Any, n: int, more: int) -> Any:
-    """Boxes of what each segment has passed through in this step, and room for so many `more`."""
+    """Boxes of the area that each segment has passed in this step, and `more` unused rows."""
     boxes = np.empty((n + more, 4), np.float64)
     for i in range(n):
         boxes[i, LEFT] = boxes[i, BELOW] = np.inf
@@ -247,7 +244,7 @@ def ways(h: Memory, seg: Any, n: int, more: int) -> Any:
 
 @kernel
 def _corner_through(h: Memory, idm: int) -> int:
-    """A corner in domain `idm` that has gone into another block in this step, or through it; 0 if none."""
+    """A corner in domain `idm` that has penetrated or crossed another block in this step; 0 if none."""
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
@@ -268,9 +265,9 @@ def _corner_through(h: Memory, idm: int) -> int:
 
 @outlined
 def gone_through(h: Memory) -> bool:
-    """True, and error 15, if in this step a corner has gone into another block of its domain.
+    """True, and error 15, if in this step a corner has penetrated another block of its domain.
 
-    Domains in which nothing has moved by more than ETOL are passed over; so are all after an error.
+    Domains without a displacement above ETOL are skipped, as are all after an error.
     """
     idm = h.ci[g.IDPNT]
     while idm != 0 and h.ci[g.NERR] == 0:

@@ -1,16 +1,16 @@
-"""Updating a domain: look for new contacts in it and make them (UPDATE, UPDT; report 2.2).
+"""Update of a domain: search for new contacts and make them (UPDATE, UPDT; report 2.2).
 
-An update makes the most urgent contact that the domain needs and looks again, in both parts if the
-domain was cut, until nothing more is needed. Blocks that overlap then where no contact can be made are
-error 15. Every single contact leaves a sound map; when memory runs out the update stops between two contacts
-and can be taken up again.
+An update makes the most urgent contact that the domain needs and repeats the search, in both parts if the
+domain was cut, until none is needed. Blocks that then overlap where no contact can be made are error 15. The
+map is sound after every contact; when memory runs out the update stops between two contacts and can be
+continued.
 
-Whoever compiles a kernel that leads to updates does not compile these anew: it is handed the address of
-`update_domains`, which is machine code of its own.
+A kernel that leads to updates gets the address of `update_domains`, which is compiled separately, so that
+updates are not compiled again with it.
 
-It comes to an end. After a long step contacts are given up first, as long as there is one to give up, and
-only then are contacts made: none twice, and none of them is given up in the same update, unless a domain
-that has not been looked at yet gives up its own. Of these there is one less each time.
+An update always ends. After a long step contacts are given up first, while there is one to give up. Then
+contacts are made: none twice, and none of them is given up in the same update, unless a domain that has not
+been searched yet gives up its own. The number of these domains decreases each time.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ from udec_ia.layout import offsets as g
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
 SEARCHED = (
-    1.5  # ETOL, the displacement of a domain whose walls stand: what is made then is not given up at once
+    1.5  # ETOL, the displacement of a domain with valid walls: contacts made then are not given up at once
 )
 WAITING = 64  # domains that may wait for their turn in one update
 
 
 @kernel
 def tie_between(ties: Any, one: int, two: int) -> int:
-    """Row of a virtual contact on the way from piece `one` to piece `two`.
+    """Row of a virtual contact on the path from piece `one` to piece `two`.
 
     Piece k + 1 was first reached over tie k, so the ties form a tree rooted in piece 0, and a piece has a
-    greater number than the one it was reached from: going up from the greater of two different numbers
-    always goes along the way between them.
+    greater number than its parent. A step to the parent of the greater of two different numbers always
+    follows the path between them.
     """
     return max(one, two) - 1
 
@@ -76,9 +76,9 @@ def _pieces(h: Memory, seg: Any, n: int, nties: int, own: int) -> Any:
 
 @kernel
 def _without_contact(h: Memory, seg: Any, n: int, code: int, i: int, j: int) -> int:
-    """A corner, or an edge by its corner, that lies in another block where no contact tells it, or 0.
+    """A corner, or an edge by its corner, that lies in another block without a contact, or 0.
 
-    code, i, j: what the search has found. Edges are looked at in small domains, such as cracks.
+    code, i, j: the result of the search. Edges are tested in small domains, such as cracks.
     """
     if code == STRAY:
         return int64(seg[i, CORNER] if seg[i, ARC] == 1 else seg[j, CORNER])
@@ -92,9 +92,9 @@ def _without_contact(h: Memory, seg: Any, n: int, code: int, i: int, j: int) -> 
 
 @kernel
 def updt(h: Memory, idm: int) -> tuple[int, int]:
-    """Make the most urgent contact in domain `idm` (UPDT), or give up one in whose gap a third block stands.
+    """Make the most urgent contact in domain `idm` (UPDT), or give up one that has a third block in its gap.
 
-    Returns what was done, and the new domain (CUT) or the domain that `idm` is part of now (MERGED).
+    Returns a code for the change, and the new domain (CUT) or the domain that contains `idm` now (MERGED).
     """
     zero = int64(0)
     if iget(h, idm, g.KDLOOP) == 0:
@@ -144,17 +144,17 @@ def update(h: Memory, idm: int) -> bool:
             return False
         if done == NOTHING:
             putr(h, here, g.KUMAX, real(h, 0.0))
-            if h.ci[g.NTIPS] > 0:  # to be looked at in the next cycle again: the gap may close then
+            if h.ci[g.NTIPS] > 0:  # test again in the next cycle: the gap may close then
                 putr(h, here, g.KUMAX, h.cr[g.ETOL])
                 h.cr[g.UPEND] = h.cr[g.HTOL]
             n -= 1
         elif done == CUT:
             putr(h, idnew, g.KUMAX, getr(h, here, g.KUMAX))
-            if n < WAITING:  # else it keeps its displacement and is found by the next pass
+            if n < WAITING:  # otherwise it keeps its displacement, and the next pass finds it
                 waiting[n] = waiting[n - 1]
                 waiting[n - 1] = idnew
                 n += 1
-        elif done == MERGED:  # one that was waiting may be gone; they are flagged and found by _update_all
+        elif done == MERGED:  # waiting ones may not exist any more; _update_all finds them by their flags
             settle_loop(h, idnew)
             waiting[0] = idnew
             n = 1
@@ -176,7 +176,7 @@ def _update_all(h: Memory) -> bool:
                     return False
                 again = True
             if h.ci[g.NBROKE] != broken:
-                break  # domains have merged, the following one may be gone
+                break  # domains have merged, the following one may not exist any more
             idm = following
     return True
 
@@ -188,5 +188,5 @@ def update_domains(h: Memory, idm: int) -> bool:
 
 
 def updating(h: Memory) -> Any:
-    """What kernels that lead to updates are handed: see compiling.outlined_calls."""
+    """The address of update_domains for kernels that lead to updates: see compiling.outlined_calls."""
     return entry(update_domains, h, 0)

@@ -1,1 +1,1 @@
-"""Cycles: the passes in their order, when a run ends, what its time-step may be."""
+"""The calculation cycle: order of the passes, damping, time-step limits, the end of a run."""

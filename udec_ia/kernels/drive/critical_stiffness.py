@@ -12,12 +12,12 @@ q_j the degrees of freedom of both sides and s_j how far a unit of each moves th
 
     K_ij = KN (s_i n)(s_j n) + KS (s_i t)(s_j t)
 
-What couples degrees of freedom of the same body is added up with its sign over all contacts, and much of it
-cancels; what couples two bodies counts with its size. KN and KS are those of the joint's law
+Coupling between degrees of freedom of one body is summed with its sign over all contacts, and much of it
+cancels. Coupling between two bodies counts with its absolute value. KN and KS are those of the joint's law
 (constitutive.joint_laws.bounding_stiffness).
 
-What moves with one side: a body that is not meshed with all its degrees of freedom, or the two grid-points at
-the ends of the edge, or the one at the corner, of a fully-deformable block.
+Each side of a contact moves with a body without zones and all its degrees of freedom, or with the grid-points
+of a fully-deformable block: two at the ends of an edge, or one at a corner.
 
 Row sums are calculated in 64 bits: np.float64 widens a real compiled and interpreted, float() only
 interpreted.
@@ -87,7 +87,7 @@ def internal_mode(h: Memory, ib: int) -> float:
 
 @kernel
 def zone_stiffness(h: Memory, ib: int, stiffness: Any) -> None:
-    """Add the stiffness of every zone of block `ib` at its grid-points; `stiffness`: one real an address."""
+    """Add the stiffness of every zone of block `ib` at its grid-points; `stiffness`: one real per address."""
     modulus = h.cr[g.ALAM1 + iget(h, ib, g.KMAT) - 1]
     iz = iget(h, iget(h, ib, g.KBEX), g.KFZ)
     while iz != 0:
@@ -115,8 +115,8 @@ def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
 def soft_step(h: Memory, stiffness: Any) -> tuple[float, int]:
     """Least mass over stiffness of the internal modes and grid-points of blocks not fixed, and its address.
 
-    A grid-point with given velocities counts as any other, lest its zones strain too much in one step.
-    stiffness: one real for every word of IA() in use, all zero.
+    A grid-point with prescribed velocities counts as any other; otherwise its zones could strain too much in
+    one step. stiffness: one real for every word of IA() in use, all zero.
     """
     smallest, at = real(h, np.inf), int64(0)
     ib = h.ci[g.IBPNT]
@@ -151,7 +151,7 @@ NORMAL, TANGENT = 0, 1
 
 @kernel
 def _part(h: Memory, ip: int, x: float, y: float) -> float:
-    """Where the point (x, y) stands on the edge that ends at corner `ip`: 0 at its start, 1 at its end."""
+    """Position of the point (x, y) on the edge that ends at corner `ip`: 0 at its start, 1 at its end."""
     ia = iget(h, ip, g.KR)
     ax, ay = np.float64(getr(h, ia, g.KXP)), np.float64(getr(h, ia, g.KYP))
     dx, dy = np.float64(getr(h, ip, g.KXP)) - ax, np.float64(getr(h, ip, g.KYP)) - ay
@@ -165,7 +165,7 @@ def _part(h: Memory, ip: int, x: float, y: float) -> float:
 def _enter_body(
     h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any
 ) -> None:
-    """How far a unit of each degree of freedom of block `ib`, in row `k`, moves (x, y) along (nx, ny).
+    """Displacement of (x, y) along (nx, ny) for a unit of each degree of freedom of block `ib`, in row `k`.
 
     frame: radius of gyration and direction of the first principal axis of each row.
     """
@@ -180,7 +180,7 @@ def _enter_body(
 
 @kernel
 def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, at: Any, moves: Any) -> None:
-    """Rows of what moves with one side of contact `ic`, and how far it moves the contact along `way`."""
+    """Rows of the bodies at one side of contact `ic`, and displacements of the contact along `way`."""
     ib, ip = iget(h, ic, g.KB1 if side == 0 else g.KB2), iget(h, ic, g.KCP1 if side == 0 else g.KCP2)
     x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
     if iget(h, ib, HEAD) != g.MFDEF:
@@ -199,9 +199,9 @@ def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, a
 
 @kernel
 def _add(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total: Any) -> None:
-    """Add what a contact gives to the matrices of the rows `at`, and between them to the row sums.
+    """Add the stiffness of a contact to the matrices of the rows `at`, and the coupling to the row sums.
 
-    moves: how far each degree of freedom of the four rows moves its point, along normal and tangent.
+    moves: displacement of the point for each degree of freedom of the four rows, along normal and tangent.
     """
     for a in range(4):
         for b in range(4):
@@ -221,9 +221,9 @@ def _add(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total
 def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: Any) -> None:
     """Add the stiffness of all contacts that are not virtual, to `own` within rows, to `total` between them.
 
-    row: of the block or grid-point at each address; row 0 stands for nothing. own: n by 6 by 6. total: n by
-    6. frame: n by 3, radii of gyration and directions of the first principal axes. weight: n by 6, what a
-    column counts for; 0 for what is held.
+    row: of the block or grid-point at each address; row 0 is unused. own: n by 6 by 6. total: n by 6. frame:
+    n by 3, radii of gyration and directions of the first principal axes. weight: n by 6, factor of each
+    column; 0 if it is fixed.
     """
     at, moves, way = np.zeros(4, np.int64), np.zeros((4, 2, DOFS)), np.zeros((2, 2))
     ic = h.ci[g.ICPNT]

@@ -1,21 +1,20 @@
 """The calculation cycle (CYCLE; report 2.6): blocks, domains, contacts; between cycles, HISTORY and SOLVE.
 
-JPHASE says which pass comes next, so that a cycle that had to stop, because an update ran out of memory or a
-pass is not compiled yet, can be taken up again at that very point and goes on as if it had not stopped.
+JPHASE is the next pass. A cycle that stopped, because an update ran out of memory or a pass is not compiled
+yet, continues at this point as if it had not stopped.
 
-`soft` is None in a scene that has rigid blocks only: numba then leaves all else out of the machine code, and
-such a scene neither compiles nor tests anything about deformable blocks. What is long, and not needed in
-every cycle or scene, a cycle calls by its address: it is compiled once for a word scheme, and
-once it is needed, instead of in every kind of cycle. `passes` finds what a run needs.
+`soft` is None in a scene of rigid blocks only. numba then compiles nothing for deformable blocks, and the
+scene tests nothing about them. A cycle calls long passes that are seldom needed by their address. They are
+compiled when first needed, once for a word scheme, instead of in every kind of cycle. `passes` selects those
+that a run needs.
 
-The compiled loop of `run_watched` runs from one cycle at which something is due to the next, writes what is
-due into the caller's arrays, and returns when these are full. What is due depends on the total number of
-cycles alone: a history with KHN 10 is recorded after the cycles 10, 20, 30 ... however the run is cut into
-commands.
+The compiled loop of `run_watched` runs from one recorded cycle to the next, writes the records into the
+caller's arrays, and returns when these are full. Recorded cycles depend on the total number of cycles alone:
+a history with KHN 10 is recorded after the cycles 10, 20, 30 ..., however the run is divided into commands.
 
-Contacts that open and close again and again are found by a look at all contacts every LOOK cycles. A mark
-holds whether its contact bore a force at the last look, and twice how often that differed from the look
-before. Two contacts are never so near to each other in IA() that they share a mark.
+To find contacts that open and close repeatedly, all contacts are examined every LOOK cycles. A mark is 1 if
+its contact carried a force at the last examination, plus twice the number of changes since the beginning. Two
+contacts are never so near to each other in IA() that they share a mark.
 """
 
 from __future__ import annotations
@@ -53,13 +52,13 @@ from udec_ia.kernels.energy.work_account import (
 from udec_ia.kernels.geometry.block_shape import keep_circles
 from udec_ia.layout import offsets as g
 
-KEEP = 16  # cycles from one time to the next that rigid blocks have their circles put back
-FINE = 1e-10  # reals that cannot tell 1 + FINE from 1 need that
+KEEP = 16  # cycles after which the circles of rigid blocks are recalculated
+FINE = 1e-10  # reals in which 1 + FINE equals 1 need this
 
 
 @inlined
 def check_place(h: Memory, ib: int) -> None:
-    """Error 36 if block `ib` is where reals no longer tell x from x + FTOL, or if its place is no number."""
+    """Error 36 if reals cannot resolve FTOL at the place of block `ib`, or if its place is not finite."""
     x, y, tolerance = abs(getr(h, ib, g.KX)), abs(getr(h, ib, g.KY)), h.cr[g.FTOL]
     if not (x + tolerance > x and y + tolerance > y) and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = TOO_FAR
@@ -70,7 +69,7 @@ def check_place(h: Memory, ib: int) -> None:
 def move_all(h: Memory, soft: Any, laws: Any) -> float:
     """Move every block; returns a bound on the velocity, in x or in y, of any point.
 
-    Error 36 if a block has flown to where nothing can be calculated any more.
+    Error 36 if a block is so far away that the precision is too low for contacts.
     """
     fastest = real(h, 0.0)
     narrow = real(h, 1.0) + real(h, FINE) == real(h, 1.0)
@@ -95,13 +94,13 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
     return fastest
 
 
-LOOK = 100  # cycles from one look to the next
-STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; behind the three sizes there may be more
+LOOK = 100  # cycles between two examinations
+STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; after the three sizes there may be more
 
 
 @outlined
 def note_openings(h: Memory, marks: Any) -> bool:
-    """Look at all contacts. marks: one byte for STRIDE words of IA(); none for those behind."""
+    """Examine all contacts. marks: one byte for STRIDE words of IA(); none beyond its end."""
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         k = ic // STRIDE
@@ -120,7 +119,7 @@ CONTACT, CHANGES, MEASURES, RECORD, REST, OPENINGS = range(8, 14)
 def passes(
     h: Memory, soft: Any, recorded: tuple[Any, ...], ratio: float, mean: bool, marks: Any
 ) -> tuple[Any, ...]:
-    """Addresses in the order above, 0 for what a run does not need; of MEASURES as many.
+    """Addresses of passes in the order above, 0 for those that a run does not need; a tuple for MEASURES.
 
     soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
     ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
@@ -148,15 +147,15 @@ def passes(
     )
 
 
-CONTACTS = 1000  # for each of which a safe time-step may wait a cycle to be judged again
+CONTACTS = 1000  # for each of which the check of a safe time-step may wait a cycle
 
 
 @kernel
 def has_to_judge(h: Memory) -> bool:
     """True if contacts have been made since a SAFE time-step was found: it may be too long for them.
 
-    In a large model that waits for a cycle whose number is a multiple of its thousands of contacts. Where
-    masses are scaled the step stays.
+    In a large model the check waits for a cycle whose number is a multiple of its thousands of contacts. If
+    masses are scaled the step stays unchanged.
     """
     if h.ci[g.LSAFE] == 0 or h.ci[g.LSCALE] != 0 or h.ci[g.NMADE] == h.ci[g.MSCALE]:
         return False
@@ -167,16 +166,16 @@ def has_to_judge(h: Memory) -> bool:
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
-    soft: None if all blocks are rigid, else True. laws: of blocks, None if
-    `soft` is. joints: None if no contact follows a law of the user's, else these (compiling.law_calls).
-    passes: see drive.cycle. Stops early, too, when a safe time-step has to be judged.
+    soft: None if all blocks are rigid, else True. laws: of blocks, None if `soft` is. joints: None if no
+    contact has a user's law, else these laws (compiling.law_calls). passes: see `passes`. Also stops early
+    when a safe time-step must be checked.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
     while done < n:
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
-                return done  # IA() grows between two cycles, where growing changes nothing
+                return done  # IA() grows between two cycles, where this changes no result
             if passes[BOUNDS] != 0:
                 call_entry(passes[BOUNDS], h)
             if passes[MOTION] != 0:
@@ -193,7 +192,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
         if h.ci[g.JPHASE] == g.AT_WAYS:
             if passes[TUNNELLING] == 0:
-                return done  # it is not compiled before a step needs it
+                return done  # compiled only when a step needs it
             call_entry(passes[TUNNELLING], h)
             h.ci[g.JPHASE] = g.AT_DOMAINS
         if h.ci[g.JPHASE] == g.AT_DOMAINS:
@@ -206,7 +205,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 waiting = np.empty(2 * h.ci[g.NCON], np.int64)
             ford_all(h, soft, joints, passes[CHANGES], passes[CONTACT], waiting)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
-        if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are looked through at once
+        if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
             if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
             h.ci[g.JPHASE] = g.AT_BLOCKS
@@ -218,7 +217,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     return done
 
 
-CHECK = 10  # cycles between two looks at the force ratio
+CHECK = 10  # cycles between two checks of the force ratio
 
 
 @kernel
@@ -239,10 +238,10 @@ def run_watched(
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
-    laws: three arguments of run_cycles. passes: see drive.cycle. places: without rows if nothing is
-    recorded. marks: of drive.cycle, without any if nobody looks at them.
-    Stops early when NERR is set, when `rows` is full, when a safe time-step has to be judged, and at rest,
-    which is looked at every CHECK cycles of the run; to within a negative ratio it never is.
+    laws: three arguments of run_cycles. passes: see `passes`. places: without rows if nothing is recorded.
+    marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, when a
+    safe time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not at all if
+    the ratio is negative.
     """
     recorded = len(places) > 0
     done = 0

@@ -1,8 +1,8 @@
 """The damping modes that only lead to rest, in one table: LOCAL, COMBINED, KINETIC, ADAPTIVE.
 
-DAMPING, the passes of a run, the safe time-step, remarks and `udec info` read it. What a mode does to forces
-and velocities is in dynamic_relaxation.py and kinetic_damping.py. At most one mode acts at a time (LREST,
-RESTF); Rayleigh damping (ALPHA, BETA) is none of them.
+DAMPING, the passes of a run, the safe time-step, warnings and `udec info` read it. The effect of a mode on
+forces and velocities is in dynamic_relaxation.py and kinetic_damping.py. At most one mode acts at a time
+(LREST, RESTF). Rayleigh damping (ALPHA, BETA) is separate.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from udec_ia.layout import offsets as g
 
 
 class DampingMode(NamedTuple):
-    """One way to rest.
+    """One damping mode.
 
     keyword: in DAMPING; its upper-case letters must be typed. code: value of LREST. help: for HELP DAMPING.
-    report: for the beginning of a run, with {f} for the fraction RESTF. fraction: name of the number that it
-    takes, 0 to 1, "" if it takes none.
-    motion_pass: kernel that looks at the motion of the whole model before each step; None if not needed.
-    changes_forces: kernels/drive/dynamic_relaxation.py replaces the unbalanced forces. keeps_forces: it needs
-    those of the cycle before. stiffens: what turns about in every cycle feels joints 1 + f times as stiff, so
-    the safe step is shorter. sets_alpha: the mode finds ALPHA and ALPB itself.
+    report: for the beginning of a run, with {f} for the fraction RESTF. fraction: name of its number, 0 to 1;
+    "" without a number. motion_pass: kernel that evaluates the motion of the whole model before each step;
+    None if not needed. changes_forces: kernels/drive/dynamic_relaxation.py replaces the unbalanced forces.
+    keeps_forces: it needs those of the previous cycle. stiffens: for motion that reverses in every cycle
+    joints are 1 + f times as stiff, so the safe step is shorter. sets_alpha: the mode calculates ALPHA and
+    ALPB.
     """
 
     keyword: str
@@ -39,7 +39,7 @@ class DampingMode(NamedTuple):
 
     @property
     def name(self) -> str:
-        """As messages call it."""
+        """The name in messages."""
         return self.keyword.upper()
 
     @property
@@ -91,5 +91,5 @@ BY_CODE = {one.code: one for one in MODES}
 
 
 def mode_of(h: Memory) -> DampingMode | None:
-    """The mode that acts, None for none."""
+    """The active mode, None if there is none."""
     return BY_CODE.get(int(h.ci[g.LREST]))

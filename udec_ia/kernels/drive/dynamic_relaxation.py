@@ -1,23 +1,23 @@
 """Dynamic relaxation: LOCAL, COMBINED and KINETIC damping and scaled masses, in a pass before the block pass.
 
-With F the unbalanced force on a degree of freedom, weight and loads included, F' that of the cycle before, v
-its velocity and f the fraction RESTF, the law of motion gets, instead of F,
+With F the unbalanced force on a degree of freedom, weight and loads included, F' that of the previous cycle,
+v its velocity and f the fraction RESTF, the law of motion gets, instead of F,
 
     LOCAL     F - f |F| sign(v)                               Cundall (1987)
     COMBINED  F - f |F| (sign(v) - sign(F - F'))/2
     KINETIC   F/2 in the step that begins at rest, else F
     SCALED    s F, and so the inertial mass m/s, while the weight stays m g
 
-LOCAL takes nothing where forces are balanced. Where all moves one way under a steady force it is slow, and
-there COMBINED does better: it damps what swings, and half as strongly. KINETIC and ADAPTIVE:
+LOCAL does not act where forces are balanced. It slows down motion in one direction under a steady force.
+There COMBINED is better: it damps oscillations, half as strongly. KINETIC and ADAPTIVE:
 drive.kinetic_damping.
 
-What KINETIC has put to rest has no velocity now, while velocities are those of half a step ago. So the step
-that follows takes half of the force: with the whole of it all would swing farther than it was, and steps from
-0.4 of the critical one on were unstable.
+KINETIC sets present velocities to 0, while all other velocities are those of half a step ago. So the next
+step uses half of the force. With the full force the amplitude would grow, and steps above 0.4 of the critical
+one were unstable.
 
-The motion on the way is not that of the model: only where it comes to rest, and only as far as that does not
-depend on the way. The factors s stand in relaxations (links.relaxations); running/mass_scaling.py finds them.
+The motion is not physical. Only the state of rest is valid, and only if it does not depend on the loading
+path. The factors s are in relaxations (links.relaxations); running/mass_scaling.py calculates them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def sign(h: Memory, v: float) -> float:
 
 @inlined
 def damped(h: Memory, f: float, v: float, before: float) -> float:
-    """What is left of the force `f` on a degree of freedom of velocity `v`; before: f of the last cycle."""
+    """Damped force for the force `f` on a degree of freedom of velocity `v`; before: f of the last cycle."""
     part = h.cr[g.RESTF] * abs(f)
     if h.ci[g.LREST] == g.LOCAL:
         return f - part * sign(h, v)
@@ -59,10 +59,10 @@ def damped(h: Memory, f: float, v: float, before: float) -> float:
 
 @kernel
 def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: float) -> float:
-    """What stands for the force `f` on a degree of freedom of velocity `v`.
+    """Damped and scaled force for the force `f` on a degree of freedom of velocity `v`.
 
-    ir: its relaxation, 0 if there is none; before, scale: fields there, of the force of the cycle before and
-    of the factor.
+    ir: its relaxation, 0 if there is none; before, scale: fields of it, of the force of the previous cycle
+    and of the factor.
     """
     last = f
     if h.ci[g.LREST] == g.COMBINED:
@@ -74,7 +74,7 @@ def relaxed(h: Memory, ir: int, before: Offset, scale: Offset, f: float, v: floa
 
 @kernel
 def relax_point(h: Memory, ig: int, ir: int) -> None:
-    """The force sums of grid-point `ig`; what damping takes goes to WREST."""
+    """Damp the force sums of grid-point `ig`; the work of damping goes to WREST."""
     m, fix = getr(h, ig, g.KGPM), iget(h, ig, g.KGFIX)
     wx, wy = m * h.cr[g.GRAVX], m * h.cr[g.GRAVY]
     xd, yd = getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)
@@ -91,7 +91,7 @@ def relax_point(h: Memory, ig: int, ir: int) -> None:
 
 @kernel
 def relax_body(h: Memory, ib: int, ir: int) -> None:
-    """The force sums of block `ib` as a rigid body; what damping takes goes to WREST."""
+    """Damp the force sums of block `ib` as a rigid body; the work of damping goes to WREST."""
     bm, fix = getr(h, ib, g.KBM), iget(h, ib, g.KBFIX)
     wx, wy = bm * h.cr[g.GRAVX], bm * h.cr[g.GRAVY]
     xd, yd, td = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD)
@@ -111,7 +111,7 @@ def relax_body(h: Memory, ib: int, ir: int) -> None:
 
 @kernel
 def forces_before(h: Memory, ir: int, force: Any) -> Any:
-    """What strained in the last cycle, which COMBINED finds in the relaxation `ir`; `force` replaces it."""
+    """Straining force of the last cycle, which COMBINED reads from relaxation `ir`; `force` replaces it."""
     if h.ci[g.LREST] != g.COMBINED:
         return force
     last = getr(h, ir, g.KRXS11), getr(h, ir, g.KRXS12), getr(h, ir, g.KRXS22)
@@ -123,10 +123,10 @@ def forces_before(h: Memory, ir: int, force: Any) -> Any:
 
 @kernel
 def relaxed_strain(h: Memory, ie: int, ir: int, force: Any, rate: Any) -> tuple[float, float, float]:
-    """What stands for the `force` that strains extension `ie` at the `rate`.
+    """Damped and scaled force for the `force` that strains extension `ie` at the `rate`.
 
-    Its degrees of freedom are the strains along the axes of the Euler tensor: along others the inertia of one
-    strain goes with another, and to damp each by itself could make the step unstable that is safe.
+    Its degrees of freedom are the strains along the axes of the Euler tensor. Along other axes the inertias
+    of the strains are coupled, and damping of each one alone could make a safe step unstable.
     """
     c, s = first_axis(h, getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22))
     last = forces_before(h, ir, force)
@@ -143,7 +143,7 @@ def relaxed_strain(h: Memory, ie: int, ir: int, force: Any, rate: Any) -> tuple[
 
 @kernel
 def relax_strain(h: Memory, ie: int, ir: int) -> None:
-    """What strains extension `ie`; what damping takes goes to WREST."""
+    """Damp the force that strains extension `ie`; the work of damping goes to WREST."""
     f11, f12, f22 = straining_force(h, ie)
     e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
     r11, r12, r22 = relaxed_strain(h, ie, ir, (f11, f12, f22), (e11, e12, e22))
@@ -160,7 +160,7 @@ def relax_strain(h: Memory, ie: int, ir: int) -> None:
 
 @outlined
 def relax(h: Memory) -> bool:
-    """LOCAL, COMBINED and KINETIC damping and scaled masses of all that moves, for the step that begins."""
+    """Apply LOCAL, COMBINED and KINETIC damping and scaled masses for the step that begins."""
     if h.ci[g.LREST] == g.KINETIC and h.cd[g.EMOVES] != 0 and h.ci[g.LSCALE] == 0:
         return True
     ir = int64(h.ci[g.IRXPNT])

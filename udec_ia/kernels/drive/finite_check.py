@@ -1,8 +1,8 @@
 """Check that all reals of a model are finite numbers.
 
-A force or a velocity that is infinite, or no number at all, moves its block out of the world in the next
-cycle, and error 36 ends the run there. After the last cycle there is no next one: so all reals of blocks,
-of what belongs to them and of contacts are looked through once.
+An infinite force or velocity, or one that is not a number, moves its block beyond all limits in the next
+cycle, where error 36 ends the run. After the last cycle there is no next one. So all reals of blocks, of
+their members and of contacts are checked once.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _all_finite(h: Memory, iad: int, following: Offset, reals: tuple[tuple[Offse
 
 @kernel
 def _body_finite(h: Memory, ib: int) -> bool:
-    """True if block `ib`, its corners and its extension hold finite numbers."""
+    """True if all reals of block `ib`, its corners and its extension are finite."""
     if not (_finite(h, ib, OF_BLOCK) and _all_finite(h, iget(h, ib, g.KP), g.KR, OF_CORNER)):
         return False
     kind, ie = iget(h, ib, HEAD), iget(h, ib, g.KBEX)

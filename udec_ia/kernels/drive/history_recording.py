@@ -13,7 +13,7 @@ from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
 from udec_ia.layout import offsets as g
 
-INTEGER, REAL, DOUBLE = 0, 1, 2  # types of what is recorded
+INTEGER, REAL, DOUBLE = 0, 1, 2  # types of recorded numbers
 
 
 @outlined
@@ -57,7 +57,7 @@ NOT_MEASURED = (0,) * len(MEASURED)
 
 
 def measures(h: Memory) -> tuple[Any, ...]:
-    """Addresses of these (compiling.outlined_calls), 0 for those that no history asks for."""
+    """Addresses of these (compiling.outlined_calls), 0 for those that no history records."""
     asked, ih = set(), h.ci[g.IHPNT]
     while ih != 0:
         if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
@@ -78,7 +78,7 @@ def measured(h: Memory, which: int) -> float:
 def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
     """The number of a group or of the common block that history `ih` records.
 
-    Not a number if its group has gone.
+    NaN if its group does not exist any more.
     """
     kind, group = iget(h, ih, g.KHK), iget(h, ih, g.KHG)
     if kind == g.COMMON_BLOCK:
@@ -93,11 +93,10 @@ def number_now(h: Memory, ih: int, offset: int, type_code: int) -> float:
 
 @outlined
 def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool:
-    """Add a row with what is due after this cycle: cycle, time, and NaN for what is not due.
+    """Add a row with the numbers to record after this cycle: cycle, time, and NaN for all others.
 
-    Returns True if anything was. places: see ops.commands.history_definitions.places.
-    count: number of rows, in an array.
-    measures: addresses of what measures the whole model, as `measures` gives them.
+    Returns True if anything was. places: see ops.commands.history_definitions.places. count: number of rows,
+    in an array. measures: addresses of kernels that measure the whole model, as `measures` returns them.
     """
     row = rows[count[0]]
     due = False

@@ -1,13 +1,14 @@
 """KINETIC and ADAPTIVE damping, which follow from the motion of the whole model.
 
-KINETIC puts all velocities to 0 when the kinetic energy has passed a peak, where the forces are nearest to
-balance (Cundall 1976). ADAPTIVE is mass damping that is critical for what moves: with v the velocities, m the
-inertial masses and F' the forces of the cycle before, the frequency of the motion is that of Rayleigh,
+KINETIC sets all velocities to 0 when the kinetic energy has passed a peak, where the forces are nearest to
+balance (Cundall 1976). ADAPTIVE is mass damping that is critical for the present motion. With v the
+velocities, m the inertial masses and F' the forces of the previous cycle, its frequency is Rayleigh's
+quotient,
 
     w w = - sum v (F - F')/dt / sum m v v          ALPHA = 2 f w          (Underwood 1983)
 
-Both sums are taken over the cycles before, too, which fade: what slides and sticks by turns would else be
-damped as if it swung quickly, whenever little else moves.
+Both sums include previous cycles with decreasing weight. Otherwise stick-slip motion would be damped as a
+fast oscillation whenever little else moves.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from udec_ia.kernels.links.relaxations import following
 from udec_ia.layout import offsets as g
 
 LOWEST, HIGHEST = 1e-3, 1.0  # ALPHA times the time-step
-FADING = 0.93  # of what the sums were in the cycle before: some fourteen cycles count
+FADING = 0.93  # weight of the sums of the previous cycle: about fourteen cycles count
 
 
 @kernel
 def halt_block(h: Memory, ib: int) -> None:
-    """Velocities of block `ib` := 0, but for those that are given."""
+    """Velocities of block `ib` := 0, except prescribed ones."""
     zero, fix = real(h, 0.0), iget(h, ib, g.KBFIX)
     if fix & g.GIVEN_X == 0:
         putr(h, ib, g.KXD, zero)
@@ -58,7 +59,7 @@ def halt_block(h: Memory, ib: int) -> None:
 
 @kernel
 def halt_all(h: Memory) -> None:
-    """Velocities of all that moves freely := 0; the kinetic energy that goes is taken by damping."""
+    """Velocities of everything free := 0; the lost kinetic energy counts as damping."""
     before = kinetic(h, True) if h.ci[g.LENER] != 0 else 0.0
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
@@ -71,7 +72,7 @@ def halt_all(h: Memory) -> None:
 
 @inlined
 def yielding(h: Memory, ir: int, before: Offset, f: float, v: float) -> float:
-    """Velocity `v` times the growth of the force `f` since the cycle before, which is at `before` in `ir`."""
+    """Velocity `v` times the growth of the force `f` since the last cycle, which is at `before` in `ir`."""
     grown = np.float64(f - getr(h, ir, before)) * v
     putr(h, ir, before, f)
     return float(grown)
@@ -94,7 +95,7 @@ def yielding_body(h: Memory, ib: int, ir: int) -> float:
 
 @kernel
 def yielding_all(h: Memory) -> float:
-    """The same of all that moves."""
+    """The same for the whole model."""
     total = 0.0
     ir = int64(h.ci[g.IRXPNT])
     ib = int64(h.ci[g.IBPNT])
@@ -118,9 +119,10 @@ def yielding_all(h: Memory) -> float:
 
 @kernel
 def adapt(h: Memory) -> None:
-    """ALPHA and what follows from it, from what moves how fast, and by how much forces have grown.
+    """Calculate ALPHA and its factors from velocities and the growth of forces.
 
-    EMOVES is half of the second sum. The first one is not kept: it is that times the w w which ALPHA has.
+    EMOVES is half of the second sum. The first one is not stored: it is the second times w w, which follows
+    from ALPHA.
     """
     dt, f = np.float64(h.cr[g.TDEL]), np.float64(h.cr[g.RESTF])
     before, grown = FADING * h.cd[g.EMOVES], yielding_all(h)
@@ -139,7 +141,7 @@ def adapt(h: Memory) -> None:
 
 @outlined
 def look_at_motion(h: Memory) -> bool:
-    """What KINETIC or ADAPTIVE does before the step that begins."""
+    """Apply KINETIC or ADAPTIVE damping before the step that begins."""
     if h.ci[g.LREST] == g.ADAPTIVE:
         adapt(h)
         return True

@@ -1,14 +1,14 @@
-"""Unbalanced force of a model, greatest or mean, against the forces that it carries.
+"""Unbalanced force of a model, greatest or mean, and its ratio to the forces that are carried.
 
-Unbalanced is what accelerates something free: a rigid block, a grid-point of a fully-deformable block, or the
-strains of a simply-deformable one; moments and strains as a force at the distance of the farthest corner.
-The weight counts, and so do the loads of boundary conditions: these are put on the force sums for a moment,
-whose old words are kept and put back, so that looking changes no bit.
+An unbalanced force accelerates a rigid block, a grid-point of a fully-deformable block, or the strains of a
+simply-deformable one. Moments and strains count as a force at the distance of the farthest corner. Weight and
+the loads of boundary conditions are included. The loads are added to the force sums, whose old words are then
+restored, so the calculation changes no bit.
 
-Balance is not rest: what slides or flies at a constant speed is in balance, and so is what swings through
-its state of rest. A mass m with the velocity v presses on a stiffness K with v sqrt(K m) before it is
-stopped. Over the force F that is carried, that is the root of the kinetic over the strain energy. So a model
-is at rest to within a ratio if neither its force ratio nor its kinetic over its strain energy is greater.
+Balance is not rest: a block that slides or flies at a constant speed is in balance, as is one that swings
+through its equilibrium position. A stiffness K stops a mass m with the velocity v with the force v sqrt(K m).
+The ratio of this force to the carried force F is the root of kinetic over strain energy. So a model is at
+rest to within a ratio if neither its force ratio nor its kinetic over its strain energy is greater.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from udec_ia.layout import offsets as g
 BLOCK_SUMS = (g.KBFX, g.KBFY, g.KBFT)
 POINT_SUMS = (g.KGFX, g.KGFY)
 APPLIED = (g.KSA11, g.KSA12, g.KSA21, g.KSA22)
-SUMS = len(BLOCK_SUMS) + len(APPLIED)  # that a load can change; those of a grid-point are fewer
+SUMS = len(BLOCK_SUMS) + len(APPLIED)  # words that a load can change; a grid-point has fewer
 
 
 @kernel
@@ -50,7 +50,7 @@ def block_force(h: Memory, ib: int) -> float:
 
 @kernel
 def strain_force(h: Memory, ib: int) -> float:
-    """What strains simply-deformable block `ib`, as a force on its farthest corner."""
+    """Straining force of simply-deformable block `ib`, as a force on its farthest corner."""
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return real(h, 0.0)
     f11, f12, f22 = straining_force(h, iget(h, ib, g.KBEX))
@@ -81,7 +81,7 @@ def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
 
 @kernel
 def greatest(h: Memory, soft: Any) -> tuple[float, int, float]:
-    """Greatest unbalanced force in the model, of the force sums as they are, and what it acts on.
+    """Greatest unbalanced force in the model, from the present force sums, and the group on which it acts.
 
     That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
     Then the mean over all of these that are free to follow a force.
@@ -126,7 +126,7 @@ def keep_sums(h: Memory, iu: int, words: Any) -> None:
 
 @kernel
 def put_sums_back(h: Memory, iu: int, words: Any) -> None:
-    """Put back from `words` what keep_sums has copied."""
+    """Restore the words that keep_sums has copied to `words`."""
     ib, ig = iget(h, iu, g.KUB), iget(h, iu, g.KUG)
     for i in range(len(BLOCK_SUMS)):
         putr(h, ib, BLOCK_SUMS[i], real(h, words[i]))
@@ -162,7 +162,7 @@ def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
 
 @kernel
 def unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
-    """Greatest unbalanced force, what it acts on, and their mean as in `greatest`.
+    """Greatest unbalanced force, the group on which it acts, and the mean as in `greatest`.
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
@@ -173,7 +173,7 @@ def unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
 
 @kernel
 def inner_force(h: Memory, ib: int) -> tuple[float, float]:
-    """Sum of the forces that stresses of block `ib` carry, size of stress times length, and their number."""
+    """Sum and number of the forces that stresses of block `ib` carry: magnitude of stress times length."""
     total, count = real(h, 0.0), real(h, 0.0)
     if iget(h, ib, HEAD) == g.MSDEF:
         ie = iget(h, ib, g.KBEX)
@@ -192,9 +192,9 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 
 @kernel
 def carried(h: Memory, soft: Any) -> float:
-    """Mean of the forces that are carried; 0 if nothing carries one.
+    """Mean of the carried forces; 0 if there are none.
 
-    What carries is a contact with a normal force, and a zone or simply-deformable block with a stress.
+    Contacts with a normal force, and zones and simply-deformable blocks with a stress, carry a force.
     """
     total, count = real(h, 0.0), real(h, 0.0)
     ic = int64(h.ci[g.ICPNT])
@@ -218,7 +218,7 @@ def carried(h: Memory, soft: Any) -> float:
 def force_ratios(h: Memory, soft: Any) -> tuple[float, float]:
     """Greatest and mean unbalanced force over the mean of the forces that are carried.
 
-    0 if nothing is unbalanced, infinite if something is and no force is carried.
+    0 if there is no unbalanced force, infinite if there is one and no force is carried.
     """
     largest, _, mean = unbalanced(h, soft)
     if largest == 0:
@@ -235,9 +235,9 @@ def force_ratio(h: Memory, soft: Any) -> float:
 
 @kernel
 def motion_ratio(h: Memory, soft: Any) -> float:
-    """Kinetic over strain energy; 0 if nothing moves, infinite if something does and nothing is strained.
+    """Kinetic over strain energy; 0 without motion, infinite with motion and without strain energy.
 
-    Scaled masses count as they are: they say what force it takes to stop them.
+    Scaled masses count as inertial masses, since these determine the force that stops them.
     """
     moving, _, _ = liveliest(h, soft)
     if moving == 0:
@@ -250,7 +250,7 @@ def motion_ratio(h: Memory, soft: Any) -> float:
 
 @outlined
 def at_rest(h: Memory, ratio: float) -> bool:
-    """True if the model is at rest to within `ratio`: the forces are balanced, and little moves."""
+    """True if the model is at rest to within `ratio`: forces are balanced, and the motion is small."""
     return bool(force_ratio(h, True) <= ratio and motion_ratio(h, True) <= ratio)
 
 

@@ -1,1 +1,1 @@
-"""What a model holds and what a cycle gives and takes (ENERGY)."""
+"""Energy of a model, and the work of a cycle (ENERGY)."""

@@ -1,4 +1,4 @@
-"""Energy of a model: kinetic, elastic and of gravity.
+"""Energy stored in a model: kinetic, elastic and potential energy of gravity.
 
 Velocities are known at half steps. Multiply a law of motion by the mean of the two velocities around a full
 step, and the works of all forces follow without an error of the step: over one step the work of a force is
@@ -11,8 +11,8 @@ the mean of its values at both ends, times the displacement. So at a full step, 
 and gravity's potential balance, to rounding, the works in work_account.py, as long as forces are linear in
 displacements and contacts neither open nor close.
 
-What there is to bring to rest is another kinetic energy (`energy_of_motion`): with the inertial masses, which
-may be scaled, and at the velocities of the last half step, so that it is never negative.
+The search for rest uses another kinetic energy (`energy_of_motion`): with the inertial masses, which may be
+scaled, and at the velocities of the last half step, so that it is never negative.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def _kinetic_of_strain(h: Memory, ie: int) -> float:
 
 @inlined
 def inertia(h: Memory, ie: int, e11: float, e12: float, e22: float) -> float:
-    """Integral of density times the square of the velocity that the strain rates e make of the place."""
+    """Integral of density times the square of the velocity that follows from the strain rates e."""
     j11, j12, j22 = getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22)
     across = e12 * (e11 + e22) * j12
     return (e11 * e11 + e12 * e12) * j11 + across + across + (e12 * e12 + e22 * e22) * j22
@@ -96,7 +96,7 @@ def kinetic(h: Memory, soft: Any) -> float:
 
 @inlined
 def _moves(h: Memory, ib: int, speed: float) -> bool:
-    """True if a point of block `ib` with that speed gets anywhere in a step: if places can tell it."""
+    """True if a step with that speed changes a coordinate of a point of block `ib`."""
     far = abs(getr(h, ib, g.KX)) + abs(getr(h, ib, g.KY)) + getr(h, ib, g.KBRO)
     return far + speed * h.cr[g.TDEL] > far
 
@@ -138,8 +138,8 @@ def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
 def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
     """Kinetic energy at the velocities of the last half step, which is never negative, in J/m.
 
-    Then what the block or grid-point has of it that has most, and the address of that; 0 if nothing moves.
-    What is so slow that a step does not change its place is at rest.
+    Then the share of the block or grid-point with most of it, and its address; 0 if nothing moves. Motion too
+    slow to change a place in a step is rest.
     """
     total, largest, at = 0.0, 0.0, int64(0)
     ib = int64(h.ci[g.IBPNT])
@@ -214,7 +214,7 @@ def strain_of_blocks(h: Memory, soft: Any) -> float:
 
 @kernel
 def height(h: Memory) -> float:
-    """Potential of gravity of all blocks that are not fixed against the origin, in J/m."""
+    """Potential energy of gravity of all blocks that are not fixed, relative to the origin, in J/m."""
     gx, gy = np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY])
     total = 0.0
     ib = int64(h.ci[g.IBPNT])
@@ -227,7 +227,7 @@ def height(h: Memory) -> float:
 
 @inlined
 def over(h: Memory, energy: float, ir: int, scale: Offset) -> float:
-    """An energy of motion with the inertial mass, whose factor is `scale` in `ir`; 0 stands for none."""
+    """An energy of motion with the inertial mass, whose factor is `scale` in `ir`; no factor if `ir` is 0."""
     return energy / getr(h, ir, scale) if ir != 0 and h.ci[g.LSCALE] != 0 else energy
 
 

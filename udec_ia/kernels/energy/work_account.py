@@ -1,26 +1,25 @@
-"""The work of a cycle: what damping, boundary conditions, contacts and yielding take or give (ENERGY ON).
+"""The work of a cycle: by damping, boundary conditions, contacts, yielding and changes of shape (ENERGY ON).
 
 Each is the work over a full step: the force at the full step, times the mean of the displacements of the two
 half steps around it (kernels.energy.stored_energy).
 
     mass damping       ALPHA dt m u u      u the mean of the velocities before and after; INTERNAL alike
-    given velocities   -dt F v             F the force that they withstand
+    given velocities   -dt F v             F the force against them
     loads              dt L u
     stiffness damping  dt D u              D the force of a dashpot
-    yielding           dt A S e less what the strain energy grows by
+    yielding           dt A S e less the growth of the strain energy
     change of shape    dt Fn v less Fn times the growth of the overlap; inertia that strained blocks gain
 
-Yielding is what a deformable block takes and does not keep: plastic work, and what linear elasticity in the
-current shape, which has no energy of its own, makes of great strains. Stiffness damping in zones is taken at
-the end of the step instead of around it. Change of shape is where the formulation does not keep energy: as a
-block deforms, its corners are rounded anew, by which overlaps change although nothing moves; and the laws of
-motion of a simply-deformable block (2.6) take its moment of inertia and Euler tensor as constant, although
-they change.
+Yielding is work on a deformable block that is not stored: plastic work, and the error of linear elasticity in
+the current shape, whose stress is not the derivative of an energy, at large strains. Stiffness damping in
+zones is taken at the end of the step instead of around it. Changes of shape are errors of the formulation. As
+a block deforms, its corners are rounded again, which changes overlaps without motion. The laws of motion of a
+simply-deformable block (2.6) assume a constant moment of inertia and Euler tensor, although these change.
 
-Two passes over the model stand before and after the block pass. The contact pass reports each contact when
-its new forces are known and it still holds the old ones (`note_contact`). All are compiled once ENERGY ON is
-given. What sliding takes is summed by the joint laws themselves: a run that gains energy from nowhere is
-found by it as well (advice/energy_monitor.py).
+Two passes over the model run before and after the block pass. The contact pass calls `note_contact` for each
+contact when its new forces are known and it still has the old ones. All are compiled after ENERGY ON. The
+joint laws sum the work of sliding themselves, since the detection of energy from nowhere needs it as well
+(advice/energy_monitor.py).
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None:
-    """Work of damping, or of what gives the velocity, on a mass `m` of velocity `v` and then `u`.
+    """Work of damping, or of a prescribed velocity, on a mass `m` of velocity `v` and then `u`.
 
     f: the force on it, weight and loads included.
     """
@@ -52,7 +51,7 @@ def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None
 
 @kernel
 def note_block(h: Memory, ib: int) -> None:
-    """Block `ib` as a rigid body."""
+    """Work on block `ib` as a rigid body."""
     fix, bm = iget(h, ib, g.KBFIX), getr(h, ib, g.KBM)
     xd, yd, td = next_velocity(h, ib)
     fx, fy = getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX], getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
@@ -63,7 +62,7 @@ def note_block(h: Memory, ib: int) -> None:
 
 @kernel
 def note_points(h: Memory, ib: int) -> None:
-    """The grid-points of block `ib`."""
+    """Work on the grid-points of block `ib`."""
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
@@ -106,7 +105,7 @@ def power(h: Memory, ie: int, e11: float, e12: float, e22: float) -> float:
 
 @inlined
 def zone_power(h: Memory, iz: int, ahead: bool) -> float:
-    """Power of the stress of zone `iz` at the velocities of now; ahead: at those at the end of the step."""
+    """Power of the stress of zone `iz` at the present velocities; ahead: at those at the end of the step."""
     g1, g2, g3, b1, c1, b2, c2, _ = gradient(h, iz, real(h, 0.0))
     u1, v1, u2, v2 = getr(h, g1, g.KXDG), getr(h, g1, g.KYDG), getr(h, g2, g.KXDG), getr(h, g2, g.KYDG)
     u3, v3 = getr(h, g3, g.KXDG), getr(h, g3, g.KYDG)
@@ -161,7 +160,7 @@ def note_loads(h: Memory) -> bool:
 
 @outlined
 def note_forces(h: Memory) -> bool:
-    """Before the block pass: what is done with the forces of now."""
+    """Before the block pass: work of the present forces."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
@@ -182,7 +181,7 @@ def note_forces(h: Memory) -> bool:
 
 @outlined
 def note_rigid(h: Memory) -> bool:
-    """The same where all blocks are rigid."""
+    """The same if all blocks are rigid."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
@@ -193,7 +192,7 @@ def note_rigid(h: Memory) -> bool:
 
 @outlined
 def note_stresses(h: Memory) -> bool:
-    """After the block pass, when grid-points feel the zones only: what is done with the stresses of now."""
+    """After the block pass, when only zones act on grid-points: work of the present stresses."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         kind = iget(h, ib, HEAD)
@@ -210,7 +209,7 @@ def note_stresses(h: Memory) -> bool:
 
 @kernel
 def point_power(h: Memory, ib: int) -> float:
-    """What the force sums of the grid-points of block `ib` take from them."""
+    """Power of the force sums of the grid-points of block `ib`, with the opposite sign."""
     total = real(h, 0.0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
@@ -224,10 +223,10 @@ Pair = tuple[float, float]
 
 @inlined
 def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) -> None:
-    """Work against the normal force of contact `ic`, which becomes `fn`, that its overlap does not show.
+    """Work against the normal force of contact `ic`, which becomes `fn`, without a change of its overlap.
 
-    closing: velocity at which the blocks approach. grown: what the overlap has grown by. Rigid blocks keep
-    their shape: what differs there is an error of the step.
+    closing: velocity at which the blocks approach. grown: growth of the overlap. Rigid blocks keep their
+    shape: a difference there is an error of the step.
     """
     if iget(h, iget(h, ic, g.KB1), HEAD) != g.MRIG or iget(h, iget(h, ic, g.KB2), HEAD) != g.MRIG:
         mean = (getr(h, ic, g.KCFN) + fn) * real(h, 0.5)
@@ -236,10 +235,10 @@ def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) ->
 
 @inlined
 def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
-    """What the dashpots of contact `ic` take in this step.
+    """Work of the dashpots of contact `ic` in this step.
 
-    was: closing and sliding velocity that they answered to half a step ago. now: closing and sliding
-    velocity now. slips: whether the dashpot along the contact answers to nothing now.
+    was: closing and sliding velocity half a step ago. now: closing and sliding velocity now. slips: True if
+    the dashpot along the contact does not act now.
     """
     (closing, sliding), joint, zero = now, joint_of(h, ic), real(h, 0.0)
     across = (was[1] if is_stuck(h, ic) else zero) + (zero if slips else sliding)
@@ -251,10 +250,10 @@ def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
 def note_contact(
     h: Memory, ic: int, own: bool, before: float, normal: Pair, velocity: Pair, forces: Pair, dashpots: Pair
 ) -> bool:
-    """What contact `ic` takes and gives in this step; it holds what it felt before, and its overlap of now.
+    """Work of contact `ic` in this step; it has the forces of the last step and the present overlap.
 
-    own: whether it follows a law of the user's. before: its overlap before. velocity: of block KB2 relative
-    to KB1. forces, dashpots: normal and shear force of now.
+    own: True if it has a user's law. before: its overlap before. velocity: of block KB2 relative to KB1.
+    forces, dashpots: present normal and shear force.
     """
     (nx, ny), (xd, yd), (fn, _) = normal, velocity, forces
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny

@@ -7,9 +7,9 @@ angle. With t the unit vector along an edge, clockwise, and Jt = (ty, -tx) point
 
     centre = corner - D t_in + R J t_in = corner + D t_out + R J t_out
 
-A concave corner gets R < 0: it carries no contact, the edges at it count down to the corner itself.
-A flat corner (R would be infinite) gets R = 0 and is a point of one long edge; so is, for good, a corner that
-GENERATE has put on an edge (KGEDGE), however the block deforms.
+A concave corner gets R < 0: it carries no contact, and the edges at it extend to the corner itself. A flat
+corner (R would be infinite) gets R = 0 and is a point of one long edge. A corner that GENERATE has put on an
+edge (KGEDGE) always is one, however the block deforms.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from udec_ia.kernels.links.linked_lists import flag, idomp, next_corner
 from udec_ia.layout import offsets as g
 
 FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
-BULGE = 0.02  # of D: if it stands out by less, from the line between its neighbours
-KEPT = 0.9  # of both: below it a strained corner loses its radius, or it would come and go with every breath
+BULGE = 0.02  # of D: distance from the line between its neighbours below which it may be such a point
+KEPT = 0.9  # of both: a strained corner below it loses its radius, which would otherwise alternate
 
 
 @kernel
@@ -60,7 +60,7 @@ def geo(h: Memory, ib: int) -> tuple[float, float, float, float, float, float]:
 
 @kernel
 def density_of(h: Memory, ib: int) -> float:
-    """Density of block `ib` as PROPERTY has given it to its material."""
+    """Density of the material of block `ib`."""
     return h.cr[g.DENS + iget(h, ib, g.KMAT) - 1]
 
 
@@ -102,7 +102,7 @@ def is_edge_point(h: Memory, ip: int) -> bool:
 
 @kernel
 def span(h: Memory, ip: int, z: float) -> float:
-    """What two roundings have to share of the edge of length `z` that ends at corner `ip`.
+    """Length for two roundings on the edge of length `z` that ends at corner `ip`.
 
     An edge between two roundings counts with its length, an edge from a rounding to an edge point with
     twice its length, and one between two edge points is infinite.
@@ -117,7 +117,7 @@ def span(h: Memory, ip: int, z: float) -> float:
 def bent(
     h: Memory, z1: float, c1: float, s1: float, z2: float, c2: float, s2: float, had_radius: bool
 ) -> bool:
-    """True if two edges make a corner and not a point of one straight edge.
+    """True if two edges form a corner and not a point of one straight edge.
 
     Their lengths are z1 and z2, and they lie along (c1, s1) and (c2, s2). had_radius: it has been one.
     """
@@ -145,9 +145,9 @@ def circle(
 def crad(h: Memory, ib: int, strained: bool) -> int:
     """Radius and circle centre for each corner of block `ib` (CRAD).
 
-    strained: in this step. A corner that was convex, straight or concave and is so no more then asks for an
-    update of its domain. Notes in LSHORT an edge between two roundings whose straight part is shorter than
-    FTOL. Returns the corner where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
+    strained: in this step. A corner that changes between convex, straight and concave then requests an update
+    of its domain. Sets LSHORT if an edge between two roundings has a straight part shorter than FTOL. Returns
+    the corner where an edge ends whose roundings overlap by more than FTOL; 0 if none does.
     """
     d = h.cr[g.DTOL]
     tight = int64(0)
@@ -179,11 +179,11 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
 
 @kernel
 def keep_circles(h: Memory, ib: int) -> None:
-    """Put the circles of block `ib` back to where its corners are.
+    """Recalculate the circles of block `ib` from its corners.
 
-    Both are moved by themselves. In 32-bit reals far from the origin a block that creeps loses the same part
-    of a digit in each cycle, its circles another part than its corners, and at last it would be told wrongly
-    what stands on an arc and what beside it. A corner with a radius keeps one.
+    Circles and corners move separately. In 32-bit reals far from the origin, rounding shifts a creeping block
+    in each cycle, its circles by another amount than its corners. Finally contacts on an arc would be
+    mistaken for contacts beside it. A corner with a radius keeps one.
     """
     ip0 = iget(h, ib, g.KP)
     ip = ip0
@@ -204,7 +204,7 @@ def keep_circles(h: Memory, ib: int) -> None:
 
 @kernel
 def round_anew(h: Memory, ib: int) -> None:
-    """CRAD for block `ib`, strained in this step. Error 14 if an edge can no longer hold its roundings."""
+    """CRAD for block `ib`, strained in this step. Error 14 if an edge is too short for its roundings."""
     ip = crad(h, ib, True)
     if ip != 0 and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = TOO_SHORT

@@ -1,6 +1,6 @@
-"""Which of many boxes meet: a sweep along x; and the stable sort that it needs.
+"""Search for overlapping boxes by a sweep along x, and the stable sort that it needs.
 
-np.argsort sorts as well, but to compile it for one caller takes as long as a dozen kernels.
+np.argsort would take as long to compile as a dozen kernels.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ LEFT, BELOW, RIGHT, ABOVE = 0, 1, 2, 3  # columns of the boxes
 
 @kernel
 def _sweep(boxes: Any, n: int, order: Any, pairs: Any) -> int:
-    """Enter the boxes that meet in `pairs`, or, if it has no rows, only count them. Returns their number."""
+    """Enter overlapping boxes in `pairs`, or, if it has no rows, only count them. Returns their number."""
     m = 0
     for u in range(n):
         i = order[u]

@@ -9,15 +9,16 @@ KB1 to block KB2; the overlap is positive when the rounded outlines overlap.
 The contact point lies on the normal through the circle's centre, in the middle of the overlap. Where
 a contact passes from edge to arc, both forms give the same normal and the same overlap.
 
-A circle goes on where its arc ends. If an edge is tilted so far that it faces no place of an arc, it is the
-circle that touches it, beside the arc's end. That of a blunt corner would touch far away: it is the end then.
+A circle continues where its arc ends. If an edge is tilted so far that it faces no place of an arc, the
+circle touches it, beside the arc's end. The circle of a blunt corner would touch far away; there the end of
+the arc touches.
 
 A point of an edge (KRAD = 0: a flat corner, or one that GENERATE has put there) is a circle of radius zero
-that may touch edges and arcs of others. Whatever slides past it goes from the one edge to the other where
-their bisector is: there both give the same overlap.
+that may touch edges and arcs of others. A contact that slides past it passes from one edge to the other at
+their bisector, where both give the same overlap.
 
-A corner of a deformable block that has become straight or concave has no arc any more. What touched it there
-by an arc of its own goes to one of its two edges; its contact with an edge stays until it opens.
+A corner of a deformable block that becomes straight or concave loses its arc. Its contact with another arc
+moves to one of its two edges; its contact with an edge stays until it opens.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from udec_ia.kernels.geometry.block_shape import is_edge_point, zcs
 from udec_ia.kernels.links.linked_lists import next_corner
 from udec_ia.layout import offsets as g
 
-BLUNT = 8.0  # radius over D above which it matters where an arc ends: of a corner that turns by 14 degrees
+BLUNT = 8.0  # radius over D above which the end of an arc matters: at a corner with a turn of 14 degrees
 
 
 @inlined
@@ -50,7 +51,7 @@ def circle_ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, 
 def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
     """Corner `ip` against the edge that ends at corner `iq` (CE): as circle_ce, but for a blunt corner's end.
 
-    Where the edge faces no place of a blunt corner's arc, it is an end of the arc that touches it.
+    If the edge faces no place of a blunt corner's arc, an end of the arc touches it.
     """
     ex, ey, overlap, along, z = circle_ce(h, ip, iq)
     if is_blunt(h, ip):
@@ -64,9 +65,9 @@ def ce(h: Memory, ip: int, iq: int) -> tuple[float, float, float, float, float]:
 
 @kernel
 def touching_end(h: Memory, ip: int, ex: float, ey: float) -> tuple[bool, float, float]:
-    """Which end (x, y) of the arc of corner `ip` touches an edge of the outward normal (ex, ey).
+    """The end (x, y) of the arc of corner `ip` that touches an edge of the outward normal (ex, ey).
 
-    Also returned, before it: whether it is an end at all, and not a place between.
+    Returned before it: True if it is an end, and not a place between.
     """
     tx, ty, ux, uy = tangents(h, ip)
     d, zero = h.cr[g.DTOL], real(h, 0.0)
@@ -94,10 +95,10 @@ def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
 
 @kernel
 def past(h: Memory, iq: int, ip: int) -> float:
-    """How far the circle of corner `ip` has passed corner `iq` of another block, clockwise.
+    """Distance of the circle of corner `ip` past corner `iq` of another block, clockwise.
 
-    Measured along the mean direction of the two edges at `iq`, so zero on their bisector. Of a blunt corner
-    it is the end of its arc if that touches.
+    Measured along the mean direction of the two edges at `iq`, so zero on their bisector. For a blunt corner
+    the end of its arc counts if it touches.
     """
     tx, ty, ux, uy = tangents(h, iq)
     mx, my = (tx + ux) * real(h, 0.5), (ty + uy) * real(h, 0.5)
@@ -111,11 +112,11 @@ def past(h: Memory, iq: int, ip: int) -> float:
 
 @inlined
 def over_ends(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
-    """How far the vector (x, y) leans over the two ends of the arc of corner `ip`.
+    """Components of the vector (x, y) beyond the two ends of the arc of corner `ip`.
 
-    Returns its component along the edge that leaves the corner and minus its component along the edge
-    that arrives: with (x, y) drawn from the circle's centre, both are negative or zero inside the arc.
-    With m = centre - corner, t_out = (D m - R Jm)/m.m and -t_in = (D m + R Jm)/m.m.
+    Returns its component along the edge that leaves the corner, and minus its component along the edge that
+    arrives. For (x, y) from the circle's centre, both are negative or zero inside the arc. With m = centre -
+    corner, t_out = (D m - R Jm)/m.m and -t_in = (D m + R Jm)/m.m.
     """
     d, r = h.cr[g.DTOL], getr(h, ip, g.KRAD)
     if r <= 0:
@@ -130,11 +131,11 @@ def over_ends(h: Memory, ip: int, x: float, y: float) -> tuple[float, float]:
 
 @kernel
 def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
-    """True if the unit vector (x, y) leans over neither end of the arc of corner `ip` by more than `slack`.
+    """True if the unit vector (x, y) is beyond neither end of the arc of corner `ip` by more than `slack`.
 
-    Opposite to a blunt arc a vector may lean as little over its ends, and does not face the arc at all. An
-    arc is no longer than half a circle, so for slacks up to 0.5 what faces it is less than 120 degrees from
-    its middle, and what does not is more than 150 degrees away.
+    A vector in the direction opposite to a blunt arc may also be beyond its ends by little, but does not face
+    the arc. An arc is at most half a circle. So for slacks up to 0.5 a vector that faces it is less than 120
+    degrees from its middle, and any other is more than 150 degrees away.
     """
     ahead, behind = over_ends(h, ip, x, y)
     if getr(h, ip, g.KRAD) <= 0:  # a point of an edge: outwards is to the left of its edges
@@ -148,7 +149,7 @@ def faces(h: Memory, ip: int, x: float, y: float, slack: float) -> bool:
 
 @inlined
 def is_blunt(h: Memory, ip: int) -> bool:
-    """True if the circle of corner `ip` is so large that it matters where its arc ends."""
+    """True if the circle of corner `ip` is so large that the ends of its arc matter."""
     return getr(h, ip, g.KRAD) > h.cr[g.DTOL] * real(h, BLUNT)
 
 
@@ -167,7 +168,7 @@ def point_on(h: Memory, ip: int, nx: float, ny: float, overlap: float) -> tuple[
 
 @inlined
 def meet_circles(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
-    """As `meet`, if the two corners are what their circles are."""
+    """As `meet`, for two corners that their circles represent."""
     if code == g.CORNER_CORNER:
         nx, ny, overlap = cc(h, ip, iq)
         x, y = point_on(h, ip, nx, ny, overlap)
@@ -210,7 +211,7 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
 
 @inlined
 def meet_quickly(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
-    """As `meet`, without a call where two corners are what their circles are."""
+    """As `meet`, without a call for two corners that their circles represent."""
     one, two, largest = getr(h, ip, g.KRAD), getr(h, iq, g.KRAD), h.cr[g.DTOL] * real(h, BLUNT)
     if min(one, two) > 0 and max(one, two) <= largest:
         return meet_circles(h, code, ip, iq)
@@ -243,6 +244,6 @@ def coord_seldom(h: Memory, ic: int) -> tuple[float, float, float, float]:
 
 @kernel
 def begin(h: Memory, ic: int) -> None:
-    """Coordinates of contact `ic`, and its overlap as the one that force increments count from."""
+    """Set coordinates of contact `ic`, and its overlap as the start of force increments."""
     _, _, overlap, _ = coord_seldom(h, ic)
     putr(h, ic, g.KCN, overlap)

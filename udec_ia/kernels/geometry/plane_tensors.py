@@ -1,4 +1,4 @@
-"""Symmetric tensors in the plane, as three numbers 11, 12, 22, and how they turn."""
+"""Symmetric tensors in the plane, as three numbers 11, 12, 22, and their rotation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined
 from udec_ia.heap.accessors import Memory, real
 
-ROUND = 1e-6  # of a moment: where principal ones differ by less, last digits would choose the axes
+ROUND = 1e-6  # of a moment: if principal moments differ by less, last digits would determine the axes
 
 
 @inlined
@@ -20,7 +20,7 @@ def cayley(h: Memory, angle: float) -> tuple[float, float]:
 
 @inlined
 def turned(s11: float, s12: float, s22: float, c: float, s: float) -> tuple[float, float, float]:
-    """The tensor turned anticlockwise by the angle with cosine `c` and sine `s`."""
+    """The tensor rotated anticlockwise by the angle with cosine `c` and sine `s`."""
     cc, cs, ss = c * c, c * s, s * s
     t = cs * (s12 + s12)
     return cc * s11 - t + ss * s22, cs * (s11 - s22) + (cc - ss) * s12, ss * s11 + t + cc * s22
@@ -28,7 +28,7 @@ def turned(s11: float, s12: float, s22: float, c: float, s: float) -> tuple[floa
 
 @inlined
 def first_axis(h: Memory, s11: float, s12: float, s22: float) -> tuple[float, float]:
-    """Cosine and sine of the angle from x to the first principal axis; 1 and 0 if any axis is one."""
+    """Cosine and sine of the angle from x to the first principal axis; 1 and 0 if every axis is principal."""
     one, half = real(h, 1.0), real(h, 0.5)
     along, across = (s11 - s22) * half, s12
     size = np.sqrt(along * along + across * across)

@@ -1,4 +1,4 @@
-"""What lies in a range x1 < x < x2, y1 < y < y2: blocks by their centroids (RANGE), points and edges."""
+"""Selection in a range x1 < x < x2, y1 < y < y2: blocks by their centroids (RANGE), points and edges."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def points_between(h: Memory, x1: float, x2: float, y1: float, y2: float) -> Any
 
 @kernel
 def _awaits_zones(h: Memory, ib: int) -> bool:
-    """True for a fully-deformable block that GENERATE has not divided yet: no load can act on its edges."""
+    """True for a fully-deformable block without zones: no load can act on its edges."""
     return iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) == 0
 
 

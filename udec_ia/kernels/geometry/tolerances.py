@@ -5,8 +5,8 @@
     ETOL  ATOL/sqrt 2  update of a domain           HTOL   0.01 ETOL     domain pass may wait
     FTOL  0.05 D       two contacts are one         GTOL   0.0001 D      slack between codes
 
-Without a ROUND command the rounding length is ours: a twentieth of the mean edge, but never more than an
-eighth of the shortest one.
+Without a ROUND command the rounding length is a twentieth of the mean edge, but at most an eighth of the
+shortest one. The report does not give this rule.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def extent(h: Memory) -> float:
 
 @kernel
 def set_rounding(h: Memory, d: float) -> None:
-    """Round every corner of every block with the length `d`; the contacts are left to the caller."""
+    """Round every corner of every block with the length `d`; the caller updates the contacts."""
     tolset(h, d)
     h.ci[g.LSHORT] = 0
     ib = h.ci[g.IBPNT]
@@ -88,6 +88,6 @@ def set_rounding(h: Memory, d: float) -> None:
 
 @kernel
 def default_rounding(h: Memory) -> float:
-    """Our rounding length where no ROUND was given."""
+    """Rounding length without ROUND."""
     mean, shortest_length, _ = edges(h)
     return min(mean * real(h, 0.05), shortest_length * real(h, 0.125))

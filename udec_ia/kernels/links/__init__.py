@@ -1,1 +1,1 @@
-"""The lists of the map: stepping along them, changing them, the order in which they are walked."""
+"""Linked lists of the map: steps along them, changes, and the order of groups on a walk."""

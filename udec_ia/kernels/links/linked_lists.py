@@ -1,4 +1,4 @@
-"""Linked lists of the map: steps along them, insertion and removal, and the order in which they are walked.
+"""Linked lists of the map: steps along them, insertion and removal, and the order of groups on a walk.
 
     clockwise list of a block    corner -> contact -> contact -> corner -> ... -> first corner
     loop of a domain             along a block's list, changing to the other block at every contact
@@ -78,7 +78,7 @@ def corner_of(h: Memory, ib: int, ic: int) -> int:
 
 @kernel
 def set_corner_of(h: Memory, ib: int, ic: int, ip: int) -> None:
-    """Note that `ip` is the first corner after contact `ic` in the list of block `ib`."""
+    """Store `ip` as the first corner after contact `ic` in the list of block `ib`."""
     if iget(h, ic, g.KB1) == ib:
         puti(h, ic, g.KCP1, ip)
     else:
@@ -168,13 +168,13 @@ def dellst(h: Memory, lst: int, knext: Offset, kback: Offset, iad: int) -> None:
 
 @kernel
 def flag(h: Memory, idm: int) -> None:
-    """Ask for an update of domain `idm`."""
+    """Request an update of domain `idm`."""
     putr(h, idm, g.KUMAX, h.cr[g.ETOL] + h.cr[g.ETOL])
 
 
 @kernel
 def flag_all(h: Memory) -> None:
-    """Ask for an update of every domain."""
+    """Request an update of every domain."""
     idm = h.ci[g.IDPNT]
     while idm != 0:
         flag(h, idm)
@@ -186,9 +186,9 @@ NOBODY, BLOCK, STRAIN, GRIDPOINT, ZONE = 0, 1, 2, 3, 4
 
 @kernel
 def owner(h: Memory, address: int) -> tuple[int, int]:
-    """Block of the block, extension, grid-point or zone at `address`, and which of them it is.
+    """Block of the block, extension, grid-point or zone at `address`, and its kind.
 
-    0 and NOBODY if it is none of them.
+    0 and NOBODY for any other group.
     """
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
@@ -215,10 +215,10 @@ def owner(h: Memory, address: int) -> tuple[int, int]:
 def map_order(
     h: Memory, blocks: Any, corners: Any, contacts: Any, domains: Any, seen: Any
 ) -> tuple[int, int, int]:
-    """Corners, contacts and domains in the order in which a walk round block after block needs them.
+    """Corners, contacts and domains in the order of a walk around each block.
 
-    A contact comes with the later of its blocks, a domain with the first contact on it. seen: one flag
-    a word of IA(), all False. Returns the numbers of corners, contacts and domains.
+    A contact comes with the later of its blocks, a domain with its first contact. seen: one flag per word of
+    IA(), all False. Returns the numbers of corners, contacts and domains.
     """
     n, nc, nd = 0, 0, 0
     for ib in blocks:

@@ -1,6 +1,7 @@
 """The list of relaxations: one for each block without grid-points, and one for each grid-point.
 
-They stand in the order of the block list and the lists of grid-points, so whoever walks these walks along.
+They are in the order of the block list and the lists of grid-points, so that a walk along these needs no
+search.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def following(h: Memory, ir: int) -> int:
-    """The relaxation after `ir`, 0 where there are none."""
+    """The relaxation after `ir`, 0 if there are none."""
     return iget(h, ir, g.KRX) if ir != 0 else int64(0)
 
 
@@ -30,7 +31,7 @@ def lose_relaxations(h: Memory) -> None:
 
 @kernel
 def _relaxation(h: Memory, last: int, ib: int, ig: int) -> int:
-    """A new relaxation of block `ib`, or its grid-point `ig`, behind the one at `last`; its factors are 1."""
+    """Make a relaxation of block `ib`, or its grid-point `ig`, after the one at `last`; its factors are 1."""
     ir, one = find(h, g.NVRX), real(h, 1.0)
     puti(h, ir, HEAD, g.MRLX)
     puti(h, ir, g.KRXB, ib)
@@ -49,7 +50,7 @@ def _relaxation(h: Memory, last: int, ib: int, ig: int) -> int:
 
 @kernel
 def make_relaxations(h: Memory) -> None:
-    """Make all relaxations, where there are none; there must be memory for them."""
+    """Make all relaxations if there are none; there must be memory for them."""
     last = int64(0)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:

@@ -1,1 +1,1 @@
-"""The map of blocks, contacts and domains: contacts come and go, and domains with them (report 2.1, 2.5)."""
+"""Changes of the map of blocks, contacts and domains (report 2.1, 2.5)."""

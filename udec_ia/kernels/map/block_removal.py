@@ -1,9 +1,8 @@
-"""Taking a block out of the map (DELB).
+"""Removal of a block from the map (DELB).
 
-First the contacts that separate two domains go, each merging its two; what is left ties the block to
-its neighbours as bridges of the map. All but one of these are then put from the block to the first
-neighbour, as virtual contacts, so that what the block held together stays one connected map; the last
-one goes with the block.
+First the contacts that separate two domains are deleted, each merging its two. The remaining ones link the
+block to its neighbours as bridges of the map. All but one of these are then moved from the block to the first
+neighbour, as virtual contacts, so that the map stays connected. The last one is deleted with the block.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ def _delete_separating(h: Memory, ib: int) -> None:
 
 @kernel
 def _pass_on(h: Memory, ib: int, ic: int, jb: int, after: int) -> None:
-    """Put bridge `ic` of block `ib` to block `jb` instead, after its item `after`, as a virtual contact."""
+    """Move bridge `ic` of block `ib` to block `jb`, after its item `after`, as a virtual contact."""
     take_out(h, ib, ic)
     puti(h, ic, g.KB1 if iget(h, ic, g.KB1) == ib else g.KB2, jb)
     insert_after(h, jb, after, ic)
@@ -58,7 +57,7 @@ def _next_contact(h: Memory, ib: int, ic: int) -> int:
 
 @kernel
 def delb(h: Memory, ib: int) -> None:
-    """Delete block `ib` (DELB). The map must have another contact left when it is gone."""
+    """Delete block `ib` (DELB). The map must then still have another contact."""
     _delete_separating(h, ib)
     ip = iget(h, ib, g.KP)
     first = int64(0)

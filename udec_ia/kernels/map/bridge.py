@@ -1,9 +1,9 @@
-"""Making and deleting contacts, and with them domains (MAKEC, BRIDGE, DELC).
+"""Creation and deletion of contacts, and with them of domains (MAKEC, BRIDGE, DELC).
 
-A new contact across a domain cuts it in two; a deleted contact merges the two domains it stood
-between. Either way the contacts around one of the two loops must be told their new domain: both loops
-are walked in step until the shorter one closes, and the shorter one is relabelled. So a contact made
-or broken on a large domain costs as much as its small side.
+A new contact across a domain cuts it in two; a deleted contact merges the two domains beside it. In both
+cases the contacts around one of the two loops get a new domain. Both loops are walked in parallel until the
+shorter one closes, and the shorter one is relabelled. So the cost of a contact made or broken on a large
+domain is that of its smaller side.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def makec(h: Memory, ib: int, jb: int, icod: int, idleft: int, idright: int) -> 
 
 @kernel
 def losec(h: Memory, ic: int) -> None:
-    """Take contact `ic`, which stands in no block's list any more, off the contact list and lose it."""
+    """Take contact `ic`, which is in no block's list any more, off the contact list and lose it."""
     if iget(h, ic, g.KCCOD) == g.VIRTUAL:
         h.ci[g.NVIRT] -= 1
     dellst(h, g.ICPNT, g.KC, g.KCB, ic)
@@ -81,7 +81,7 @@ def losec(h: Memory, ic: int) -> None:
 
 @kernel
 def to_virtual(h: Memory, ic: int) -> None:
-    """Contact `ic`, a bridge of the map, has opened: it stays as a virtual contact."""
+    """Contact `ic`, a bridge of the map, has opened: turn it into a virtual contact."""
     no_force(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
@@ -89,7 +89,7 @@ def to_virtual(h: Memory, ic: int) -> None:
 
 @kernel
 def relabel(h: Memory, iad: int, ib: int, idm: int) -> None:
-    """Give the loop that goes through (iad, ib) the domain `idm`."""
+    """Assign domain `idm` to the loop through (iad, ib)."""
     item, block = int64(iad), int64(ib)
     while True:
         before = block
@@ -122,7 +122,7 @@ def left_is_shorter(h: Memory, ic: int) -> bool:
 def loop_area(h: Memory, iad: int, ib: int) -> float:
     """Area inside the loop through (iad, ib); negative if the loop is the outline of the whole map.
 
-    The loop is taken through its corners and contact points, virtual contacts stand nowhere.
+    The loop is taken through its corners and contact points; virtual contacts have no place.
     """
     twice = real(h, 0.0)
     fx, fy = twice, twice  # first corner of the loop
@@ -146,10 +146,10 @@ def loop_area(h: Memory, iad: int, ib: int) -> float:
 
 @kernel
 def is_outline(h: Memory, iad: int, ib: int) -> bool:
-    """True if the loop through (iad, ib) runs around block `ib` and what hangs together with it.
+    """True if the loop through (iad, ib) runs around block `ib` and the blocks connected with it.
 
-    False if it bounds a space between blocks. A space may be a mere crack whose area has either sign; an
-    outline has at least the area of the block, and it is negative.
+    False if it bounds a space between blocks. A space may be a crack whose area has either sign; an outline
+    has at least the area of the block, with a negative sign.
     """
     area, _, _, _, _, _ = geo(h, ib)
     return loop_area(h, iad, ib) < -area * real(h, 0.5)
@@ -172,8 +172,8 @@ def cut_domain(h: Memory, ic: int, idm: int) -> int:
 def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int) -> int:
     """Make a contact of code `icod` across domain `idm` (BRIDGE).
 
-    It is put after item `iad` of block `ib` and after item `jad` of block `jb`, both of whose exposures
-    lie on the domain. Returns the contact; the domain to its left or right is new.
+    It is put after item `iad` of block `ib` and after item `jad` of block `jb`; the exposures of both are on
+    the domain. Returns the contact; the domain to its left or right is new.
     """
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, iad, ic)

@@ -1,19 +1,19 @@
-"""Contact re-classification (report 2.5; QUERY, MVFOR, MVBAK).
+"""Contact re-classification: changes of code and place of a contact (report 2.5; QUERY, MVFOR, MVBAK).
 
-As blocks slide, one and the same contact passes from the edge to the arc of a rounded corner and on to
-the next edge: only its code changes and, past a corner, its place in the block's list. The force goes
-on without a break because both forms agree where they meet; GTOL keeps the code from flickering there.
+As blocks slide, one and the same contact passes from the edge to the arc of a rounded corner and on to the
+next edge: only its code changes and, past a corner, its place in the block's list. The force is continuous
+because both forms agree where they meet; GTOL prevents the code from alternating there.
 
-MVFOR and MVBAK of 1980 took along the contacts that stood between. Here a contact waits for them: each
-moves when its own geometry says so, and the order of the list stays the order of the map.
+MVFOR and MVBAK of 1980 took along the contacts in between. Here a contact waits for them: each moves when its
+own geometry requires it, and the order of the list stays the order of the map.
 
-A corner on an edge keeps its corner when its block rolls over to the next one, which then has a contact
-of its own - unless the flat between the two is shorter than FTOL. Two contacts so close are one: the
-contact is handed from corner to corner, and the report's ball rolls on a single contact.
+A contact on an edge keeps its corner when its block rolls over to the next one, which then has its own
+contact, unless the flat between the two is shorter than FTOL. Two contacts so close are one: the contact
+passes from corner to corner, and the report's ball rolls on a single contact.
 
 Points of edges have no contact with each other; two that meet have each a contact with an edge beside the
-other. Each of these stands in the way of the other, so they pass together. An arc that meets a point is no
-such case: the point comes to the arc first.
+other. Each of these blocks the other, so they pass together. This does not happen if an arc meets a point:
+the point reaches the arc first.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ RECLASSIFICATIONS = 8  # a contact passes at most so many segments at a time
 def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
     """Move contact `ic` forwards past its corner on block `ib`, with the new code (MVFOR).
 
-    It is the corner that moves, to the place before the contact. False, and nothing changes, while
-    another contact stands between them; virtual ones do not count, they go along.
+    The corner moves to the place before the contact. False, and nothing changes, while another contact is
+    between them; virtual ones do not count and are taken along.
     """
     ip = corner_of(h, ib, ic)
     item = nextcp(h, ib, ic)
@@ -67,7 +67,7 @@ def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
 def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
     """Move contact `ic` backwards past the corner before it on block `ib`, with the new code (MVBAK).
 
-    As in mvfor it is the corner that moves, to the place after the contact.
+    As in mvfor the corner moves, to the place after the contact.
     """
     ip = prevcp(h, ib, ic)
     while not is_corner(h, ip):
@@ -85,7 +85,7 @@ def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
 
 @kernel
 def _standing_before(h: Memory, ib: int, iad: int, ip: int) -> None:
-    """Note corner `ip` in the contacts of block `ib` from `iad` up to the corner or a contact that has it."""
+    """Store corner `ip` in the contacts of block `ib` from `iad` to the corner or a contact that has it."""
     item = iad
     while item != ip and corner_of(h, ib, item) != ip:
         set_corner_of(h, ib, item, ip)
@@ -102,7 +102,7 @@ def _is_of_point(h: Memory, ic: int, ib: int, jb: int, iq: int) -> bool:
 
 @kernel
 def _link_in_a_row(h: Memory, ib: int, before: int, one: int, two: int, three: int, after: int) -> None:
-    """Let the five items follow one another in the list of block `ib`."""
+    """Link the five items in this order in the list of block `ib`."""
     link(h, ib, before, one)
     link(h, ib, one, two)
     link(h, ib, two, three)
@@ -113,7 +113,7 @@ def _link_in_a_row(h: Memory, ib: int, before: int, one: int, two: int, three: i
 def _pass_forwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
     """Point `ip` passes point `iq` of block `ib`, clockwise; `ic` is its contact with the edge before `iq`.
 
-    The contact of `iq` passes point `ip` then. False if there is none in the way.
+    The contact of `iq` then passes point `ip`. False if no contact blocks the way.
     """
     jb, jc = other(h, ib, ic), nextcp(h, ib, ic)
     if not _is_of_point(h, jc, ib, jb, iq) or nextcp(h, ib, jc) != iq:
@@ -147,7 +147,7 @@ def _pass_backwards(h: Memory, ic: int, ib: int, iq: int, ip: int) -> bool:
 
 @kernel
 def _change_places(h: Memory, ib: int, ic: int, jc: int) -> None:
-    """Contacts `ic` and `jc` of the same two blocks have changed places: so do the domains beside them."""
+    """Exchange the domains beside contacts `ic` and `jc` of the same two blocks, which changed places."""
     jb = other(h, ib, ic)
     left, between, right = domain_before(h, ib, ic), domain_before(h, ib, jc), domain_before(h, jb, jc)
     _put_domains(h, ib, jc, left, between)
@@ -160,7 +160,7 @@ def _change_places(h: Memory, ib: int, ic: int, jc: int) -> None:
 
 @kernel
 def _put_domains(h: Memory, ib: int, ic: int, before: int, after: int) -> None:
-    """The domains before and after contact `ic`, clockwise along block `ib`."""
+    """Set the domains before and after contact `ic`, clockwise along block `ib`."""
     first = iget(h, ic, g.KB1) == ib
     puti(h, ic, g.KD1, before if first else after)
     puti(h, ic, g.KD2, after if first else before)
@@ -168,7 +168,7 @@ def _put_domains(h: Memory, ib: int, ic: int, before: int, after: int) -> None:
 
 @kernel
 def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z: float) -> bool:
-    """Corner `ip` has come near an end of the edge of block `ib` that ends at `iq`."""
+    """Re-classify a contact whose corner `ip` is near an end of the edge of block `ib` that ends at `iq`."""
     code, border = iget(h, ic, g.KCCOD), h.cr[g.DTOL] - h.cr[g.GTOL]
     is_point = getr(h, ip, g.KRAD) <= 0
     ia = iget(h, iq, g.KR)
@@ -188,7 +188,7 @@ def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z
 
 @kernel
 def _all_rounding(h: Memory, ip: int) -> bool:
-    """True if the edge that ends at corner `ip` lies between two arcs, and its flat is shorter than FTOL."""
+    """True if the edge that ends at corner `ip` is between two arcs, and its flat is shorter than FTOL."""
     z, _, _ = zcs(h, ip)
     short = z - h.cr[g.DTOL] - h.cr[g.DTOL] < h.cr[g.FTOL]
     return short and getr(h, ip, g.KRAD) > 0 and getr(h, iget(h, ip, g.KR), g.KRAD) > 0
@@ -196,7 +196,7 @@ def _all_rounding(h: Memory, ip: int) -> bool:
 
 @kernel
 def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
-    """Hand a contact on an edge from corner `ip` of block `ib` to the next corner, over a short flat.
+    """Move a contact on an edge from corner `ip` of block `ib` to the next corner, over a short flat.
 
     (nx, ny) points from the circle's centre to the edge.
     """
@@ -210,22 +210,22 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
 
 @inlined
 def _reach(h: Memory, ip: int) -> float:
-    """How far the line of centres moves along the arc of corner `ip`, for an angle by which it turns.
+    """Displacement of the line of centres along the arc of corner `ip`, for an angle by which it turns.
 
-    It is all the same for two small circles. From the centre of a blunt one the angle is small.
+    For two small circles it does not matter. From the centre of a blunt one the angle is small.
     """
     return getr(h, ip, g.KRAD) if is_blunt(h, ip) else h.cr[g.DTOL]
 
 
 @kernel
 def _off_the_corner(h: Memory, ic: int) -> bool:
-    """A corner/corner contact whose line of centres has left one of the two arcs, or that has lost one."""
+    """Re-classify a corner/corner contact whose line of centres has left an arc, or that has lost an arc."""
     ip, iq = iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
     first = has_no_arc(h, ip)
     if first or has_no_arc(h, iq):  # the contact goes to the nearer of the edges at the corner without
         ib, code = (iget(h, ic, g.KB1), g.EDGE_CORNER) if first else (iget(h, ic, g.KB2), g.CORNER_EDGE)
         ahead = past(h, ip, iq) > 0 if first else past(h, iq, ip) > 0
-        flag(h, iget(h, ic, g.KD1))  # if the corner has come to be concave, the other edge is touched as well
+        flag(h, iget(h, ic, g.KD1))  # if the corner has become concave, the other edge is touched as well
         flag(h, iget(h, ic, g.KD2))
         if not (ahead and mvfor(h, ic, ib, code)):
             puti(h, ic, g.KCCOD, code)
@@ -248,7 +248,7 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
 
 @kernel
 def reclass(h: Memory, ic: int) -> bool:
-    """Give contact `ic` the code that its geometry asks for; True if code or place changed."""
+    """Give contact `ic` the code that its geometry requires; True if code or place changed."""
     code = iget(h, ic, g.KCCOD)
     if code == g.CORNER_CORNER:
         return _off_the_corner(h, ic)
@@ -266,7 +266,7 @@ def reclass(h: Memory, ic: int) -> bool:
 
 @inlined
 def settle(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Code, place and coordinates of contact `ic` as its geometry asks; normal (x, y) and overlap."""
+    """Set code, place and coordinates of contact `ic` by its geometry; returns normal (x, y) and overlap."""
     nx, ny, overlap, margin = coord_seldom(h, ic)
     for _ in range(RECLASSIFICATIONS):
         if (margin >= 0 and h.ci[g.LSHORT] == 0) or not reclass(h, ic):

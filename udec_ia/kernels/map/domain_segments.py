@@ -1,9 +1,9 @@
 """Boundary of a domain as a sequence of segments, corner arcs and edges (NEXTDS of the report).
 
-A contact can arise only between two segments of the same domain (2.2). Going round the loop, a segment
-is noted wherever an arc or an edge comes into view: after a contact the segment it stands on, then, at
-each corner, the corner's arc and the next edge. One and the same arc or edge is noted once for every
-exposure that it has in the domain.
+A contact can arise only between two segments of the same domain (2.2). A walk around the loop collects a
+segment for each exposed arc or edge: after a contact the segment on which it lies, then, at each corner, the
+corner's arc and the next edge. The same arc or edge is collected once for every exposure that it has in the
+domain.
 
 A row of the array: block, corner, arc, item, piece.
   corner  the corner of the arc, or the corner where the edge ends
@@ -33,7 +33,7 @@ COLUMNS = 5
 
 @kernel
 def on_arc(h: Memory, ib: int, ic: int) -> bool:
-    """True if contact `ic` stands on the arc of its corner on block `ib` (QUERY)."""
+    """True if contact `ic` lies on the arc of its corner on block `ib` (QUERY)."""
     code = iget(h, ic, g.KCCOD)
     if code == g.CORNER_CORNER:
         return True
@@ -71,11 +71,11 @@ def _on_the_arc(h: Memory, ip: int, nx: float, ny: float) -> tuple[float, float]
 
 @kernel
 def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
-    """How far contact `ic` on a segment of corner `ip` lies ahead of a contact at (x, y), clockwise.
+    """Distance of contact `ic` on a segment of corner `ip` ahead of a contact at (x, y), clockwise.
 
-    (nx, ny): normal of the latter, away from the block of the corner. On an arc it is the two places on the
-    arc that count, along its chord. A contact point lies in the middle of gap or overlap: where the arc is
-    narrow, a gap takes it far to one side, and an overlap beyond the circle's centre to the other side.
+    (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is that of the
+    two places on the arc, along its chord. A contact point is in the middle of gap or overlap: on a narrow
+    arc, a gap moves it far to one side, and an overlap beyond the circle's centre to the other side.
     """
     ax, ay, bx, by = x, y, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
     if arc and getr(h, ip, g.KRAD) > 0:
@@ -109,7 +109,7 @@ def next_not_virtual(h: Memory, ib: int, iad: int) -> int:
 def opens_on_arc(h: Memory, ib: int, ic: int) -> bool:
     """True if the exposure of block `ib` after contact `ic` begins on an arc, False if on an edge.
 
-    A virtual contact stands nowhere: what counts is the item before it.
+    A virtual contact has no place: the item before it counts.
     """
     item = not_virtual(h, ib, ic)
     return not is_corner(h, item) and on_arc(h, ib, item)
@@ -126,7 +126,7 @@ def loop_start(h: Memory, idm: int) -> tuple[int, int]:
 
 @kernel
 def count_items(h: Memory, idm: int) -> int:
-    """Number of items passed on the way round domain `idm`."""
+    """Number of items around domain `idm`."""
     start, first = loop_start(h, idm)
     item, block = start, first
     n = 0
@@ -149,7 +149,7 @@ def _note(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -
 
 @kernel
 def _note_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
-    """Note the arc of corner `ip` if it is convex or an edge point; other corners carry no contact."""
+    """Collect the arc of corner `ip` if it is convex or an edge point; other corners carry no contact."""
     if getr(h, ip, g.KRAD) > 0 or is_edge_point(h, ip):
         return _note(seg, n, ib, ip, 1, item, piece)
     return n
@@ -205,10 +205,9 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
 
 @kernel
 def settle_loop(h: Memory, idm: int) -> None:
-    """Bring codes, places and coordinates of the contacts around domain `idm` up to date, not their forces.
+    """Update codes, places and coordinates of the contacts around domain `idm`, not their forces.
 
-    Blocks have moved since the last contact pass; what the domain needs can be told only from where its
-    contacts are now.
+    Blocks have moved since the last contact pass; the search needs the present places of contacts.
     """
     contacts = np.empty(count_items(h, idm), np.int64)
     start, first = loop_start(h, idm)

@@ -1,17 +1,17 @@
-"""Virtual contacts: how blocks that have parted stay in the map (report 4.6).
+"""Virtual contacts, which keep separated blocks in the map (report 4.6).
 
-A contact whose removal would make the map fall apart stays as a virtual contact when it opens. The
-boundary of its domain is then really several loops, pieces that only virtual contacts tie together; a
-virtual contact may stand anywhere on the two pieces that it ties. So, when a piece touches another:
+A contact whose removal would divide the map stays as a virtual contact when it opens. The boundary of its
+domain then consists of several loops, pieces that only virtual contacts link. A virtual contact may be
+anywhere on the two pieces that it links. When pieces touch, there are two cases:
 
-- pieces tied by virtual contacts meet: the new contact takes the place of a virtual contact between
-  them, wherever that one stood (`rehook`);
-- a piece touches itself and thereby cuts the domain: all virtual contacts of the domain are taken out,
-  the piece's own loop is cut, and every other piece is hooked to that side of the cut on which it
-  really lies (`cut_among_pieces`).
+- pieces linked by virtual contacts touch: the new contact replaces a virtual contact between them, wherever
+  that one is (`rehook`);
+- a piece touches itself and thereby cuts the domain: all virtual contacts of the domain are removed, the
+  piece's own loop is cut, and every other piece is linked to the side of the cut on which it lies
+  (`cut_among_pieces`).
 
-That is the logic the report found "quite straightforward" but had no time to write: a block thrown over
-others lands where it lands.
+The report calls this logic "quite straightforward" but had no time to write it. With it a block that is
+thrown over others can land anywhere.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def take_contact_out(h: Memory, ic: int) -> None:
 
 @kernel
 def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> None:
-    """Let contact `ic` join block `ib` (after its item `iad`) and block `jb` (after its item `jad`)."""
+    """Put contact `ic` into the lists of blocks `ib` (after item `iad`) and `jb` (after item `jad`)."""
     puti(h, ic, g.KB1, ib)
     puti(h, ic, g.KB2, jb)
     insert_after(h, ib, iad, ic)
@@ -58,7 +58,7 @@ def put_contact(h: Memory, ic: int, ib: int, iad: int, jb: int, jad: int) -> Non
 def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) -> None:
     """Virtual contact `iv` becomes a contact of code `icod` of blocks `ib` and `jb`.
 
-    It ties the same two parts of the map at another place, so no domain changes.
+    It links the same two parts of the map at another place, so no domain changes.
     """
     if iad == iv:
         iad = prevcp(h, ib, iv)
@@ -76,7 +76,7 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
 
 @kernel
 def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
-    """How often the loop through (iad, ib) winds around the point (x, y), anticlockwise."""
+    """Winding number of the loop through (iad, ib) around the point (x, y), anticlockwise."""
     turns = 0
     start = int64(iad)
     item, block = int64(iad), int64(ib)
@@ -125,7 +125,7 @@ def hook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, idm: int) -> 
 def cut_among_pieces(
     h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int, ties: Any, pieces: Any
 ) -> int:
-    """Make a contact that cuts domain `idm` while other pieces hang in the domain on virtual contacts.
+    """Make a contact that cuts domain `idm` while virtual contacts link other pieces to the domain.
 
     ties: the virtual contacts of the domain. pieces: one row (block, item, mine) a piece; the exposure
     after the item lies on the piece; mine is 1 for the piece that the new contact belongs to, else 0, and

@@ -1,1 +1,1 @@
-"""SPLIT: blocks are cut by a line (report 2.7)."""
+"""SPLIT: cutting blocks along a line (report 2.7)."""

@@ -1,21 +1,21 @@
-"""Where a line crosses a block, and whether the block can be split there.
+"""Crossings of a line with a block, and the conditions for a split there.
 
 The line is given by its start (x1, y1), its unit vector (c, s) and its length z, by the shortest edge that a
-cut may leave, and by the distance from it that counts as zero, some roundings of the coordinates. That is one
-distance for all blocks: those that share a corner must agree whether the line goes through it. The crossings
-are ordered along the line; between the first and the second, the third and the fourth ... the line runs
-inside the block. The block is split there if both ends lie within the given line: a line that ends inside a
-block leaves it whole.
+cut may leave, and by the distance from it that counts as zero, some roundings of the coordinates. This
+distance is the same for all blocks, since blocks with a common corner must agree whether the line goes
+through it. The crossings are ordered along the line; between the first and the second, the third and the
+fourth ... the line runs inside the block. The block is split there if both ends lie within the given line: a
+line that ends inside a block leaves it whole.
 
-Nothing is ever moved to a corner that is merely near: a cut that would leave an edge shorter than the
-smallest allowed, or that runs almost along an edge, is refused with its coordinates.
+A cut is never moved to a near corner. A cut that would leave an edge shorter than the smallest allowed, or
+that runs almost along an edge, is refused with its coordinates.
 
-The smallest edge, while the rounding length is still open, is what the reals resolve, however long the edge
-that is cut: EDGE_DIGITS last digits of the coordinates (common.limits). The end of a cut is found to some of
-them, so the length of the edge is known to a part in a thousand, and so is the area of the piece whose width
-it is. The rounding length that such an edge asks for, an eighth of it, is 1250 digits, and FTOL, the least
-length that decides about a contact, is 62. Later two rounding lengths are the limit, which were held against
-the digits when they were set.
+While the rounding length is not set, the smallest edge depends on the resolution of the reals only:
+EDGE_DIGITS last digits of the coordinates (common.number_limits). The end of a cut is exact to a few of them,
+so the length of the edge is exact to a part in a thousand, as is the area of a piece of that width. The
+rounding length of such an edge, an eighth of it, is 1250 digits, and FTOL, the least length that decides
+about a contact, is 62. Later the limit is two rounding lengths, which were compared with the digits when they
+were set.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ CORNER, AT = 0, 1
 
 @kernel
 def rounding_is_open(h: Memory) -> bool:
-    """True while the rounding length still follows from the edges: no ROUND and no cycle yet."""
+    """True while the rounding length follows from the edges: no ROUND and no cycle yet."""
     return h.ci[g.LROUND] == 0 and h.ci[g.MCTOT] == 0
 
 
@@ -64,9 +64,10 @@ def is_reflex(h: Memory, ib: int, ip: int) -> bool:
 
 @kernel
 def _edge_crossing(h: Memory, ip: int, line: Any) -> tuple[float, float, float]:
-    """Where the line meets the edge that ends at `ip`: distance along the line, x and y.
+    """Crossing of the line with the edge that ends at `ip`: distance along the line, x and y.
 
-    The edge is taken from its lesser end, so that two blocks that share it get the same point.
+    The edge is taken from the end with the smaller coordinates, so that two blocks with a common edge get the
+    same point.
     """
     ia = iget(h, ip, g.KR)
     ax, ay, bx, by = getr(h, ia, g.KXP), getr(h, ia, g.KYP), getr(h, ip, g.KXP), getr(h, ip, g.KYP)
@@ -81,7 +82,7 @@ def _edge_crossing(h: Memory, ip: int, line: Any) -> tuple[float, float, float]:
 
 @kernel
 def _corner_crosses(h: Memory, ib: int, ip: int, line: Any) -> int:
-    """Corner `ip` lies on the line: 1 if the line goes into the block or out of it here.
+    """For corner `ip` on the line: 1 if the line enters or leaves the block here.
 
     0 if it does not, -1 if it touches a reflex corner from inside. Where an edge along the line begins or
     ends, the line leaves the inside of the block if that is on both sides of it: at a reflex corner.
@@ -163,7 +164,7 @@ def first_cut(h: Memory, ib: int, line: Any, where: Any, which: Any) -> int:
 
 @kernel
 def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: int) -> int:
-    """Can a cut end at (x, y), which is corner `ip` (at = 1) or on the edge that ends there?"""
+    """True if a cut can end at (x, y), which is corner `ip` (at = 1) or on the edge that ends there."""
     iq = ip if at == 0 else next_corner(h, ib, ip)
     for k in range(1 + at):
         iend = ip if k == 0 else iq
@@ -183,7 +184,7 @@ def _end_fits(h: Memory, ib: int, line: Any, x: float, y: float, ip: int, at: in
 
 @kernel
 def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
-    """Can block `ib` be split between its crossings `k` and `k` + 1? The place is put in row 0 if not."""
+    """True if block `ib` can be split between its crossings `k` and `k` + 1; if not, row 0 gets the place."""
     for row in range(k, k + 2):
         x, y = where[row, X], where[row, Y]
         what = _end_fits(h, ib, line, x, y, which[row, CORNER], which[row, AT])
@@ -198,9 +199,9 @@ def _fits(h: Memory, ib: int, line: Any, where: Any, which: Any, k: int) -> int:
 
 @kernel
 def try_cuts(h: Memory, ib: int, line: Any, where: Any, which: Any) -> tuple[int, int]:
-    """Can block `ib` be split wherever the line crosses it? Status and number of cuts.
+    """Test whether block `ib` can be split at all crossings; returns status and number of cuts.
 
-    The place of what is refused is put in row 0 of `where`. TOO_MANY asks for more rows.
+    Row 0 of `where` gets the place of a refused cut. TOO_MANY requests more rows.
     """
     n = crossings(h, ib, line, where, which)
     if n < 0:

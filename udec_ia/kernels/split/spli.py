@@ -1,8 +1,8 @@
-"""Splitting one block along a line (SPLI): the surgery on its lists.
+"""Split of one block along a line (SPLI), with the changes of its lists.
 
-The line comes in at corner A and goes out at corner B, both on the block's outline; corners are put
-there first when the line crosses edges. The clockwise list is then cut twice and closed twice, with a
-twin of each of the two corners and two contacts across the new crack, one at either end:
+The line enters at corner A and leaves at corner B, both on the block's outline; where it crosses edges,
+corners are made first. The clockwise list is then cut twice and closed twice, with a twin of each of the two
+corners and two contacts across the new crack, one at either end:
 
     before   ... uA  mA  A  wA ............ uB  mB  B  wB ...
     one      wA ... uB  cB  B  cA  mA  A'     (the twin A' closes the loop at wA)
@@ -37,7 +37,7 @@ from udec_ia.layout import offsets as g
 
 @kernel
 def makep(h: Memory, ib: int, x: float, y: float) -> int:
-    """A new corner of block `ib` at (x, y), moving with the block, in no list yet (MAKEP)."""
+    """Make a corner of block `ib` at (x, y), with the velocity of the block, in no list yet (MAKEP)."""
     ip = find(h, g.NVCR)
     puti(h, ip, HEAD, g.MCOR)
     puti(h, ip, g.KNB, ib)
@@ -51,7 +51,7 @@ def makep(h: Memory, ib: int, x: float, y: float) -> int:
 
 @kernel
 def new_block(h: Memory, material: int, constitutive: int) -> int:
-    """A rigid block without corners at the head of the block list."""
+    """Make a rigid block without corners at the head of the block list."""
     ib = find(h, g.NVBL)
     puti(h, ib, HEAD, g.MRIG)
     puti(h, ib, g.KMAT, material)
@@ -102,7 +102,7 @@ def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
 
 @kernel
 def _claim(h: Memory, ib: int, jb: int, iad: int, last: int) -> None:
-    """Hand the items from `iad` to `last` from block `ib` to block `jb`."""
+    """Move the items from `iad` to `last` from block `ib` to block `jb`."""
     item = int64(iad)
     while True:
         following = nextcp(h, ib, item)
@@ -174,8 +174,8 @@ def _beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
 def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     """Split block `ib` from its corner `ia` to its corner `iz` (SPLI). Returns the new block.
 
-    The corners are not neighbours. Memory for one block, two corners, two contacts and one domain must
-    be there. Masses, corner circles and contact codes of both parts are left to the caller.
+    The corners are not neighbours. There must be memory for one block, two corners, two contacts and one
+    domain. The caller sets masses, corner circles and contact codes of both parts.
     """
     if not _first_run_is_shorter(h, ib, ia, iz):
         ia, iz = iz, ia

@@ -1,13 +1,13 @@
 """SPLIT: all blocks in the path of a line are split (SPLIT, TRUE; report 2.7).
 
-The whole path is looked at before anything is changed, so a line that one block refuses changes
-nothing. Then the blocks are cut one by one, and last the domains at the ends of the cracks are updated:
-corners of halves that lie opposite each other get their contacts. A line that was interrupted for want
-of memory has cut nothing yet, or only its updates are left: it is simply begun again.
+The whole path is tested before anything is changed, so a line that one block refuses changes nothing. Then
+the blocks are cut one by one, and last the domains at the ends of the cracks are updated: opposite corners of
+halves get their contacts. If memory runs out, the line has cut nothing yet, or only its updates are left, so
+it can be repeated.
 
-The blocks in the path are found in a list of boxes (four reals and an address a block), which is kept
-beside the heap while one split follows another: looking through boxes that lie together in memory is
-what keeps the thousandth line as cheap, block for block, as the first.
+The blocks in the path are found in a list of boxes (four reals and an address a block), which is kept outside
+the heap while one split follows another. The boxes are contiguous in memory, so the thousandth line costs as
+little per block as the first.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ def enter_box(h: Memory, ib: int, box: Any) -> None:
 def enter_boxes(h: Memory, boxes: Any, blocks: Any) -> int:
     """Fill `boxes` and `blocks` from the block list, the last block first; returns the number of blocks.
 
-    New blocks come to the head of the list: the rows are in the order in which the blocks were made, and
-    that is the order in which they are cut, whether the boxes were kept or are entered anew.
+    New blocks are put at the head of the list, so the rows are in the order in which the blocks were made.
+    They are cut in this order, whether the boxes were kept or are entered again.
     """
     row = h.ci[g.NBLK]
     ib = h.ci[g.IBPNT]
@@ -104,7 +104,7 @@ def path(
 
 @kernel
 def _settle_crack(h: Memory, ic: int) -> None:
-    """A crack contact stands on the arcs of both corners, or on the edge where one is not convex."""
+    """Put a crack contact on the arcs of both corners, or on the edge if one corner is not convex."""
     if getr(h, iget(h, ic, g.KCP1), g.KRAD) <= 0:
         puti(h, ic, g.KCCOD, g.EDGE_CORNER)
     elif getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0:
@@ -114,9 +114,9 @@ def _settle_crack(h: Memory, ic: int) -> None:
 
 @kernel
 def _settle_around(h: Memory, ib: int, ip: int) -> None:
-    """Bring the contacts near the new corner `ip` of block `ib` up to date.
+    """Update the contacts near the new corner `ip` of block `ib`.
 
-    They stand on its arc and on its two edges; contacts farther off are as they were.
+    They are on its arc and on its two edges; contacts farther away do not change.
     """
     reach = h.cr[g.DTOL] * real(h, 3.0)
     x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
@@ -146,7 +146,7 @@ def _shortest(h: Memory, ib: int) -> float:
 
 @outlined
 def share(h: Memory, ib: int, jb: int) -> bool:
-    """Block `jb`, cut from block `ib`, gets its share of what hangs on that one."""
+    """Give block `jb`, cut from block `ib`, its share of extension and conditions."""
     if iget(h, ib, HEAD) == g.MSDEF:
         share_extension(h, ib, jb)
     if h.ci[g.IBNPNT] != 0:
@@ -155,7 +155,7 @@ def share(h: Memory, ib: int, jb: int) -> bool:
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
-    """What `cut_path` calls by its address (compiling.outlined_calls), 0 for what it need not.
+    """Addresses of kernels that `cut_path` calls (compiling.outlined_calls), 0 for those not needed.
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
@@ -194,7 +194,7 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int, update: Any) -> bo
     """Update the flagged domains around the new blocks in rows `first` to `n`. False if memory ran out.
 
     Every domain beside a block follows a contact of it that is not virtual, as the crack's two are not. An
-    update may hang virtual ones on other blocks: none of them is held on to.
+    update may move virtual ones to other blocks, so none of them is stored.
     """
     broken = h.ci[g.NBROKE]
     for k in range(first, n):
@@ -207,7 +207,7 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int, update: Any) -> bo
                 if getr(h, idm, g.KUMAX) > h.cr[g.ETOL] and not call_entry(update, h, idm):
                     return False
                 if h.ci[g.NBROKE] != broken:
-                    return call_entry(update, h, int64(0))  # the contact at hand may be gone
+                    return call_entry(update, h, int64(0))  # the present contact may not exist any more
             item = nextcp(h, ib, item)
     return True
 
@@ -229,8 +229,8 @@ def cut_path(
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so `where` and `which` do as they did for `path`. passes: see cutting.
-    Returns the status and the new number of boxes.
+    so the rows of `where` and `which` for `path` suffice. passes: see cutting. Returns the status and the new
+    number of boxes.
     """
     first = n
     rounding_length = h.cr[g.DTOL]

@@ -1,8 +1,8 @@
-"""Boundary conditions of a block that SPLIT cuts: how its two parts share them.
+"""Distribution of the boundary conditions of a block that SPLIT cuts to its two parts.
 
-What acts at a centroid goes to both parts: velocities as they are, loads by area. A load on an edge is two
+Conditions at a centroid go to both parts: velocities unchanged, loads by area. A load on an edge is two
 conditions, one at each end, next to each other in the list, the end of the edge first. Those of an edge that
-is cut become four: its traction, linear from end to end, is given to the two edges that it is now.
+is cut become four: its traction, linear from end to end, is distributed to the two new edges.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def share_bounds(h: Memory, ib: int, jb: int) -> None:
             ju = following
             following = iget(h, ju, g.KU)
             _share_edge(h, iu, ju)
-        elif iget(h, iu, g.KUB) == ib:  # BOUNDARY ... FREE has taken the other end's away
+        elif iget(h, iu, g.KUB) == ib:  # BOUNDARY ... FREE has removed that of the other end
             puti(h, iu, g.KUB, iget(h, iget(h, iu, g.KUP), g.KNB))
             puti(h, iu, g.KUQ, 0)
         iu = following
@@ -60,7 +60,7 @@ def _copy_after(h: Memory, iu: int) -> int:
 
 @kernel
 def _share_block(h: Memory, iu: int, jb: int) -> None:
-    """Condition `iu` on a block becomes one on each of the two parts."""
+    """Replace condition `iu` on a block by one on each of the two parts."""
     area, other = geo(h, iget(h, iu, g.KUB))[0], geo(h, jb)[0]
     ju = _copy_after(h, iu)
     puti(h, ju, g.KUB, jb)
@@ -78,7 +78,7 @@ def _are_ends(h: Memory, iu: int, ju: int) -> bool:
 
 @kernel
 def _put_on_edge(h: Memory, iu: int, ip: int, iq: int) -> None:
-    """Let condition `iu` act at corner `ip`, for the edge whose other end is corner `iq`."""
+    """Move condition `iu` to corner `ip`, for the edge whose other end is corner `iq`."""
     puti(h, iu, g.KUB, iget(h, ip, g.KNB))
     puti(h, iu, g.KUP, ip)
     puti(h, iu, g.KUQ, iq)
@@ -93,7 +93,7 @@ def _length(h: Memory, ip: int, iq: int) -> float:
 
 @kernel
 def _share_edge(h: Memory, iu: int, ju: int) -> None:
-    """Give the load of an edge, `iu` at its end and `ju` at its start, to what the edge has become.
+    """Distribute the load of an edge, `iu` at its end and `ju` at its start, to its parts.
 
     A corner that the cut goes through has a twin in the same place, and either may be an end of the edge now.
     """

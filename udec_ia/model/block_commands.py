@@ -1,0 +1,140 @@
+"""Methods of Model that take several operations: CHANGE, GENERATE, DAMPING, and why a range has no block."""
+
+from __future__ import annotations
+
+from udec_ia.advice.input_warnings import check_new_material, check_spin, describe_inertia
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr
+from udec_ia.kernels.drive.damping_modes import MODES
+from udec_ia.layout.offsets import DTOL, KTD
+from udec_ia.model.method_forms import takes_keywords
+from udec_ia.model.model_session import Session
+from udec_ia.ops.commands.boundary_conditions import number_of_conditions
+from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
+from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate_automatically
+from udec_ia.ops.commands.generate_zones import generate as generate_manually
+from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
+from udec_ia.ops.commands.split_blocks import why_uncut
+from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
+from udec_ia.ops.common.number_limits import real, rows, whole
+from udec_ia.printable import counted
+
+
+def change(
+    session: Session,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
+    type: str | None = None,
+    material: int | None = None,
+    constitutive: int | None = None,
+) -> int:
+    """CHANGE: attributes of the blocks in the range. Returns their number."""
+    session.ensure_ready()
+    conditions = number_of_conditions(session.array.h)
+    kind = None if type is None else str(type).lower()
+    changed = change_blocks(session.array, (x1, x2, y1, y2), kind, material, constitutive)
+    if changed and material is not None:
+        session.remark(check_new_material(session.array, changed, material))
+    _warn_of_lost_conditions(session, conditions)
+    return changed
+
+
+def generate(
+    session: Session,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
+    mode: str,
+    gridpoints: list[tuple[float, float]] | None = None,
+    zones: list[tuple[int, int, int]] | None = None,
+    edge: float | None = None,
+    mixed: bool = False,
+) -> int:
+    """GENERATE: divide the first block in the range into zones. Returns its address.
+
+    mode: "manual", with `gridpoints` and `zones`, or "automatic", with `edge` (m). mixed: zones 1 and 2,
+    3 and 4 ... are pairs for mixed discretisation.
+    """
+    session.ensure_ready(shapes=True)
+    session.forget_boxes()
+    array = session.array
+    points = [(x, y) for x, y in rows(2, gridpoints=gridpoints)]
+    triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
+    conditions = number_of_conditions(array.h)
+    ib = block_to_zone(array, (x1, x2, y1, y2))
+    spin = float(getr(array.h, ib, KTD))
+    if mode.lower() == "manual":
+        if not points or not triples:
+            raise UdecError(26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ...")
+        if edge is not None:
+            raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
+        for remark in generate_manually(array, ib, points, triples, NEAR * float(array.h.cr[DTOL]), mixed):
+            session.tell(remark)
+    elif mode.lower() == "automatic":
+        if points or triples:
+            blamed = "gridpoints" if points else "zones"
+            raise UdecError(10, f"{blamed.upper()} are for MANUAL zones", parameter=blamed)
+        if edge is None:
+            advice = "AUTOMATIC EDGE d makes zones with sides of about d"
+            raise UdecError(7, "EDGE d", advice, parameter="mode")
+        session.inform(generate_automatically(array, ib, real(edge=edge), mixed))
+    else:
+        raise UdecError(22, mode, "take manual or automatic", parameter="mode")
+    _warn_of_lost_conditions(session, conditions)
+    session.remark(describe_inertia(array, ib), session.inform)
+    session.remark(check_spin(array, ib, spin))
+    return ib
+
+
+def _warn_of_lost_conditions(session: Session, before: int) -> None:
+    """Warn if there are fewer than `before` boundary conditions now."""
+    lost = before - number_of_conditions(session.array.h)
+    if lost > 0:
+        subject = "they" if lost > 1 else "it"
+        session.tell(
+            f"{counted(lost, 'boundary condition')} went with what {subject} acted on: "
+            "give them again with BOUNDARY"
+        )
+
+
+def why_none(session: Session, command: str, a: float, b: float, c: float, d: float) -> str:
+    """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
+    session.ensure_ready(shapes=command == "split")
+    if command == "split":
+        return why_uncut(session.array, session.split_boxes, a, b, c, d)
+    if command != "boundary":
+        return why_no_block(session.array, (a, b, c, d))
+    some = number_of_conditions(session.array.h)
+    there = "PRINT BOUNDARIES shows where they are" if some else "there are none"
+    return limits_turned((a, b, c, d)) or there
+
+
+@takes_keywords(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
+def damping(
+    session: Session,
+    /,
+    fcrit: float | None = None,
+    freq: float | None = None,
+    only: str | None = None,
+    **modes: float | None,
+) -> None:
+    """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
+
+    Or one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f
+    (kernels.drive.damping_modes).
+    """
+    session.ensure_ready(sound=False)
+    asked = {one: modes.get(one.argument) for one in MODES}
+    given = {one: f for one, f in asked.items() if f is not None and f is not False}
+    if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
+        advice = "fcrit and freq, or one of " + ", ".join(one.name for one in MODES)
+        raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
+    for mode, f in given.items():
+        set_damping_mode(session.array, mode, float(f))
+    if not given:
+        if fcrit is None or freq is None:
+            raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
+        set_damping(session.array, fcrit, freq, only.lower() if only else None)
