@@ -43,7 +43,7 @@ def test_a_run_goes_on_with_it(tmp_path: Path, at: int) -> None:
     model, said = debugged(tmp_path, f"goto {at}", f"patch {CHANGE}", "continue", "quit")
     assert "the deck has ended" in said
     assert same(model, plain)
-    assert model.session.deck_log[:-1] == plain.session.deck_log
+    assert model.session.log.lines[:-1] == plain.session.log.lines
     again, _ = debugged(
         tmp_path,
         *[f"goto {at}", "patch GRAVY = -1", "step 5", "reverse-step 6", "resume", f"patch {CHANGE}"],
@@ -104,6 +104,6 @@ def test_after_the_first_command_within_a_solve_and_after_the_last(tmp_path: Pat
     )
     assert "the deck has not begun" in said
     assert re.findall(r"^GRAVX = (\S+)", said, re.M)[-1] == "1.0"
-    log = [line.split()[0] for line in model.session.deck_log]
+    log = [line.split()[0] for line in model.session.log.lines]
     assert log.count("PATCH") == 3
     assert log[log.index("SOLVE") - 2 : log.index("SOLVE") + 1] == ["CYCLE", "PATCH", "SOLVE"]

@@ -61,4 +61,4 @@ def test_a_wrong_deck_ends_in_its_error(deck: Path, tmp_path: Path, monkeypatch:
     else:
         assert error.saved is not None
         damaged = error.number == DAMAGED
-        assert Model.restore(error.saved, force=damaged).session.deck_log == model.session.deck_log
+        assert Model.restore(error.saved, force=damaged).session.log.lines == model.session.log.lines

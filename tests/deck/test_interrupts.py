@@ -198,9 +198,9 @@ def test_ctrl_c_in_a_short_command_ends_the_run_after_it(
     with pytest.raises(KeyboardInterrupt, match=r"rescue\.h5") as caught:
         run_deck(m, f"{line}\nCYCLE 10\n", io.StringIO())
     monkeypatch.undo()
-    assert m.session.deck_log[-1] == line
+    assert m.session.log.lines[-1] == line
     other = Model.restore(str(caught.value))
-    assert other.session.deck_log == m.session.deck_log
+    assert other.session.log.lines == m.session.log.lines
     assert state(other)["words"] == state(m)["words"]
     assert m.array.h.ci[MCTOT] == 0
 

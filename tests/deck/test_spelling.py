@@ -95,6 +95,7 @@ def test_all_commands_are_said_but_those_on_files_and_the_session() -> None:
         "restart",
         "stop",
         "end",
+        "help",
         "default",
     }
     assert spell(Model.balance, (), {}) == []
@@ -181,7 +182,7 @@ def test_what_was_given_may_be_changed_afterwards() -> None:
     m.property(1, density=1, bulk=1, g=1)
     for _ in range(3):
         m.cycle(n=2)
-    lines = m.session.deck_log
+    lines = m.session.log.lines
     assert lines[3:] == [
         "GENERATE 0 1 0 4 MANUAL GRIDPOINTS 0,0 0,4 1,4 1,0 ZONES 1,2,3 1,3,4",
         "PROPERTY MATERIAL 1 BULK 1 DENSITY 1 G 1",
@@ -189,4 +190,4 @@ def test_what_was_given_may_be_changed_afterwards() -> None:
     ]
     m.gravity(0, 0)
     m.cycle(0)
-    assert m.session.deck_log == [*lines, "GRAVITY 0 0", "CYCLE 0"]
+    assert m.session.log.lines == [*lines, "GRAVITY 0 0", "CYCLE 0"]

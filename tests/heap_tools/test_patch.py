@@ -182,7 +182,7 @@ def test_a_model_and_its_deck(tmp_path: Path) -> None:
     assert m.h.ci[g.LREADY] == 1
     m.patch(f"block@{block}.KXD = 0.25,\n FRAC = 0.05")
     assert m.h.ci[g.LREADY] == 0
-    assert m.session.deck_log[-1] == f"PATCH block@{block}.KXD = 0.25, FRAC = 0.05"
+    assert m.session.log.lines[-1] == f"PATCH block@{block}.KXD = 0.25, FRAC = 0.05"
     before, deck = image(m.array), m.deck()
     for wrong in (f"block@{block}.KMAT = 99", "FRAC = 0.2, FRAK = 1"):
         with pytest.raises(UdecError):
@@ -235,7 +235,7 @@ def test_in_a_deck(tmp_path: Path) -> None:
     block = address(m.array, "block", 3)
     m.run(f"PATCH block@{block}.KXD = 0.25, {block + g.KMAT[1]} = 2 ; to the right\n")
     assert m.table("block")[["KXD", "KMAT"]][3].tolist() == (0.25, 2)
-    assert m.session.deck_log[-1].startswith("PATCH block@")
+    assert m.session.log.lines[-1].startswith("PATCH block@")
     for line, number, column in (("PATCH", 7, 6), ("PATCH FRAK = 2", 10, 7), ("PATCH NBLK = 3", 28, 7)):
         with pytest.raises(UdecError) as caught:
             m.run(line)

@@ -33,9 +33,9 @@ def drive(model: Model, field: Any) -> None:
     for row in model.table("gridpoint"):
         ig = int(row["address"])
         u, v = field(float(row["KXG"]), float(row["KYG"]))
-        putr(model.h, ig, g.KXDG, u)
-        putr(model.h, ig, g.KYDG, v)
-        puti(model.h, ig, g.KGFIX, 3)
+        putr(model.array.h, ig, g.KXDG, u)
+        putr(model.array.h, ig, g.KYDG, v)
+        puti(model.array.h, ig, g.KGFIX, 3)
 
 
 @pytest.mark.parametrize("mixed", [False, True])
@@ -66,11 +66,11 @@ def test_patch_finds_its_rest() -> None:
     before = model.table("gridpoint")
     for row in before[before["KCOR"] > 0]:
         ig = int(row["address"])
-        putr(model.h, ig, g.KXDG, 1e-3 * float(row["KXG"]))
-        puti(model.h, ig, g.KGFIX, 3)
+        putr(model.array.h, ig, g.KXDG, 1e-3 * float(row["KXG"]))
+        puti(model.array.h, ig, g.KGFIX, 3)
     model.cycle(100)
     for row in before[before["KCOR"] > 0]:
-        putr(model.h, int(row["address"]), g.KXDG, 0.0)
+        putr(model.array.h, int(row["address"]), g.KXDG, 0.0)
     model.cycle(1500)
     zones = model.table("zone")
     np.testing.assert_allclose(zones["KZS11"], zones["KZS11"].mean(), rtol=1e-6)
@@ -80,7 +80,7 @@ def test_patch_finds_its_rest() -> None:
 def test_a_turn_by_360_degrees_strains_nothing() -> None:
     model = slab(rectangle(0, 2, 0, 1, 2, 2), 0.02)
     model.cycle(0)
-    h, dt, steps = model.h, float(model.h.cr[g.TDEL]), 360
+    h, dt, steps = model.array.h, float(model.h.cr[g.TDEL]), 360
     model.insitu(-1, 3, -1, 2, 3e5, -1e5, 1e5)
     c, s = math.cos(2 * math.pi / steps), math.sin(2 * math.pi / steps)
     drive(model, lambda x, y: (0.0, 0.0))

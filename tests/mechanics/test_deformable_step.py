@@ -202,8 +202,9 @@ def test_what_is_squashed_flat_sets_a_step_of_nothing() -> None:
     m.fraction(0.1, safe=True)
     m.cycle(1)
     point = int(m.table("gridpoint")["address"][0])
-    putr(m.h, point, g.KGPM, 0.0)
+    putr(m.array.h, point, g.KGPM, 0.0)
     assert bound(m.array) == Limit(0.0, point)
     assert "inf of the safe bound 0 s" in m.step_limits()
+    m.fraction(0.1, safe=True)  # the next step is found anew
     with pytest.raises(UdecError, match="error 28"):
         m.cycle(1)

@@ -215,8 +215,8 @@ def test_yielding_takes_what_plastic_shear_dissipates() -> None:
     rate, shear = 0.1, 0.02
     for row in m.table("gridpoint"):
         for k, v in ((g.KXDG, rate * (float(row["KYG"]) - 8)), (g.KYDG, 0.0)):
-            putr(m.h, int(row["address"]), k, v)
-        puti(m.h, int(row["address"]), g.KGFIX, 3)
+            putr(m.array.h, int(row["address"]), k, v)
+        puti(m.array.h, int(row["address"]), g.KGFIX, 3)
     m.cycle(int(shear / rate / m.h.cr[g.TDEL]))
     balance = m.balance()
     before = cohesion / SHEAR  # the shear at which it yields

@@ -93,10 +93,6 @@ import sys
 import numpy as np
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
-from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.word_scheme import scheme
-from udec_ia.kernels.body import laws as kernels
-from udec_ia.ops.commands import model_settings
 from udec_ia.kernels.constitutive import block_laws as kernels
 from udec_ia.ops.commands import model_settings
 from udec_ia.ops.laws.law_book import LawBook

@@ -58,7 +58,7 @@ def test_grid_points_stand_on_the_edges(outline: list[Any], mixed: bool, build: 
     sound(m)
     corners, points = outline_of(m, ib)
     zones, all_points = m.table("zone"), m.table("gridpoint")
-    assert said == [
+    assert said[:1] == [  # what follows is about the inertia of zones
         f"block@{ib} has {len(zones)} zones and {len(all_points)} grid-points, "
         f"the least angle is {said[0].split()[-2]} degrees"
     ]
@@ -97,9 +97,9 @@ def test_patch(outline: list[Any], mixed: bool) -> None:
     m.cycle(0)
     for row in m.table("gridpoint"):
         x, y, ig = float(row["KXG"]), float(row["KYG"]), int(row["address"])
-        putr(m.h, ig, g.KXDG, 1e-4 * x + 3e-4 * y)
-        putr(m.h, ig, g.KYDG, -2e-4 * x + 4e-4 * y)
-        puti(m.h, ig, g.KGFIX, 3)
+        putr(m.array.h, ig, g.KXDG, 1e-4 * x + 3e-4 * y)
+        putr(m.array.h, ig, g.KYDG, -2e-4 * x + 4e-4 * y)
+        puti(m.array.h, ig, g.KGFIX, 3)
     m.cycle(1)
     dt = float(m.h.cr[g.TDEL])
     one, two = K + 4 * G / 3, K - 2 * G / 3

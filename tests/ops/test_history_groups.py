@@ -90,6 +90,7 @@ def test_save_and_restart_go_on_recording(tmp_path: Path) -> None:
     whole.cycle(50)
     whole.cycle(60)
     first.cycle(50)
+    (tmp_path / "there").mkdir()
     saved = first.save((tmp_path / "there" / "half.h5").absolute())
     second = Model.restore(saved)
     second.out, second.name = tmp_path / "second", "other"

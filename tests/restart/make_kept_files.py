@@ -65,7 +65,7 @@ def make(build: str, folder: Path) -> Path | None:
     with tempfile.TemporaryDirectory() as name:
         model = Model(build, out=name)
         model.run(DECK)
-        path = save(model.array, Path(name, "run.h5"), model.session.deck_log, LAWS, model.histories())
+        path = save(model.array, Path(name, "run.h5"), model.session.log.lines, LAWS, model.histories())
         target.write_bytes(gzip.compress(path.read_bytes(), 9, mtime=0))
     return target
 

@@ -166,8 +166,15 @@ def test_a_folder_that_is_made_is_told(tmp_path: Path) -> None:
     m.save()
     m.save(tmp_path / "one.h5")
     assert said == []
-    m.save(tmp_path / "a" / "b" / "one.h5")
-    assert said == [f"the folder {tmp_path / 'a' / 'b'} did not exist and was created"]
+    made = tmp_path / "out" / "a" / "b"
+    m.save(made / "one.h5")
+    assert said == [f"the folder {made} did not exist and was created"]
+
+
+def test_no_folder_is_made_outside_that_for_files(tmp_path: Path) -> None:
+    path = tmp_path / "a" / "one.h5"
+    assert "outside the folder for files" in refused(lambda: small(tmp_path / "out").save(path))
+    assert not path.parent.exists()
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:

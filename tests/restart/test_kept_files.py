@@ -93,7 +93,7 @@ def test_a_kept_file_is_read_and_goes_on(name: str, tmp_path: Path) -> None:
     assert [one.lost for one in series] == [False, True, False, False, False]
     assert tuple(float(series[k].numbers[-1, 2]) for k in (0, 2, 4)) == state.recorded
     assert [len(one.numbers) for one in series] == [11] * 5
-    assert m.session.deck_log[0] == "START"
+    assert m.session.log.lines[0] == "START"
     assert "20 cycles" in info(path)
     assert "law       cl2 of law.py" in info(path)
     m.cycle(10)

@@ -30,10 +30,10 @@ class ViewCase:
             kind: self.model.table(kind) for kind in ("block", "corner", "contact", "domain", "zone")
         }
         pages = Page()
-        pages.add(self.model.array, "before", self.model.session.deck_log)
+        pages.add(self.model.array, "before", self.model.session.log.lines)
         self.model.cycle(20)
         self.now = {kind: self.model.table(kind) for kind in self.before}
-        pages.add(self.model.array, "after", self.model.session.deck_log)
+        pages.add(self.model.array, "after", self.model.session.log.lines)
         self.damaged = self.damage()
         pages.add(self.damaged, f"damaged{HOSTILE}", [HOSTILE])
         self.path = pages.write(folder / "page.html")

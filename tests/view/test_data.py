@@ -87,7 +87,7 @@ def value(table: Any, state: Any, kind: str, address: int, field: Any, element: 
 def text_of(*models: Model) -> str:
     pages = Page()
     for k, model in enumerate(models):
-        pages.add(model.array, f"state {k}", model.session.deck_log)
+        pages.add(model.array, f"state {k}", model.session.log.lines)
     return pages.text()
 
 
@@ -215,7 +215,7 @@ def test_model_view(tmp_path: Path) -> None:
     target = m.view(tmp_path / "new" / "page.html")
     first = target.read_text()
     assert held(first)[1][0]["name"].endswith("cycle 0")
-    assert held(first)[1][0]["deck"] == m.session.deck_log
+    assert held(first)[1][0]["deck"] == m.session.log.lines
     m.view(target)  # over a view of ours
     assert target.read_text() == first
     target.write_text("<!doctype html>\n<title>mine</title>")
@@ -246,7 +246,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     text = Path(out).read_text()
     _, states = held(text)
     assert [state["name"] for state in states] == ["a.h5", "<b>&.h5"]
-    assert states[0]["deck"] == m.session.deck_log
+    assert states[0]["deck"] == m.session.log.lines
     assert main(["view", *files, "--out", out, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["said"] == [f"{out}: open it in a browser"]
     assert main(["view", *files, "--out", out, "--python"]) == 0

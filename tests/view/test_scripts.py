@@ -29,9 +29,8 @@ from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import domain_polygons
 from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, Atlas, called
 from udec_ia.reader.field_rows import NOT_ALLOWED, meaning
+from udec_ia.view.view_data import state, tables
 from udec_ia.view.view_page import LIMIT, script
-from udec_ia.view.view_states import state
-from udec_ia.view.view_tables import tables
 
 NODE = shutil.which("node") or ""
 FREE = ("numbers.js", "heap.js", "words.js", "changes.js", "find.js", "shapes.js", "rows.js")

@@ -329,7 +329,7 @@ def main() -> int:
             model.change(4, 5, 0, 1, type="rigid")  # as it has no zones, it could not be cycled
             model.cycle(3)
             laws = {"cl2": ("law.py", "0" * 64)}
-            save(model.array, sound / f"{build}.h5", model.session.deck_log, laws, model.histories())
+            save(model.array, sound / f"{build}.h5", model.session.log.lines, laws, model.histories())
         arguments = ["--seed", str(options.seed), "--sound", name]
         arguments += ["--only", *options.only] if options.only else []
         case, last = options.first, options.first + options.files

@@ -52,7 +52,9 @@ def base(folder: Path) -> bytes:
     )
     model.cycle(3)
     laws = {"cl2": ("law.py", "0" * 64)}
-    return save(model.array, folder / "base.h5", model.session.deck_log, laws, model.histories()).read_bytes()
+    return save(
+        model.array, folder / "base.h5", model.session.log.lines, laws, model.histories()
+    ).read_bytes()
 
 
 def hostile(rng: Rng, image: bytes, secret: Path) -> tuple[str, bytes, bool]:

@@ -106,8 +106,10 @@ class Tame(Model):
     def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
         return super().save(None, force=force)
 
-    def restart(self, path: str | Path | None = None, *, force: bool = False) -> None:
-        super().restart(None, force=force)
+    def restart(
+        self, path: str | Path | None = None, *, force: bool = False, unchecked: bool = False
+    ) -> None:
+        super().restart(None, force=force, unchecked=unchecked)
         self.damaged |= force
 
     def rset(self, v: float, ia: int, ioff: int) -> None:

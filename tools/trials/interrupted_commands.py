@@ -51,7 +51,7 @@ def state(model: Model) -> dict[str, Any]:
         "reals": h.cr.tobytes(),
         "doubles": h.cd.tobytes(),
         "size": (len(h.ia), model.array.scheme.name, model.array.fixed),
-        "deck": tuple(model.session.deck_log),
+        "deck": tuple(model.session.log.lines),
         "series": tuple((str(one), one.lost, one.numbers.tobytes()) for one in model.session.recorder.series),
         "solutions": tuple(model.session.recorder.solutions),
         "files": tuple(model.session.files),

@@ -10,22 +10,20 @@ from typing import Any
 
 from udec_ia.command_line import (
     change_commands,
-    check_command,
     debug_command,
-    diff_command,
     diverge_command,
-    info_command,
     look_commands,
+    report_commands,
     sweep_command,
     trade_command,
     verify_command,
     view_command,
 )
 
-READ_ONLY = (check_command, look_commands, diff_command, change_commands)  # commands that run nothing
 PARTS = (
-    info_command,
-    *READ_ONLY,
+    report_commands,
+    look_commands,
+    change_commands,
     debug_command,
     diverge_command,
     sweep_command,
@@ -34,7 +32,6 @@ PARTS = (
     verify_command,
 )
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
-LOOKS = tuple(verb for part in READ_ONLY for verb in part.VERBS)
 
 
 def add_commands(commands: Any) -> None:

@@ -154,7 +154,7 @@ def _keep(args: argparse.Namespace, runs: list[SteppedRun], found: Divergence) -
     """Write both states; into the current folder, as `udec run` does."""
     paths = args.keep or [Path(f"{args.file.stem}-{which}.h5") for which in ("first", "second")]
     for path, run, state in zip(paths, runs, found.states, strict=True):
-        run.model.session.return_to(state.array(), run.model.session.deck_log)
+        run.model.session.return_to(state.array(), run.model.session.log.lines)
         run.model.save(path.absolute(), force=True)
     return [Path(path) for path in paths]
 

@@ -85,7 +85,7 @@ class CycleTrace:
             given = soft(seen), bound.blocks, bound.joints
             for _ in range(MEMORY_LIMIT):
                 memory = seen.h
-                done = run_unwatched(observe(memory, self._tell), 1, given)
+                done = run_unwatched(observe(memory, self._record), 1, given)
                 raise_error(seen, bound.book)
                 if seen.h is not memory:
                     self.state.h.ci[g.NWANT] = len(seen.h.ia) - int(self.state.h.ci[g.MFREE])
@@ -96,25 +96,25 @@ class CycleTrace:
 
     # ---- recording
 
-    def _tell(self, part: str, describe_event: Any, value: Any, written: bool) -> None:
+    def _record(self, part: str, at: Any, value: Any, written: bool) -> None:
         frame = sys._getframe(2)
         while frame.f_globals["__name__"].startswith(UNDER):
             assert frame.f_back is not None
             frame = frame.f_back
         self._place(frame)
         words = getattr(self.state.h, part)
-        before = words[describe_event]
-        if isinstance(describe_event, slice | np.ndarray):
-            indices = np.arange(len(words))[describe_event]
+        before = words[at]
+        if isinstance(at, slice | np.ndarray):
+            indices = np.arange(len(words))[at]
             values = np.broadcast_to(value, indices.shape)
             for index, old, new in zip(indices.tolist(), before.tolist(), values.tolist(), strict=True):
-                self._note(written, part, index, old, new, frame)
+                self._add(written, part, index, old, new, frame)
         else:
-            self._note(written, part, int(describe_event), before, value, frame)
+            self._add(written, part, int(at), before, value, frame)
         if written:
-            words[describe_event] = value
+            words[at] = value
 
-    def _note(self, written: bool, part: str, index: int, before: Any, after: Any, frame: FrameType) -> None:
+    def _add(self, written: bool, part: str, index: int, before: Any, after: Any, frame: FrameType) -> None:
         kind = getattr(self.state.h, part).dtype.type
         self.accesses.append(
             Access(written, part, index, kind(before), kind(after), self._work, frame.f_code, frame.f_lineno)
@@ -136,7 +136,7 @@ class CycleTrace:
         of, routine = (one.f_code.co_name if one else ROOT for one in (now, work))
         self._work = RoutineCall(self._work.number + 1, of, routine, _group(work))
 
-    # ---- standing between two writes
+    # ---- the state between two writes
 
     def go(self, done: int) -> None:
         """Have the state after `done` writes."""

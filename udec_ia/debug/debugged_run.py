@@ -75,7 +75,7 @@ class Debugger:
         observers, self.model.session.observers = self.model.session.observers, [_CycleWatcher(self)]
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
-        self._before = list(self.model.session.deck_log)
+        self._before = list(self.model.session.log.lines)
         number = 0
         try:
             while True:
@@ -228,7 +228,7 @@ class Debugger:
         return self.trace is not None or self.event < self.timeline.now
 
     def show(self, event: int) -> None:
-        """Look at the state after `event`, which was. Raises Gone."""
+        """Look at the state after `event`, which was. Raises UnreachableEvent."""
         if event != self.timeline.now:
             self._array = event, self.timeline.at(event)
         self.event, self.trace = event, None
@@ -293,7 +293,7 @@ class Debugger:
             condition.begin(self.model.array)
 
     def back(self, events: int) -> None:
-        """Look at what was `events` before. Raises Gone."""
+        """Look at what was `events` before. Raises UnreachableEvent."""
         self.show(max(self.event - events, self.timeline.earliest))
 
     def back_to(self, conditions: Sequence[StopCondition]) -> str:

@@ -7,6 +7,7 @@ happened since the state before.
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import eq, ge, gt, le, lt
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -20,13 +21,7 @@ from udec_ia.reader.list_walks import Unsound
 from udec_ia.reader.places import Place
 
 GROUPS_MADE = [g.MFREE, g.JUNK, g.NBLK, g.NDOM, g.NMADE, g.NBROKE]  # one changes when a group comes or goes
-COMPARED: dict[str, Callable[[Any, Any], bool]] = {
-    ">": lambda value, limit: bool(value > limit),
-    "<": lambda value, limit: bool(value < limit),
-    ">=": lambda value, limit: bool(value >= limit),
-    "<=": lambda value, limit: bool(value <= limit),
-    "==": lambda value, limit: bool(value == limit),
-}
+COMPARED: dict[str, Callable[[Any, Any], Any]] = {">": gt, "<": lt, ">=": ge, "<=": le, "==": eq}
 
 
 class StopCondition(Protocol):
@@ -65,7 +60,7 @@ class WordChange:
         return f"{self.place.name}: {format_number(before)} -> {format_number(now)}{unit}"
 
     def _true(self, value: Any) -> bool:
-        return value is not None and COMPARED[self.sign](value, self.limit)
+        return value is not None and bool(COMPARED[self.sign](value, self.limit))
 
 
 def format_number(value: Any) -> str:

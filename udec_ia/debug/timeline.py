@@ -185,7 +185,7 @@ class Timeline:
         return min(self.copies)
 
     def at(self, event: int) -> MainArray:
-        """The state at `event`, in an array of its own. Raises Gone."""
+        """The state at `event`, in an array of its own. Raises UnreachableEvent."""
         base = max((one for one in self.copies if one <= event), default=-1)
         if base == event:
             return self.copies[event].array()
@@ -226,7 +226,7 @@ class Timeline:
         return span, span.cycle + (max(event - span.first - 1, 0) if span.runs else 0)
 
     def event_of(self, cycle: int) -> int:
-        """The first event at which so many cycles were completed. Raises Gone."""
+        """The first event at which so many cycles were completed. Raises UnreachableEvent."""
         for span in self.spans:
             if span.runs and span.cycle <= cycle <= span.cycle + span.done:
                 return span.first + 1 + cycle - span.cycle

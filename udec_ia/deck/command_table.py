@@ -134,7 +134,7 @@ COMMANDS = (
         ours=", ".join(one.name for one in MODES),
     ),
     Command(
-        "DEFAult",
+        "DEFault",
         SESSION,
         "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
         "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
@@ -246,7 +246,7 @@ COMMANDS = (
     ),
     Command(
         "HElp",
-        SHOWS,
+        SESSION,
         "Explain a command, or list them all.",
         "HELP PROPERTY",
         text="command",

@@ -37,7 +37,7 @@ Values = Mapping[str, Value]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
-FORM = "the form is: DEFAult name value ..., as in DEFAULT F=0.5"
+FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
 IS_NAME = "a name is a letter, then letters, digits and _"
 IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
 

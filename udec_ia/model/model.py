@@ -126,7 +126,7 @@ class Model:
         What was given as `constitutive` is given with it again; words that were written through `h` cannot be
         expressed in it. The deck of a model from a restart file begins as that of the model that was saved.
         """
-        return "".join(line + "\n" for line in self.session.deck_log)
+        return "".join(line + "\n" for line in self.session.log.lines)
 
     # ---- start and end, saved states
 
@@ -446,7 +446,7 @@ class Model:
         from udec_ia.view import Page
 
         page = Page()
-        page.add(self.array, f"{self.name}, cycle {self.array.h.ci[MCTOT]}", self.session.deck_log)
+        page.add(self.array, f"{self.name}, cycle {self.array.h.ci[MCTOT]}", self.session.log.lines)
         return page.write(path)
 
     # ---- decks

@@ -63,7 +63,7 @@ def solve(
 
 def _log_cycles(session: Session, n: int) -> None:
     """Log the `n` cycles of a run that has ended early."""
-    session.log_part(cycle, (n,), {})
+    session.log.add(cycle, (n,), {})
 
 
 def _solve_statically(session: Session, ratio: float, limit: int, criterion: str) -> Solution:
@@ -74,7 +74,7 @@ def _solve_statically(session: Session, ratio: float, limit: int, criterion: str
     try:
         with statically(session.array):
             return _run_to_rest(
-                session, ratio, limit, criterion, lambda done: session.log_part(solve, (ratio, done), named)
+                session, ratio, limit, criterion, lambda done: session.log.add(solve, (ratio, done), named)
             )
     finally:
         if undo.before is not begun:  # cycles are to stay, and with them what stood before

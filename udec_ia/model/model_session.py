@@ -208,6 +208,7 @@ class Session:
         """
         if not self.started:
             self.start()
+            self.log_lines(["START"])
         if self.writes.pending:  # by the function that runs as one command; it stays if that is taken back
             self.note_writes()
         if (sound and self.written) or (shapes and self.unproved):
@@ -243,18 +244,9 @@ class Session:
         if self.logs_calls:
             self.log.add(method, args, named)
 
-    def log_part(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """Log the completed part of a run that has ended early, which no line of a deck says."""
-        self.log.add(method, args, named)
-
     def log_lines(self, lines: Sequence[str | Step]) -> None:
         """Log the lines of a deck."""
         self.log.add_lines(lines)
-
-    @property
-    def deck_log(self) -> list[str]:
-        """The lines of a deck that say what was done."""
-        return self.log.lines
 
     # ---- warnings and information
 

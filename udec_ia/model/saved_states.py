@@ -36,7 +36,7 @@ def save(session: Session, path: str | Path | None = None, *, force: bool = Fals
         advice = "create it first, or give a name within the folder for files (--out)"
         raise UdecError(31, f"{folder} does not exist, and is outside the folder for files", advice)
     recorded = session.recorder.series
-    written = write(session.array, target, session.deck_log, session.laws.record(), recorded, broken)
+    written = write(session.array, target, session.log.lines, session.laws.record(), recorded, broken)
     session.add_files([written])
     if makes:
         session.inform(f"the folder {printable(str(folder))} did not exist and was created")

@@ -21,6 +21,7 @@ any place: there the words are copied between the pieces of a run, too.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import wraps
 from time import perf_counter
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
@@ -47,29 +48,64 @@ REPEATED = 100.0  # a copy is made anew when the commands since then have taken 
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
 
 
-def changes_array(method: Method[P, R]) -> Method[P, R]:
-    """A method of Model that may change any word of IA()."""
-    return _undoable(_with_new_step(method, words=True), words=True)
+@dataclass(frozen=True)
+class Undoable:
+    """Decorator of a method of Model, which is then obeyed as a whole or not at all, and logged.
+
+    words: it may change words of IA(). new_step: the next CYCLE finds masses and time-step anew; with
+    `words`, blocks may change, too, and what was made of them for the last CYCLE is given back. recorded:
+    undoing a later command has to repeat it; repeatable: that gives the same state.
+    """
+
+    words: bool = False
+    new_step: bool = False
+    recorded: bool = True
+    repeatable: bool = True
+
+    def __call__(self, method: Method[P, R]) -> Method[P, R]:
+        """The method that is obeyed as a whole."""
+
+        @wraps(method)
+        def work(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+            if self.new_step:
+                self._forget_step(model.session)
+            return method(model, *args, **named)
+
+        @wraps(method)
+        def obeyed(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+            session = model.session
+
+            def obey() -> R:
+                if self.recorded:
+                    session.undo.add_step(Step(work, args, named) if self.repeatable else None)
+                if self.words:
+                    session.undo.save_words(session.array)
+                result = work(model, *args, **named)
+                session.log_call(work, args, named)
+                return result
+
+            done: R = session.undo.run_whole(model, obey)
+            return done
+
+        return obeyed
+
+    def _forget_step(self, session: Any) -> None:
+        """Let the next CYCLE find masses and time-step anew.
+
+        In a heap that is unsound the list of relaxations may lead anywhere: it stays, and the method refuses
+        to follow lists, or mends some word.
+        """
+        h = session.array.h
+        h.ci[g.LREADY] = 0
+        if self.words and h.ci[g.IRXPNT] and session.is_sound():
+            lose_relaxations(session.array.h)
 
 
-def not_repeatable(method: Method[P, R]) -> Method[P, R]:
-    """The same, but the method depends on objects in Python: repeating it could give another state."""
-    return _undoable(method, words=True, repeatable=False)
-
-
-def changes_common(method: Method[P, R]) -> Method[P, R]:
-    """A method of Model that changes numbers of the common block only."""
-    return _undoable(_with_new_step(method))
-
-
-def keeps_step(method: Method[P, R]) -> Method[P, R]:
-    """The same, of numbers that do not affect the time-step."""
-    return _undoable(method)
-
-
-def outside_array(method: Method[P, R]) -> Method[P, R]:
-    """A method of Model that changes objects in Python only, or replaces the whole array."""
-    return _undoable(method, recorded=False)
+changes_array = Undoable(words=True, new_step=True)  # any word may change
+not_repeatable = Undoable(words=True, repeatable=False)  # depends on objects in Python
+changes_common = Undoable(new_step=True)  # numbers of the common block only
+keeps_step = Undoable()  # the same, of numbers that do not affect the time-step
+outside_array = Undoable(recorded=False)  # objects in Python only, or the whole array is replaced
 
 
 def shows(method: Method[P, R]) -> Method[P, R]:
@@ -83,52 +119,7 @@ def shows(method: Method[P, R]) -> Method[P, R]:
     return outside_array(shown)
 
 
-def _with_new_step(method: Method[P, R], words: bool = False) -> Method[P, R]:
-    """The next CYCLE finds masses and time-step anew; so it does after the method was repeated.
-
-    words: blocks may change, and what was made of them for the last CYCLE is given back. In a heap that is
-    unsound its list may lead anywhere: it stays, and the method refuses to follow lists, or mends some word.
-    """
-
-    @wraps(method)
-    def unsettles(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
-        h = model.array.h
-        h.ci[g.LREADY] = 0
-        if words and h.ci[g.IRXPNT] and model.session.is_sound():
-            lose_relaxations(model.array.h)
-        return method(model, *args, **named)
-
-    return unsettles
-
-
-def _undoable(
-    method: Method[P, R], words: bool = False, recorded: bool = True, repeatable: bool = True
-) -> Method[P, R]:
-    """`method`, obeyed as a whole or not at all, and logged.
-
-    words: it may change words of IA(). recorded: undoing a later command has to repeat it; repeatable: can.
-    """
-
-    @wraps(method)
-    def obeyed(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
-        session = model.session
-
-        def obey() -> R:
-            if recorded:
-                session.undo.add_step(Step(method, args, named) if repeatable else None)
-            if words:
-                session.undo.save_words(session.array)
-            result = method(model, *args, **named)
-            session.log_call(method, args, named)
-            return result
-
-        done: R = session.undo.run_whole(model, obey)
-        return done
-
-    return obeyed
-
-
-class Undoable(Protocol):
+class UndoSession(Protocol):
     """What undo needs of a session."""
 
     array: MainArray
@@ -152,7 +143,7 @@ class Before:
     A list of the session is put in place of another, or grows at its end: its length says how it was.
     """
 
-    def __init__(self, session: Undoable) -> None:
+    def __init__(self, session: UndoSession) -> None:
         self.array: MainArray = session.array
         self.h: Memory = session.array.h
         self.numbers = [part.copy() for part in common(self.h)]
@@ -161,7 +152,7 @@ class Before:
             (value, len(value)) for _, held in self.parts for value in held.values() if type(value) is list
         ]
 
-    def put_back(self, session: Undoable) -> None:
+    def put_back(self, session: UndoSession) -> None:
         """Make the session as it was."""
         for one, held in self.parts:
             vars(one).clear()
@@ -249,7 +240,7 @@ class Undo:
                 self._copy(array)
             self.covered = True
 
-    def confirm_piece(self, session: Undoable) -> None:
+    def confirm_piece(self, session: UndoSession) -> None:
         """What was done until now stays: between two cycles."""
         self.before = None
         if mode.python or CHECKED:
@@ -258,7 +249,7 @@ class Undo:
         else:
             self.release()
 
-    def confirm_run(self, session: Undoable) -> None:
+    def confirm_run(self, session: UndoSession) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
         self.covered, self.settled, self.doing, self.before = False, False, [], Before(session)
@@ -267,7 +258,7 @@ class Undo:
         """Let go of the copy, and of its memory."""
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
 
-    def _begin(self, session: Undoable) -> None:
+    def _begin(self, session: UndoSession) -> None:
         if session.writes.pending:
             session.note_writes()
             session.writes.pending = False
@@ -275,7 +266,7 @@ class Undo:
         self.before = Before(session)
         self.busy = True
 
-    def _end(self, session: Undoable) -> None:
+    def _end(self, session: UndoSession) -> None:
         """Note what was done, or that the copy is of no use any more.
 
         What was done is to stay before it is noted: an end in between costs the copy and no more.

@@ -79,10 +79,15 @@ def paper(
     FigureCanvasAgg(figure)
     axes = figure.add_axes((left / size[0], bottom / size[1], width / size[0], height / size[1]))
     axes.set(xlim=box[:2], ylim=box[2:], xlabel="x (m)", ylabel="y (m)")
+    style_frame(axes)
+    return figure, axes
+
+
+def style_frame(axes: Axes) -> None:
+    """Thin lines and small numbers around a picture."""
     axes.tick_params(labelsize=8, colors=INK, width=0.6)
     for spine in axes.spines.values():
         spine.set(linewidth=0.6, color="#8a857c")
-    return figure, axes
 
 
 def title(axes: Axes, name: str, when: str = "") -> None:
@@ -313,8 +318,11 @@ def write(figure: Figure, base: Path) -> list[Path]:
 
 def write_as(figure: Figure, path: Path) -> None:
     """Write the file `path`, as the end of its name says. Error 31 if it cannot be done."""
+    from matplotlib import rc_context
+
     image, kind = io.BytesIO(), path.suffix[1:].lower()
-    figure.savefig(image, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else None)
+    with rc_context({"svg.hashsalt": "udec"}):  # the same picture is the same file
+        figure.savefig(image, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else None)
     put_in_place(path, image.getvalue(), force=False)
 
 

@@ -25,6 +25,7 @@ from udec_ia.output.block_drawing import (
     paper,
     picture_path,
     scale_for,
+    style_frame,
     title,
     write_as,
 )
@@ -52,11 +53,8 @@ def draw(array: MainArray, out: str | Path, name: str = "") -> Listing:
 
     ValueError for another kind of file, error 31 if it cannot be written.
     """
-    from matplotlib import rc_context
-
     path = picture_path(out)
-    with rc_context({"svg.hashsalt": "udec"}):
-        write_as(figure(array, name), path)
+    write_as(figure(array, name), path)
     return Listing([f"wrote {path}"])
 
 
@@ -161,9 +159,7 @@ def _heap(page: Axes, atlas: Atlas) -> None:
     rows = np.unique(np.linspace(0, lines - 1, min(lines, 9)).astype(int))
     page.set_yticks(rows, [str(int(row) * across * step + 1) for row in rows])
     page.set_xticks([])
-    page.tick_params(labelsize=8, colors=INK, width=0.6)
-    for spine in page.spines.values():
-        spine.set(linewidth=0.6, color="#8a857c")
+    style_frame(page)
     unit = "a cell is one word" if step == 1 else f"a cell is {step} words"
     page.set_title(f"IA(), {atlas.free - 1} words in use", loc="left", fontsize=10, color=INK)
     page.set_xlabel(unit, fontsize=8, color=INK)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.block_drawing import INK, drawable, write
+from udec_ia.output.block_drawing import INK, drawable, style_frame, write
 from udec_ia.running.history_series import Series
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ WIDTH = 7.0  # inches of a panel
 PANEL = 1.9  # inches in height
 MARGINS = (0.9, 0.25, 0.5, 0.45)  # left, right, bottom, top, in inches
 KEY_WIDTH = 2.3  # inches for the keys on the right
-SAID = 10  # curves of a panel that the key names
+KEY_CURVES = 10  # curves of a panel that the key names
 MARKED = 60  # numbers below which each is marked by a point
 COLOURS = ("#1f6f8b", "#c8553d", "#588b3c", "#7a5ba6", "#b8860b", "#3a4f7a", "#a23b72", "#5f6b6d")
 
@@ -34,15 +34,11 @@ def draw(series: Sequence[Series], name: str, base: Path) -> list[Path]:
 
     Error 31 if they cannot be written.
     """
-    from matplotlib import rc_context
-
-    with rc_context({"svg.hashsalt": "udec"}):
-        return write(figure(series, name), base)
+    return write(figure(series, name), base)
 
 
 def figure(series: Sequence[Series], name: str) -> Figure:
     """The picture: its panels in the order in which they were asked for."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     panels: dict[str, list[Series]] = {}
@@ -51,7 +47,6 @@ def figure(series: Sequence[Series], name: str) -> Figure:
     left, right, bottom, top = MARGINS
     size = (left + WIDTH + KEY_WIDTH + right, bottom + PANEL * len(panels) + top)
     picture = Figure(size, facecolor="white")
-    FigureCanvasAgg(picture)
     shared: Axes | None = None
     for place, curves in enumerate(panels.values()):
         low = bottom + PANEL * (len(panels) - 1 - place)
@@ -84,15 +79,13 @@ def _panel(axes: Axes, curves: list[Series]) -> None:
     axes.set_ylabel(label, fontsize=9, color=INK)
     axes.yaxis.get_offset_text().set(fontsize=8, color=INK)
     axes.grid(color="#e4e0d8", linewidth=0.6)
-    axes.tick_params(labelsize=8, colors=INK, width=0.6)
-    for spine in axes.spines.values():
-        spine.set(linewidth=0.6, color="#8a857c")
+    style_frame(axes)
     handles, labels = axes.get_legend_handles_labels()
-    if len(labels) > SAID:
-        labels[SAID - 1] += f" and {len(labels) - SAID} more"
+    if len(labels) > KEY_CURVES:
+        labels[KEY_CURVES - 1] += f" and {len(labels) - KEY_CURVES} more"
     axes.legend(
-        handles[:SAID],
-        labels[:SAID],
+        handles[:KEY_CURVES],
+        labels[:KEY_CURVES],
         loc="upper left",
         bbox_to_anchor=(1.01, 1.02),
         borderaxespad=0.0,

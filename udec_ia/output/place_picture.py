@@ -110,15 +110,12 @@ def draw(atlas: Atlas, place: int | str, out: str | Path) -> Listing:
     place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place,
     what lies nowhere or another kind of file, error 31 if it cannot be written.
     """
-    from matplotlib import rc_context
-
     path, span, found = picture_path(out), atlas.span(address_of(atlas, place)), what(atlas, place)
     o, _ = outlines_left(atlas)
     own = np.isin(o.address, homes(atlas, span))
     if not own.any():
         raise ValueError(f"{called(atlas, span)} lies in no block that can be drawn")
-    with rc_context({"svg.hashsalt": "udec"}):
-        write_as(_figure(atlas, span, o, own), path)
+    write_as(_figure(atlas, span, o, own), path)
     return found._replace(said=[*found.said, f"wrote {path}"])
 
 

@@ -193,7 +193,7 @@ class Frame:
         """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
         from matplotlib import rc_context
 
-        with rc_context({"svg.hashsalt": "udec", "hatch.linewidth": HATCH_WIDTH}):
+        with rc_context({"hatch.linewidth": HATCH_WIDTH}):
             paths = write(self.figure(), base)
         self.written = len(self.states)
         return paths

@@ -35,27 +35,22 @@ def draw(atlas: Atlas, place: int | str, out: str | Path, depth: int = 1) -> Lis
     Raises as `pointer_graph.neighbourhood` does, ValueError for another kind of file, error 31 if it
     cannot be written.
     """
-    from matplotlib import rc_context
-
     path, found = picture_path(out, (DOT,)), neighbourhood(atlas, place, depth)
     if path.suffix.lower() == DOT:
         put_in_place(path, dot(found).encode(), force=False)
     else:
-        with rc_context({"svg.hashsalt": "udec"}):
-            write_as(figure(found), path)
+        write_as(figure(found), path)
     return Listing([*said(found), f"wrote {path}"])
 
 
 def figure(found: Graph) -> Figure:
     """The picture of a graph."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     places = layout(found)
     width = max(x for x, _ in places.values()) + BOX[0] + 2 * EDGE
     height = max(y for _, y in places.values()) + BOX[1] + 3 * EDGE
     picture = Figure((width + STEP[0] - BOX[0], height), facecolor="white")
-    FigureCanvasAgg(picture)
     axes = picture.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(-EDGE, picture.get_figwidth() - EDGE), ylim=(height - 2 * EDGE, -EDGE))
     axes.axis("off")

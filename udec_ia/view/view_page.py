@@ -20,8 +20,7 @@ from udec_ia.files import put_in_place
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MFREE
 from udec_ia.printable import printable
-from udec_ia.view.view_states import state
-from udec_ia.view.view_tables import tables
+from udec_ia.view.view_data import state, tables
 
 WEB = Path(__file__).with_name("web")
 SCRIPTS = (  # each builds on those before it
