@@ -190,7 +190,7 @@ def test_in_the_order_of_its_lists_and_in_other_words(tmp_path: Path) -> None:
     assert not compare(m.array.h, other.h).differ
     narrow = compare(m.array.h, rewrite(m.array, scheme("i16r32")).array.h)
     assert not any(len(one) + len(two) for one, two in narrow.alone.values())
-    assert all(float(one.apart.ulps.max()) <= 1 for one in narrow.fields)
+    assert all(float(one.distances.ulps.max()) <= 1 for one in narrow.fields)
     assert {one.kind for one in narrow.fields} <= {"common"}
 
 

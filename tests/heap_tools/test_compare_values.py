@@ -20,7 +20,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.comparison_report import diff, raw
 from udec_ia.heap_tools.rewrite_heap import rewrite
-from udec_ia.heap_tools.state_comparison import compare, reals_apart, tolerance
+from udec_ia.heap_tools.state_comparison import compare, real_differences, tolerance
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.group_tables import table
@@ -112,15 +112,15 @@ def test_last_digits() -> None:
             on = value
             for _ in range(7):
                 on = np.nextafter(on, kind(math.inf))
-            apart = reals_apart(np.array([value, 1]), np.array([on, 1], kind).astype(kind))
+            apart = real_differences(np.array([value, 1]), np.array([on, 1], kind).astype(kind))
             assert (apart.rows.tolist(), apart.ulps.tolist()) == ([0], [7.0])
     wide, narrow = (
         np.array([1 + 1e-12, 1 + 2**-22, math.nan, -0.0]),
         np.array([1, 1, math.nan, 0], np.float32),
     )
-    apart = reals_apart(wide, narrow)
+    apart = real_differences(wide, narrow)
     assert (apart.rows.tolist(), apart.ulps.tolist(), apart.absolute.tolist()) == ([1], [2.0], [2**-22])
-    assert reals_apart(np.array([math.nan]), np.array([1.0])).rows.tolist() == [0]
+    assert real_differences(np.array([math.nan]), np.array([1.0])).rows.tolist() == [0]
 
 
 def test_what_is_asked_for_and_what_does_not_count(state: MainArray) -> None:

@@ -46,11 +46,8 @@ def _check_mutual(state: State) -> None:
             row = state.rows(target, values)
             answer = np.append(state.column(target, back), 0)[row]
             for k in np.flatnonzero((row >= 0) & (answer != addresses)):
-                state.report(
-                    6,
-                    f"{name} of {kind}@{addresses[k]} is {values[k]}, "
-                    f"but {back} of {target}@{values[k]} is {answer[k]}",
-                )
+                text = f"{name} of {kind}@{addresses[k]} is {values[k]}"
+                state.report(6, f"{text}, but {back} of {target}@{values[k]} is {answer[k]}")
 
 
 @cache
@@ -97,26 +94,19 @@ def _check_same_block(state: State) -> None:
                 row = state.rows(field.target, values)
                 theirs = np.append(state.owner[field.target], 0)[row]
                 for k in np.flatnonzero((row >= 0) & (theirs != mine)):
-                    state.report(
-                        6,
-                        f"{field.name} of {kind}@{addresses[k]} is {values[k]}, a {field.target} of "
-                        f"block@{theirs[k]} and not of block@{mine[k]}",
-                    )
+                    text = f"{field.name} of {kind}@{addresses[k]} is {values[k]}, a {field.target} of"
+                    state.report(6, f"{text} block@{theirs[k]} and not of block@{mine[k]}")
 
 
 def _check_counts(state: State) -> None:
     """The numbers of grid-points and zones that each block with zones says it has."""
     rows = state.rows("block", state.owner["fdef"])
     for name, kind in COUNTS.items():
-        noted = state.column("fdef", name)
+        count = state.column("fdef", name)
         there = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
-        for k in np.flatnonzero(noted != there[rows]):
-            text = next(field.text for field in TABLE.group("fdef").fields if field.name == name)
-            state.report(
-                5,
-                f"{name} of fdef@{state.address['fdef'][k]}, the {text}, is {noted[k]}, "
-                f"but counting gives {there[rows[k]]}",
-            )
+        for k in np.flatnonzero(count != there[rows]):
+            text = f"{name} of fdef@{state.address['fdef'][k]} is {count[k]}"
+            state.report(5, f"{text}, but counting gives {there[rows[k]]}")
 
 
 def zoned(state: State) -> Numbers:
@@ -125,18 +115,28 @@ def zoned(state: State) -> Numbers:
 
 
 def _check_zoned(state: State) -> None:
-    corners, points = state.address["corner"], state.column("corner", KGP)
+    points = state.column("corner", KGP)
     with_zones = np.isin(state.owner["corner"], zoned(state))
-    for k in np.flatnonzero((points != 0) != with_zones):
-        block = state.owner["corner"][k]
-        what = "0, but its block has zones" if with_zones[k] else f"{points[k]}, but its block has no zones"
-        state.report(6, f"{KGP} of corner@{corners[k]} is {what}: block@{block}")
+    state.report_rows(
+        6,
+        "corner",
+        KGP,
+        points,
+        (points != 0) != with_zones,
+        lambda k: f"but block@{state.owner['corner'][k]} has {'' if with_zones[k] else 'no '}zones",
+    )
     marked, at = state.column("gridpoint", "KGEDGE") == 1, state.column("gridpoint", KCOR)
     radius = np.append(state.column("corner", "KRAD"), 0)[state.rows("corner", at)]
-    for k in np.flatnonzero(marked & ((at == 0) | (radius != 0))):
-        what = "is inside its block" if at[k] == 0 else f"stands at corner@{at[k]}, which is rounded"
-        point = state.address["gridpoint"][k]
-        state.report(6, f"KGEDGE of gridpoint@{point} is 1, but the grid-point {what}")
+    state.report_rows(
+        6,
+        "gridpoint",
+        "KGEDGE",
+        marked.astype(int),
+        marked & ((at == 0) | (radius != 0)),
+        lambda k: (
+            f"but it stands at corner@{at[k]}, which is rounded" if at[k] else "but it is inside its block"
+        ),
+    )
 
 
 def _check_cover(state: State) -> None:
@@ -219,9 +219,8 @@ def check_point_masses(state: State) -> None:
 def _check_masses(state: State, kind: str, field: str, due: Numbers, here: Numbers) -> None:
     """The masses of the groups `here` are those that their zones give them."""
     mass = state.column(kind, field)
-    for k in np.flatnonzero(here & (np.abs(mass - due) > MASS_SHARE * np.maximum(np.abs(due), np.abs(mass)))):
-        group = state.address[kind][k]
-        state.report(7, f"{field} of {kind}@{group} is {mass[k]}, but its zones have the mass {due[k]}")
+    wrong = here & (np.abs(mass - due) > MASS_SHARE * np.maximum(np.abs(due), np.abs(mass)))
+    state.report_rows(7, kind, field, mass, wrong, lambda k: f"but its zones have the mass {due[k]}")
 
 
 def check_zone_areas(state: State) -> None:
@@ -234,10 +233,7 @@ def check_zone_areas(state: State) -> None:
         state.report(7, f"the area of zone@{state.address['zone'][k]}, clockwise, is {area[k]}: not positive")
     row = state.rows("gridpoint", state.column("corner", KGP))
     for corner, point, values in (("KXP", "KXG", x), ("KYP", "KYG", y)):
-        here = state.column("corner", corner)
-        for k in np.flatnonzero((row >= 0) & (here != values[row])):
-            state.report(
-                7,
-                f"{corner} of corner@{state.address['corner'][k]} is {here[k]}, "
-                f"but {point} of its grid-point is {values[row[k]]}",
-            )
+        here, there = state.column("corner", corner), values[row]
+        for k in np.flatnonzero((row >= 0) & (here != there)):
+            text = f"{corner} of corner@{state.address['corner'][k]} is {here[k]}"
+            state.report(7, f"{text}, but {point} of its grid-point is {there[k]}")

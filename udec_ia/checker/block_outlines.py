@@ -18,7 +18,7 @@ from udec_ia.kernels.audit.block_outlines import (
     short_edges,
     wrong_circles,
 )
-from udec_ia.reader.field_reading import INDEX, Numbers, told
+from udec_ia.reader.field_reading import INDEX, Numbers, kernel_rows
 
 ROUNDINGS = 8.0  # of the order of the roundings that one coordinate takes part in each time it is computed
 MEASURE, FILL_BLOCKS, FILL_CIRCLES, SHORT_EDGES, WRONG_CIRCLES = (
@@ -93,30 +93,20 @@ def check_outlines(state: State, o: Outlines) -> None:
     rows, blocks = state.rows("block", o.block), len(o.block)
     area, far = extent(state, o, rows)
     for b in np.flatnonzero(~(area > 0)):
-        state.report(
-            7, f"the area inside the corners of block@{o.block[b]}, clockwise, is {area[b]}: not positive"
-        )
-    for k, length, room in told(SHORT_EDGES, blocks, 3, o, state.tolerance("FTOL"), of=float).tolist():
+        state.report(7, f"the area of block@{o.block[b]}, clockwise, is {area[b]}: not positive")
+    for k, length, room in kernel_rows(SHORT_EDGES, blocks, 3, o, state.tolerance("FTOL"), of=float).tolist():
         i = int(k)
-        state.report(
-            7,
-            f"the edge from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} "
-            f"of block@{o.block[o.owner[i]]} is {length} long, "
-            f"too short for its roundings, which take {room}",
-        )
-    for k, x, y, radius in told(WRONG_CIRCLES, blocks, 4, o, of=float).tolist():
+        edge = f"from corner@{o.corner[o.before[i]]} to corner@{o.corner[i]} of block@{o.block[o.owner[i]]}"
+        state.report(7, f"the edge {edge} is {length} long, too short for its roundings, which take {room}")
+    for k, x, y, radius in kernel_rows(WRONG_CIRCLES, blocks, 4, o, of=float).tolist():
         i = int(k)
-        state.report(
-            7,
-            f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}, "
-            f"KRAD {o.r[i]}, but its edges ask for {x}, {y}, {radius}",
-        )
+        text = f"corner@{o.corner[i]} of block@{o.block[o.owner[i]]} has KXCP {o.c[i, 0]}, KYCP {o.c[i, 1]}"
+        state.report(7, f"{text}, KRAD {o.r[i]}, but its edges ask for {x}, {y}, {radius}")
     _check_inertia(state, o, rows, area, far)
-    noted = state.column("block", "KBRO")[rows]
-    for b in np.flatnonzero(np.abs(far - noted) > 2 * o.slack):
-        state.report(
-            7, f"KBRO of block@{o.block[b]} is {noted[b]}, but a corner is {far[b]} from the centroid"
-        )
+    reach = state.column("block", "KBRO")[rows]
+    for b in np.flatnonzero(np.abs(far - reach) > 2 * o.slack):
+        text = f"KBRO of block@{o.block[b]} is {reach[b]}"
+        state.report(7, f"{text}, but a corner is {far[b]} from the centroid")
 
 
 def _check_inertia(state: State, o: Outlines, rows: Numbers, area: Numbers, far: Numbers) -> None:
@@ -136,11 +126,8 @@ def _check_inertia(state: State, o: Outlines, rows: Numbers, area: Numbers, far:
     share = 1e-3 + 20 * o.slack * far / area
     wrong = np.abs(inertia - due) > share * np.maximum(inertia, due)
     for b in np.flatnonzero(wrong & (area > 0) & ~np.isin(o.block, zoned(state))):
-        state.report(
-            7,
-            f"KBI of block@{o.block[b]} is {inertia[b]}, but with the mass {mass[b]} (KBM) its outline has "
-            f"the moment of inertia {due[b]}",
-        )
+        text = f"KBI of block@{o.block[b]} is {inertia[b]}, but with the mass {mass[b]} (KBM)"
+        state.report(7, f"{text} its outline has the moment of inertia {due[b]}")
 
 
 def extent(state: State, o: Outlines, rows: Numbers) -> tuple[Numbers, Numbers]:

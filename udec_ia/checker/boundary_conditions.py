@@ -54,20 +54,20 @@ def _check_edges(state: State) -> None:
     before = np.append(state.column("corner", KR), 0)
     rows = [state.rows("corner", values) for values in (corner, other)]
     beside = (before[rows[0]] == other) | (before[rows[1]] == corner)
-    for k in np.flatnonzero((other != 0) & ((corner == 0) | ~beside)):
-        state.report(
-            6,
-            f"KUQ of bound@{bounds[k]} is corner@{other[k]}, but no edge leads there from {corner[k]} (KUP)",
-        )
+    state.report_rows(
+        6,
+        "bound",
+        "KUQ",
+        other,
+        (other != 0) & ((corner == 0) | ~beside),
+        lambda k: f"but no edge leads there from {corner[k]} (KUP)",
+    )
     alone = ~np.isin(other * state.free + corner, corner * state.free + other)
     for one, two in (slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1)):
         lost = (corner[one] != 0) & (other[one] == 0) & (other[two] == corner[one]) & alone[two]
         for k in np.flatnonzero(lost):
-            state.report(
-                6,
-                f"bound@{bounds[two][k]} names the edge to corner@{corner[one][k]}, "
-                f"but bound@{bounds[one][k]} beside it, on that corner, names no edge",
-            )
+            text = f"bound@{bounds[two][k]} names the edge to corner@{corner[one][k]}"
+            state.report(6, f"{text}, but bound@{bounds[one][k]} beside it, on that corner, names no edge")
 
 
 def _check_held(state: State) -> None:
@@ -85,11 +85,8 @@ def _check_held(state: State) -> None:
         np.bitwise_or.at(due, row[acts], codes[acts])
         held = state.column(kind, field)
         for k in np.flatnonzero((held != due) & ~exempt):
-            state.report(
-                6,
-                f"{field} of {kind}@{state.address[kind][k]} is {held[k]}, "
-                f"but conditions give it the velocities {due[k]}",
-            )
+            text = f"{field} of {kind}@{state.address[kind][k]} is {held[k]}"
+            state.report(6, f"{text}, but conditions give it the velocities {due[k]}")
     moving = np.any([state.column("block", name) != 0 for name in ("KXD", "KYD", "KTD")], axis=0)
     for k in np.flatnonzero(fixed & moving):
         state.report(6, f"block@{state.address['block'][k]} is fixed (KBFIX is 1), but has a velocity")
@@ -98,9 +95,14 @@ def _check_held(state: State) -> None:
 def _check_signals(state: State) -> None:
     signals, number = state.address["signal"], state.column("signal", "KTNUM")
     first = state.column("signal", "KTP")
-    for k in np.flatnonzero((number != 0) != (first != 0)):
-        what = "no points" if number[k] else "points, which a sine does not have"
-        state.report(6, f"KTNUM of signal@{signals[k]} is {number[k]}, but it has {what}")
+    state.report_rows(
+        6,
+        "signal",
+        "KTNUM",
+        number,
+        (number != 0) != (first != 0),
+        lambda k: "but it has no points" if number[k] else "but it has points, which a sine does not have",
+    )
     order = np.argsort(number, kind="stable")
     for k in np.flatnonzero((number[order[1:]] == number[order[:-1]]) & (number[order[1:]] != 0)):
         one, two = order[k], order[k + 1]
@@ -111,9 +113,7 @@ def check_times(state: State) -> None:
     """Invariant 7: the times of a FUNCTION ascend."""
     time, following = state.column("tabpoint", "KTPT"), state.column("tabpoint", "KTPN")
     row = state.rows("tabpoint", following)
-    for k in np.flatnonzero((row >= 0) & ~(np.append(time, 0.0)[row] > time)):
-        state.report(
-            7,
-            f"KTPT of tabpoint@{following[k]} is {np.append(time, 0.0)[row[k]]}, "
-            f"not after {time[k]} of the point before it",
-        )
+    after = np.append(time, 0.0)[row]
+    for k in np.flatnonzero((row >= 0) & ~(after > time)):
+        text = f"KTPT of tabpoint@{following[k]} is {after[k]}"
+        state.report(7, f"{text}, not after {time[k]} of the point before it")

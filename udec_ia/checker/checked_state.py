@@ -120,8 +120,18 @@ class State(Lists):
         """Add a violation."""
         self.found.append(Violation(invariant, message))
 
+    def report_rows(
+        self, invariant: int, kind: str, name: str, values: Numbers, wrong: Numbers, why: Callable[[int], str]
+    ) -> None:
+        """Add a violation for each group of `kind` whose value of the field `name` is wrong.
+
+        values, wrong: of all groups. why: gives the end of the message for a row.
+        """
+        for k in np.flatnonzero(wrong).tolist():
+            self.report(invariant, f"{name} of {kind}@{self.address[kind][k]} is {values[k]}, {why(k)}")
+
     def astray(self, source: str, iad: int, kind: str) -> None:
-        """Nothing: all pointers that lead astray are told together."""
+        """Nothing: all pointers that lead astray are reported together."""
 
     def violations(self) -> list[Violation]:
         """What was found, each once, in the order of the invariants; words that no list leads to last."""
@@ -139,11 +149,11 @@ class State(Lists):
         return self._columns[key]
 
     def forget(self) -> None:
-        """Keep no column: what comes now needs others, and room."""
+        """Keep no column, to save memory."""
         self._columns.clear()
 
     def leave_lists(self) -> None:
-        """Keep no list either, nor where groups begin: what comes now looks at none."""
+        """Keep no list either, nor where groups begin."""
         del self.rings, self.kind_at, self._nth_at, self._before, self._row
         self.forget()
 

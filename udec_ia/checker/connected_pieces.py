@@ -1,9 +1,8 @@
-"""Invariant 4: what hangs on a virtual contact hangs in the domain in which it lies.
+"""Invariant 4: what hangs on a virtual contact lies in the domain in which it hangs.
 
-Virtual contacts tie blocks that have parted. Without them the boundary of a domain falls apart into several
-loops, one for each piece: either all are outlines of pieces that lie side by side, or one is the wall around
-a space and the others are outlines of pieces in it. So every piece lies inside the wall and outside the
-outlines of all others: the wall winds once around any point of it, and an outline not at all.
+Without the virtual contacts the boundary of a domain falls apart into loops, one for each piece: either all
+are outlines of pieces side by side, or one is the wall around a space with the others in it. So every piece
+lies inside the wall and outside the outlines of all others, which winding numbers prove.
 """
 
 from __future__ import annotations

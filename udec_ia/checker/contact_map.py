@@ -1,16 +1,13 @@
 """Lists of blocks, loops of domains, Euler's formula and the outer domain: invariants 3, 4 and 5.
 
-Every contact stands in the lists of two blocks, so it can be passed in two ways: from the list of KB1 to that
-of KB2, and the other way round. To go on along a block to its next contact and to change the block there is a
-permutation of these passages. Its cycles are the faces of the map, and each must be the loop of one domain.
+Every contact can be passed in two ways: from the list of KB1 to that of KB2, and back. To go on along a block
+to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
+of the map, and each must be the loop of one domain.
 
-All lists are looked at together, as arrays; only what is wrong is looked at by itself.
-
-A domain is on the left of its loop. So the polygon of its loop, through contacts and corners, has a positive
-area, but for the overlaps. The outer domain has the ground on its outside, and minus the area of all that it
-encloses: no other is as low. The loop passes a virtual contact on both of the ways between its two blocks, so
-the two jumps cancel: each block's part of the loop counts as if it closed at the item before the contact.
-After an error that let blocks into each other areas prove nothing, and this is left out.
+A domain is on the left of its loop, so the polygon of the loop has a positive area, but for the overlaps. The
+outer domain has minus the area of all that it encloses: no other is as low. The loop passes a virtual contact
+in both directions, so each block's part counts as if it closed at the item before the contact. After an error
+that let blocks into each other areas prove nothing, and this is left out.
 """
 
 from __future__ import annotations
@@ -26,6 +23,7 @@ from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.printable import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
+from udec_ia.reader.list_walks import clockwise_link
 
 PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
 PIECES = InterpretWhenSmall(pieces, 6e5)  # contacts
@@ -83,7 +81,8 @@ def _check_items(state: State) -> None:
         elif name in AHEAD:
             why = f"the first corner after it on block@{host} is {right}"
         else:
-            why = f"{state.link(host, right)} leads to it, on block@{host}"
+            link, _ = clockwise_link(state.h, host, right)
+            why = f"{link} leads to it, on block@{host}"
         state.report(3, f"{what}, but {why}")
 
 
@@ -96,33 +95,29 @@ def _check_contacts(state: State) -> None:
     for name, block, at in zip(HOSTS, (one, two), rings.at, strict=True):
         out = np.flatnonzero((at < 0) & (one != two))
         for k in out[np.isin(block[out], rings.block)] if len(out) else out:
-            state.report(
-                4,
-                f"contact@{contacts[k]} names block@{block[k]} in {name}, but is not in the block's list",
-            )
+            text = f"contact@{contacts[k]} names block@{block[k]} in {name}"
+            state.report(4, f"{text}, but is not in the block's list")
     for i in np.flatnonzero(rings.contact & (rings.row < 0)):
-        block = rings.block[rings.owner[i]]
-        state.report(
-            4, f"contact@{rings.item[i]} stands in the list of block@{block}, but not in the contact list"
-        )
+        text = f"contact@{rings.item[i]} stands in the list of block@{rings.block[rings.owner[i]]}"
+        state.report(4, f"{text}, but not in the contact list")
 
 
 def _check_virtual(state: State) -> None:
     """Invariants 4 and 9: a virtual contact is a bridge of the map and carries no force."""
     virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     left, right = (state.column("contact", side) for side in SIDES)
-    for row in np.flatnonzero(virtual & (left != right)):
-        contact = state.address["contact"][row]
-        state.report(
-            4,
-            f"contact@{contact} is virtual, but no bridge: "
-            f"{SIDES[0]} is {left[row]}, {SIDES[1]} is {right[row]}",
-        )
+    why = "but the contact is virtual"
+    state.report_rows(
+        4,
+        "contact",
+        SIDES[0],
+        left,
+        virtual & (left != right),
+        lambda k: f"{why}, and {SIDES[1]} is {right[k]}",
+    )
     for name in ("KCFN", "KCFS"):
         force = state.column("contact", name)
-        for row in np.flatnonzero(virtual & (force != 0)):
-            contact = state.address["contact"][row]
-            state.report(9, f"contact@{contact} is virtual, but {name} is {force[row]}")
+        state.report_rows(9, "contact", name, force, virtual & (force != 0), lambda _: why)
 
 
 def _passages(state: State) -> Numbers:
@@ -155,11 +150,8 @@ def _check_loops(state: State) -> None:
     contact = state.address["contact"]
     for k in np.flatnonzero(label[order[1:]] == label[order[:-1]]):
         before, start = order[k], order[k + 1]
-        state.report(
-            4,
-            f"the loop through contact@{contact[start // 2]} and the loop through "
-            f"contact@{contact[before // 2]} both name domain@{label[start]}",
-        )
+        two = f"through contact@{contact[start // 2]} and through contact@{contact[before // 2]}"
+        state.report(4, f"the loops {two} both name domain@{label[start]}")
     _check_domains(state, label[starts], whole)
 
 
@@ -172,12 +164,8 @@ def _label(state: State, following: Numbers, label: Numbers, start: int) -> int:
     domain = Counter(labels).most_common(1)[0][0]
     for passage, named in zip(loop, labels, strict=True):
         if named != domain:
-            contact, side = state.address["contact"][passage // 2], SIDES[1 - passage % 2]
-            state.report(
-                4,
-                f"{side} of contact@{contact} is {named}, "
-                f"but the contact stands on the loop of domain@{domain}",
-            )
+            text = f"{SIDES[1 - passage % 2]} of contact@{state.address['contact'][passage // 2]} is {named}"
+            state.report(4, f"{text}, but the contact stands on the loop of domain@{domain}")
     return int(domain)
 
 
@@ -211,9 +199,8 @@ def _check_counts(state: State) -> None:
     if blocks and blocks - contacts + domains != 2:
         state.report(5, f"{blocks} blocks - {contacts} contacts + {domains} domains is not 2")
     if not blocks and contacts + domains:
-        state.report(
-            5, f"there are no blocks, but {counted(contacts, 'contact')} and {counted(domains, 'domain')}"
-        )
+        others = f"{counted(contacts, 'contact')} and {counted(domains, 'domain')}"
+        state.report(5, f"there are no blocks, but {others}")
     virtual = int(np.count_nonzero(state.column("contact", "KCCOD") == g.VIRTUAL))
     soft = int(np.count_nonzero(state.h.ia[state.address["block"] - 1] != g.MRIG))
     counts = {"NBLK": blocks, "NCON": contacts, "NDOM": domains, "NVIRT": virtual, "NSOFT": soft}
@@ -257,6 +244,4 @@ def check_outer(state: State) -> None:
         return
     outer, lowest = state.common("IODPNT"), int(twice.argmin())
     if outer != domains[lowest]:
-        state.report(
-            4, f"IODPNT, the outer domain, is {outer}, but domain@{domains[lowest]} lies around all blocks"
-        )
+        state.report(4, f"IODPNT is {outer}, but domain@{domains[lowest]} lies around all blocks")

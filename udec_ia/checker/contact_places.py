@@ -27,7 +27,7 @@ from udec_ia.kernels.audit.contact_positions import (
     unlike,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, told
+from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, kernel_rows
 
 TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(unlike, 1e6)  # contacts
 
@@ -70,20 +70,15 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
     noted, x, y = (state.column("contact", name)[touch.row] for name in ("KCN", "KXC", "KYC"))
     limit = state.tolerance("DTOL2")
     by_outlines = touch.overlap, touch.point, touch.slack
-    for k, what in told(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
+    for k, what in kernel_rows(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
         contact, overlap = contacts[k], touch.overlap[k]
         if what == OVERLAP:
-            state.report(
-                7,
-                f"KCN of contact@{contact} is {noted[k]}, but at corner@{o.corner[touch.i[k]]} and "
-                f"corner@{o.corner[touch.j[k]]} the outlines overlap by {overlap}",
-            )
+            ends = f"corner@{o.corner[touch.i[k]]} and corner@{o.corner[touch.j[k]]}"
+            text = f"KCN of contact@{contact} is {noted[k]}"
+            state.report(7, f"{text}, but at {ends} the outlines overlap by {overlap}")
         elif what == PLACE:
-            state.report(
-                7,
-                f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}, but the outlines meet at "
-                f"{touch.point[k, 0]}, {touch.point[k, 1]}",
-            )
+            text = f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}"
+            state.report(7, f"{text}, but the outlines meet at {touch.point[k, 0]}, {touch.point[k, 1]}")
         else:
             state.report(7, f"the overlap of contact@{contact} is {max(noted[k], overlap)}, DTOL2 is {limit}")
 
@@ -156,12 +151,9 @@ def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side:
             waits = concave or _waits(state, int(touch.row[k]), side, step)
             far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
             if beyond[k] > far and not (concave and force[k] != 0):
-                segment = "edge" if here.on_edge[k] else "arc"
-                state.report(
-                    7,
-                    f"contact@{contacts[k]} stands on the {segment} of corner@{o.corner[here.corner[k]]} of "
-                    f"block@{block[k]}, but lies {beyond[k]} {what} of it",
-                )
+                segment = f"{'edge' if here.on_edge[k] else 'arc'} of corner@{o.corner[here.corner[k]]}"
+                text = f"contact@{contacts[k]} stands on the {segment} of block@{block[k]}"
+                state.report(7, f"{text}, but lies {beyond[k]} {what} of it")
 
 
 def _waits(state: State, row: int, side: int, step: int) -> bool:
@@ -190,14 +182,11 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     near = state.tolerance("FTOL") + state.tolerance("HTOL")
     slack = touch.slack + near / 2
     of_lists = rings.lists, rings.contact, rings.row, rings.side
-    rows = told(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
+    rows = kernel_rows(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
     for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):
         block = rings.block[owner]
         others = {int(host[k]) for host in hosts for k in (one, two)} - {int(block)}
         wedge = touch.overlap[one] > 0 and touch.overlap[two] > 0 and len(others) > 1
         if behind > slack[one] + slack[two] + (state.tolerance("ETOL") if wedge else 0.0):
-            state.report(
-                3,
-                f"contact@{contacts[one]} stands before contact@{contacts[two]} in the list of "
-                f"block@{block}, but lies {behind} behind it",
-            )
+            pair = f"contact@{contacts[one]} stands before contact@{contacts[two]}"
+            state.report(3, f"{pair} in the list of block@{block}, but lies {behind} behind it")

@@ -104,7 +104,7 @@ def _check_links(state: State) -> None:
     check_common(state)
     check_pointers(state)
     if state.found:  # else every pointer leads to a group that a list leads to
-        state.tell_lost(*KIND_CODE)
+        state.report_lost(*KIND_CODE)
     check_memory(state)
     check_codes(state)
     check_histories(state)

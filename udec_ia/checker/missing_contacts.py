@@ -1,17 +1,14 @@
 """Invariant 8: no two blocks overlap or touch without a contact between them.
 
-Found by brute force from the outlines alone: all pairs of blocks whose boxes overlap, and of these all
-pairs of an arc with an edge or another arc. Every point where the outlines meet or penetrate each other
-needs a contact of the two blocks nearby; nearer to it than FTOL there is never a second one. A blunt arc that
-touches by one end may come to touch by the other, too; until its domain is updated, that is for an overlap of
-up to ETOL, the contact that there is stands for both. So it does for what comes to touch the edge beside a
-blunt arc, for ETOL along the edge.
+Found from the outlines alone: all pairs of blocks whose boxes overlap, and of these all pairs of an arc with
+an edge or another arc. Every point where the outlines meet needs a contact of the two blocks nearby; nearer
+to it than FTOL there is never a second one. A blunt arc that touches by one end may come to touch by the
+other: until its domain is updated, that is for an overlap of up to ETOL, one contact stands for both. So it
+does for the edge beside a blunt arc, for ETOL along the edge.
 
-Outlines meet if they do so to the rounding of one calculation: the program sees the same coordinates, so what
-these have gathered over the cycles does not count; nor does a gap wider than GTOL, however coarse they are.
-A gap as narrow as that needs no contact if a third block stands in it, for a contact cannot be there; nor
-does an overlap of up to FTOL. The third block may lie in both, deeper than their tips are thick, or have a
-tip between them, thinner than the overlaps on its two sides: it hands on the force of the one to the other.
+Outlines meet if they do so to the rounding of one calculation; a gap wider than GTOL never counts. A narrower
+gap, or an overlap of up to FTOL, needs no contact if a third block stands in it: deeper than the tips are
+thick, or with a tip between them that is thinner than the overlaps on its two sides.
 """
 
 from __future__ import annotations
@@ -28,7 +25,7 @@ from udec_ia.checker.contact_places import Touches
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.kernels.audit.block_outlines import Outlines, in_rounded
 from udec_ia.kernels.audit.outline_intersections import EDGE, crossing, lonely_meetings
-from udec_ia.reader.field_reading import HOSTS, Numbers, told
+from udec_ia.reader.field_reading import HOSTS, Numbers, kernel_rows
 
 CHUNK = 100_000  # pairs of blocks looked at together
 AROUND = 8  # directions in which it is looked whether a block holds a point
@@ -85,17 +82,14 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
         CROSSING(len(apart), o, apart, cross)
         for one, two in apart[cross].tolist():
             if not _thin_tips(state, o, joined, one, two):
-                state.report(
-                    8,
-                    f"block@{o.block[one]} and block@{o.block[two]} overlap, "
-                    "but there is no contact between them",
-                )
+                pair = f"block@{o.block[one]} and block@{o.block[two]}"
+                state.report(8, f"{pair} overlap, but there is no contact between them")
 
 
 def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, contacts: Numbers) -> None:
     """A violation for each meeting of an arc with an edge or an arc that has no contact near it."""
     near, late = state.tolerance("DTOL") + state.tolerance("FTOL"), state.tolerance("ETOL")
-    rows = told(LONELY_MEETINGS, len(pairs), 6, o, pairs, contacts, joined.point, near, late, of=float)
+    rows = kernel_rows(LONELY_MEETINGS, len(pairs), 6, o, pairs, contacts, joined.point, near, late, of=float)
     for (arc, other, what), (x, y, overlap) in zip(
         rows[:, :3].astype(int).tolist(), rows[:, 3:].tolist(), strict=True
     ):
@@ -108,11 +102,10 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, c
             _tip_at(o, point, reach, state.tolerance("BTOL"), (one, two))
             or _lies_in_third(o, point, state.tolerance("FTOL") / 2, (one, two))
         ):
+            pair = f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y})"
+            segment = f"the {'edge' if what == EDGE else 'arc'} of corner@{o.corner[other]}"
             state.report(
-                8,
-                f"block@{o.block[one]} and block@{o.block[two]} overlap by {overlap} at ({x}, {y}), without "
-                f"a contact where the arc of corner@{o.corner[arc]} meets the "
-                f"{'edge' if what == EDGE else 'arc'} of corner@{o.corner[other]}",
+                8, f"{pair}, without a contact where the arc of corner@{o.corner[arc]} meets {segment}"
             )
 
 

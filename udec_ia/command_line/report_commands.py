@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 VERBS = ("info", "check", "diff")
 INFO = """\
-from udec_ia.heap_tools.facilities import facilities
-from udec_ia.heap_tools.facilities import idle
+from udec_ia.facilities.facilities_in_use import facilities
+from udec_ia.facilities.facilities_in_use import facilities_without_effect
 from udec_ia.restart import info, look_into
 
 array = look_into({file!r})  # of a model: model.array
 print(info({file!r}))
-print(facilities(array).as_text() + idle(array).as_text(), end="")"""
+print(facilities(array).as_text() + facilities_without_effect(array).as_text(), end="")"""
 COST = """\
 from udec_ia import Model
-from udec_ia.heap_tools.facility_costs import costs
+from udec_ia.facilities.facility_costs import costs
 
 model = Model.restore({file!r}{laws})
 print(costs(model.array, model.session.laws{seconds}).as_text(), end="")"""
@@ -57,7 +57,7 @@ def add_commands(commands: Any) -> None:
 
 def _info(args: argparse.Namespace) -> Listing | Tables:
     if args.cost:
-        from udec_ia.heap_tools.facility_costs import costs
+        from udec_ia.facilities.facility_costs import costs
         from udec_ia.model import Model
 
         model = Model.restore(args.file, args.constitutive)
@@ -69,7 +69,7 @@ def _info(args: argparse.Namespace) -> Listing | Tables:
 
 def _known(args: argparse.Namespace) -> Tables:
     """What the file says about itself, and what its words show, if they can be read here."""
-    from udec_ia.heap_tools.facilities import facilities, idle
+    from udec_ia.facilities.facilities_in_use import facilities, facilities_without_effect
     from udec_ia.reader.listing import Listing, Tables
     from udec_ia.restart import info, look_into
 
@@ -78,7 +78,7 @@ def _known(args: argparse.Namespace) -> Tables:
         array = look_into(args.file)
     except UdecError:  # its words are those of another program: said above
         return Tables(parts)
-    return Tables(parts | {"facilities": facilities(array), "idle": idle(array)})
+    return Tables(parts | {"facilities": facilities(array), "idle": facilities_without_effect(array)})
 
 
 def _budget(args: argparse.Namespace) -> dict[str, float]:
@@ -170,10 +170,11 @@ def _diff(args: argparse.Namespace) -> Listing | Tables:
 
 
 def _diff_script(args: argparse.Namespace) -> str:
-    module, function = ("word_comparison", "raw") if args.raw else ("comparison_report", "diff")
+    function = "raw" if args.raw else "diff"
     named = "".join(f", {name}={value!r}" for name, value in _given(args).items())
     return (
-        f"from udec_ia.heap_tools.{module} import {function}\nfrom udec_ia.restart import look_into\n\n"
+        f"from udec_ia.heap_tools.comparison_report import {function}\n"
+        "from udec_ia.restart import look_into\n\n"
         f"one = look_into({str(args.file)!r})  # of a model: model.array\n"
         f"two = look_into({str(args.other)!r})\n"
         f"print({function}(one, two{named}).as_text(), end='')"

@@ -1,1 +1,1 @@
-"""Tools on the whole heap: print, search, compare, convert and patch it, and measure facilities."""
+"""Tools on the whole heap: print, search, compare, convert and patch it."""

@@ -1,13 +1,11 @@
-"""Which block of one state is which of the other, by the main list, whatever has come or gone in it.
+"""Which block of one state is which of the other, by the main list.
 
-If both lists have equally many blocks, and each one in turn the corners and the mass of the other, that is
-it: the blocks may have moved anywhere. Else those are matched first that nothing else can be: the only blocks
-of their mass, which no motion changes, and those that have hardly moved, as long as they come in the same
-order in both lists. Between two of these, blocks match from the front and from the back as far as corners and
-mass agree; all, where there are equally many, and else those that have hardly moved. Blocks left over were
-made or deleted. Before there are masses, sizes stand for them.
+If both lists have equally many blocks, pairwise with the same corners and mass, they match one by one. Else
+the only blocks of their mass, and blocks that have hardly moved, match first, as long as their order is the
+same in both lists. Between two of these, blocks match from the front and from the back as far as corners and
+mass agree. Blocks left over were made or deleted. Before there are masses, sizes replace them.
 
-Matched groups have one number in both heaps, counted from 1: so pointers are compared by what they lead to.
+Matched groups have one number in both heaps, from 1, by which pointers are compared.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ import numpy as np
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.untrusted_lists import groups_along
-from udec_ia.heap_tools.row_matching import Pairs, fold, only_ones, rising
+from udec_ia.heap_tools.row_matching import Pairs, fold, longest_rising, unique_pairs
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 
@@ -55,7 +53,7 @@ class Side:
         """Number the groups at the addresses (n,), from `first` on."""
         self._number[(addresses - 1) // self.atlas.ratio] = np.arange(first, first + len(addresses))
 
-    def meant(self, word: Word, at: Any) -> Any:
+    def comparable(self, word: Word, at: Any) -> Any:
         """What a field of the groups at (n,) says in both heaps: a number, or that of the group it leads to.
 
         A pointer to a group that matches none is LOST, 0 is 0.
@@ -102,7 +100,7 @@ class Side:
 
 
 ALIKE = 0.01  # share of its size or mass by which a block may be another
-MASSES = 1e5  # steps of mass, to a factor of e, by which blocks are told apart
+MASSES = 1e5  # steps of mass, to a factor of e, by which blocks are distinguished
 CELLS = (1e-3, 0.03, 0.5, 1.0)  # of cells that blocks are looked for in, as shares of the median size
 SHIFTS = (
     (0.0, 0.0),
@@ -148,12 +146,12 @@ def blocks_of(side: Side) -> Blocks:
     return Blocks(at, corners, size, mass, x, y, rings)
 
 
-def aligned(one: Blocks, two: Blocks) -> Pairs:
+def match_blocks(one: Blocks, two: Blocks) -> Pairs:
     """Rows of the one (n,) and of the other (n,) that are the same block, ascending."""
     count = len(one.at)
     if not all(bool((blocks.mass > 0).all()) for blocks in (one, two)):  # there are none before CYCLE
         one, two = (blocks._replace(mass=blocks.size) for blocks in (one, two))
-    if count == len(two.at) and bool(alike(one, two, "mass").all()):
+    if count == len(two.at) and bool(same_shape(one, two, "mass").all()):
         return np.arange(count), np.arange(count)
     a, b = _anchors(one, two)
     parts: list[tuple[Any, Any]] = [(a, b)]
@@ -167,7 +165,7 @@ def aligned(one: Blocks, two: Blocks) -> Pairs:
     return a[order], b[order]
 
 
-def alike(one: Blocks, two: Blocks, what: str = "size") -> Any:
+def same_shape(one: Blocks, two: Blocks, what: str = "size") -> Any:
     """True for each row where both have the same corners and size, or mass."""
     a, b = getattr(one, what), getattr(two, what)
     with np.errstate(invalid="ignore"):
@@ -182,15 +180,15 @@ def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
     for keys in _keys(one, two):
         if not (len(rows[0]) and len(rows[1])):
             break
-        a, b = only_ones(keys[0][rows[0]], keys[1][rows[1]])
+        a, b = unique_pairs(keys[0][rows[0]], keys[1][rows[1]])
         a, b = rows[0][a], rows[1][b]
-        good = alike(one.some(a), two.some(b), "mass") | cut
+        good = same_shape(one.some(a), two.some(b), "mass") | cut
         found.append((a[good], b[good]))
         rows = np.setdiff1d(rows[0], a[good], True), np.setdiff1d(rows[1], b[good], True)
     a, b = (np.concatenate(parts) for parts in zip(*found, strict=True))
     order = np.argsort(a)
     a, b = a[order], b[order]
-    kept = rising(b)
+    kept = longest_rising(b)
     return a[kept], b[kept]
 
 
@@ -219,8 +217,8 @@ def _between(one: Blocks, two: Blocks, a: Any, b: Any) -> Pairs:
     if len(a) == len(b):
         return a, b
     few = min(len(a), len(b))
-    front = int(np.append(alike(one.some(a[:few]), two.some(b[:few]), "mass"), False).argmin())
-    back = alike(one.some(a[len(a) - few :]), two.some(b[len(b) - few :]), "mass")[::-1]
+    front = int(np.append(same_shape(one.some(a[:few]), two.some(b[:few]), "mass"), False).argmin())
+    back = same_shape(one.some(a[len(a) - few :]), two.some(b[len(b) - few :]), "mass")[::-1]
     last = min(int(np.append(back, False).argmin()), few - front)
     rest = a[front : len(a) - last], b[front : len(b) - last]
     cut = _anchors(one.some(rest[0]), two.some(rest[1]), cut=True)

@@ -96,7 +96,7 @@ def _by_field(found: Compared) -> list[tuple[Any, ...]]:
     """For each field that differs how often, and the greatest difference."""
     rows: list[tuple[Any, ...]] = []
     for one in found.fields:
-        greatest = int(np.argmax(np.nan_to_num(one.apart.absolute, nan=inf)))
+        greatest = int(np.argmax(np.nan_to_num(one.distances.absolute, nan=inf)))
         rows.append((one.kind, one.name, len(one.one), one.many, *_distances(one, greatest)))
     return rows
 
@@ -104,13 +104,13 @@ def _by_field(found: Compared) -> list[tuple[Any, ...]]:
 def _distances(one: Differing, row: int) -> tuple[Any, ...]:
     if not one.field.real:
         return "", "", "", ""
-    apart = one.apart
-    far = [_short(float(column[row])) for column in (apart.absolute, apart.relative, apart.ulps)]
+    distances = one.distances
+    far = [_short(float(column[row])) for column in (distances.absolute, distances.relative, distances.ulps)]
     return far[0], far[1], int(far[2]) if far[2] < 1e6 else far[2], one.field.unit.strip("-")
 
 
 def _short(value: float) -> float:
-    """Three digits of how far two numbers are apart."""
+    """Three digits of a difference."""
     return float(f"{value:.3g}")
 
 

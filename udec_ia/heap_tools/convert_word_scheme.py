@@ -1,14 +1,10 @@
 """A sound state in the words of another scheme, ready to go on (`udec convert`).
 
-Every number is written as it is (rewrite_heap.py), and with reals of the same width that is all: the run goes
-on to the same last digit. In reals of another width circles, which follow from the corners, and overlaps,
-which follow from both, need not fit any more. The last digit of wider reals is finer than the narrow ones
-could hold, so circles, the reach of each block and the places and overlaps of contacts are found anew from
-the corners; in narrower ones, if the checker asks for it. Else the checker and SPLIT would take the
-difference for damage, and the springs of the next cycle for a movement. Corners, velocities, forces and
-stresses stay, and so does the map.
-
-Between two passes of a cycle (JPHASE) contacts are yet to follow their blocks: then they stay as they are.
+Every number is written as it is (rewrite_heap.py). With reals of the same width that is all. With wider reals
+the circles, reaches of blocks, and places and overlaps of contacts, which follow from the corners, are
+computed anew: else the checker, SPLIT and the springs would take the missing digits for damage or movement.
+With narrower reals that is done only if the checker asks for it. Corners, velocities, forces, stresses and
+the map stay. Between two passes of a cycle (JPHASE) contacts stay as they are.
 """
 
 from __future__ import annotations
@@ -42,7 +38,7 @@ class Converted(NamedTuple):
 def convert(array: MainArray, to: Scheme) -> Converted:
     """The state of `array`, which stays as it is, in the words of the scheme `to`.
 
-    Raises Unsound if there are groups that cannot be told apart, UdecError 1 if the addresses of `to` end
+    Raises Unsound if there are groups whose kinds cannot be known, UdecError 1 if the addresses of `to` end
     before the groups do, and 28 if its integers or reals cannot hold all numbers.
     """
     return prove(rewrite(array, to))

@@ -1,10 +1,9 @@
 """The words of a state, field by field, by another table and in words of other widths.
 
-All goes by names: a group by that of its kind, a field by its own, a code by what it is called. A group of
-another size gets another address, and every pointer that the table knows follows it. A field that only the
-new table has is 0. A field that only the old table has can be left out where it is 0; all else that finds no
-place is a fault, reported with the first group that has it. Nothing is trusted: a group is believed to be one
-when pointers lead there, none lies in another, and each pointer leads to a group of its kind.
+Groups, fields and codes are found by their names, and pointers follow their groups. A field that only the new
+table has is 0; one that only the old table has can be left out where it is 0. All else that has no place is a
+fault, reported with the first group that has it. Nothing is trusted: pointers must lead to groups of their
+kind, and no group may lie in another.
 """
 
 from __future__ import annotations
@@ -142,7 +141,7 @@ def translate(state: Words, table: Table, scheme: Scheme) -> Words:
             f"{work.fit.first} is {work.fit.first.value}, too large for {scheme.name}", work.fit.misfits
         )
     if work.faults:
-        raise TranslationError(work.faults.told())
+        raise TranslationError(work.faults.phrases())
     return Words(table, scheme, ia, common)
 
 

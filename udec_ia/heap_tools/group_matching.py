@@ -1,25 +1,20 @@
 """Which group of one heap is which of the other: by its place in the map, and not by its address.
 
-    block      by its place in the block list, whatever has come or gone there (block_matching.py)
+    block      by its place in the block list, allowing for insertions and deletions (block_matching.py)
     corner     by its place round its block, counted from KP, else by where it lies
-    extension  of a block or a domain: that of a block or domain that matches
-    gridpoint  by its place in the list of its block, zones too; if their number has changed, by its corner
+    extension  that of a block or a domain that matches
+    gridpoint  by its place in the list of its block, as zones are; if their number has changed, by its corner
     contact    by the two corners that name its segments, else by the two blocks and one of these, else by the
                blocks alone; of several in the order of the contact list
     domain     by the contacts around it: the two that have most of them in common
     bound      by what it acts on, a signal by its number, a history by what it records, a relaxation by
-               what it is of; of several in the order of their list
+               its subject; of several in the order of their list
     tabpoint   by its place in its signal
 
-Where one state has more groups of one key than the other, these wait. What is left over matches if all
-pointers of matched groups that lead to the one lead to the other, too: so a broken link loses no group that
-other links hold. Those that have waited come then, in turn. What is left at last was made or deleted.
-
-KP may name another corner in the other state. The ring of a block is turned only if the corners of the other
-block from another one on lie where those of this one do: all of them, or, of a block that was cut, most.
-
-A rule looks at addresses only to follow a pointer, so states that were renumbered, or written in other words,
-match group by group. Nothing is trusted: of a damaged heap the groups that the census reaches are matched.
+Groups with equally many of one key on both sides match first. What is left matches if all pointers of matched
+groups that lead to the one lead to the other. A ring is turned where KP names another corner. Addresses only
+serve to follow pointers, so renumbered states and other word schemes match. Damaged heaps are matched as far
+as the census reaches.
 """
 
 from __future__ import annotations
@@ -31,8 +26,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap_tools.block_matching import Side, aligned, alike, blocks_of
-from udec_ia.heap_tools.row_matching import Pairs, elected, fold, in_turn, unanimous
+from udec_ia.heap_tools.block_matching import Side, blocks_of, match_blocks, same_shape
+from udec_ia.heap_tools.row_matching import Pairs, exclusive_pairs, fold, most_frequent_pairs, pairs_in_order
 from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, choices
 
@@ -135,12 +130,12 @@ class Matching:
 
     def _blocks_and_corners(self) -> None:
         one, two = (blocks_of(side) for side in self.sides)
-        a, b = aligned(one, two)
+        a, b = match_blocks(one, two)
         self._join("block", one.at[a], two.at[b])
         same = one.corners[a] == two.corners[b]
         a, b = a[same], b[same]
         ours, many = one.ring(a), one.corners[a]
-        needed = np.where(alike(one.some(a), two.some(b)), many, 1)
+        needed = np.where(same_shape(one.some(a), two.some(b)), many, 1)
         self._join("corner", ours, turned(self.sides, (ours, two.ring(b)), many, needed))
         self._same_places()
 
@@ -162,7 +157,7 @@ class Matching:
         for side, at in zip(self.sides, left, strict=True):
             with np.errstate(over="ignore"):
                 xy = [side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")]
-            host = side.meant(side.word("corner", "KNB"), at)
+            host = side.comparable(side.word("corner", "KNB"), at)
             keys.append([host, *((values + 0).view(np.int32) for values in xy)])
             known.append(host > 0)
         self._with_equal("corner", left, keys, known)
@@ -173,7 +168,7 @@ class Matching:
         """Of the groups that are left those with equal columns of `keys`, where they are known, in turn."""
         rows = [np.flatnonzero(one) for one in known]
         columns = [[column[some] for column in one] for one, some in zip(keys, rows, strict=True)]
-        one, two = in_turn(*fold(columns[0], columns[1]), as_many)
+        one, two = pairs_in_order(*fold(columns[0], columns[1]), as_many)
         self._join(kind, left[0][rows[0][one]], left[1][rows[1][two]])
 
     def _extensions(self, kind: str, owner: str, field: str) -> None:
@@ -200,7 +195,7 @@ class Matching:
             known: list[Any] = []
             for side, at in zip(self.sides, left, strict=True):
                 words = [side.word(kind, name) for name in names]
-                keys.append([side.meant(word, at) for word in words])
+                keys.append([side.comparable(word, at) for word in words])
                 good = [one >= lowest for one, word in zip(keys[-1], words, strict=True) if word.field.target]
                 known.append(np.logical_and.reduce([np.ones(len(at), bool), *good]))
             self._with_equal(kind, left, keys, known, as_many)
@@ -215,7 +210,7 @@ class Matching:
             )
         one, two = self.sides
         both = one.atlas.holding("domain", found[0]) & two.atlas.holding("domain", found[1])
-        self._join("domain", *elected(found[0][both], found[1][both]))
+        self._join("domain", *most_frequent_pairs(found[0][both], found[1][both]))
 
     def _rest(self) -> None:
         """What is left over, and all pointers of matched groups agree on."""
@@ -245,7 +240,7 @@ class Matching:
             some = (to[0] != 0) | (to[1] != 0)
             found.append((to[0][some], to[1][some]))
         one, two = zip(*found, strict=True)
-        return unanimous(np.concatenate(one), np.concatenate(two))
+        return exclusive_pairs(np.concatenate(one), np.concatenate(two))
 
     def _heads(self, kind: str) -> list[Any]:
         """Where the pointers of the common block to groups of a kind lead, in both."""

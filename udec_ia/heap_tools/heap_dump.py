@@ -1,8 +1,7 @@
 """The whole heap, or a part of it, field by field: every word is there, under the name of its group.
 
 Groups come in the order of their addresses, some thousand at a time and each kind of them at once, so that a
-dump takes time in proportion to the words, little room, and begins at once. Words that are in no group come
-as they are, several to a line; what is the same over and over is told once.
+dump takes time in proportion to the words and little memory. Repeated words outside groups are shown once.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from itertools import repeat
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ from udec_ia.printable import counted
 from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
 from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
 from udec_ia.reader.group_positions import places
-from udec_ia.reader.list_walks import Unsound, boundary, groups, loop
+from udec_ia.reader.list_walks import Unsound, boundary, follow, groups, loop
 from udec_ia.reader.listing import Listing
 from udec_ia.reader.places import address_of
 
@@ -149,13 +149,13 @@ def walk(
 def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
     """A list in words, and the addresses of its groups; these raise Unsound where it leads astray."""
     if along in MAIN and start is None:
-        return f"the {along} list", _once(along, ((iad, iad) for iad in groups(atlas.h, along)))
+        return f"the {along} list", groups(atlas.h, along)
     if along in AROUND and start is not None:
         if not atlas.holds(along, start):
             raise ValueError(f"{start} is {leads_to(atlas, along, np.array([start]))[0]}")
         if along == "block":
-            return f"around block@{start}", _once("item", ((iad, iad) for iad in boundary(atlas.h, start)))
-        return f"around domain@{start}", _once("item", (((iad, ib), iad) for iad, ib in loop(atlas.h, start)))
+            return f"around block@{start}", boundary(atlas.h, start)
+        return f"around domain@{start}", (iad for iad, _ in loop(atlas.h, start))
     if along in LINKS and start is not None:
         return f"from {start} along {along}", _linked(atlas, along, start)
     if along in LINKS:
@@ -171,30 +171,24 @@ def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int
     )
 
 
-def _once(kind: str, steps: Iterable[tuple[Hashable, int]]) -> Iterator[int]:
-    """The addresses of some steps, each with a key; Unsound when a key comes again: the list does not end."""
-    seen: set[Hashable] = set()
-    for key, iad in steps:
-        if key in seen:
-            raise Unsound(f"it leads back to {kind}@{iad}, where it did not begin")
-        seen.add(key)
-        yield iad
-
-
 def _linked(atlas: Atlas, link: str, start: int) -> Iterator[int]:
     """Groups from `start` along a field; Unsound where it leads astray or into itself."""
-    kind, iad, source = LINKS[link], start, "the address given"
+    kind = LINKS[link]
     (word,) = (word for word in atlas.shapes[kind] if word.field.name == link)
-    seen: set[int] = set()
-    while iad and not (iad == start and seen):
-        if iad in seen:
-            raise Unsound(f"{source} leads back to {kind}@{iad}, where the list did not begin")
-        if not atlas.holds(kind, iad):
+
+    def sound(iad: int, source: str) -> int:
+        if iad and not atlas.holds(kind, iad):
             raise Unsound(f"{source} points to {iad}: {leads_to(atlas, kind, np.array([iad]))[0]}")
-        seen.add(iad)
-        yield iad
-        source = f"{link} of {kind}@{iad}"
-        iad = int(atlas.gather(word, np.int64(iad)))
+        return iad
+
+    def in_words(iad: int) -> str:
+        return f"{link} of {kind}@{iad}"
+
+    def step(iad: int) -> int:
+        return sound(int(atlas.gather(word, np.int64(iad))), in_words(iad))
+
+    closed = word.field.role == "anticlockwise"
+    yield from follow(sound(start, "the address given"), step, in_words, closed)
 
 
 def _having(atlas: Atlas, name: str) -> dict[str, Word]:

@@ -1,12 +1,9 @@
-"""Words of a state are given other values by name: block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1.
+"""Assignments to words by name: block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1.
 
-What can be given a value is a field of a group in use, a variable of the common block, or, by its address, an
-integer word. All assignments are read and judged before the first is made: there must be such a field in such
-a group, and the word must be able to hold the value. Then the whole state is proved, as `check` proves it. If
-it is not sound, every word is put back.
-
-Not to be given are the size of the array (MTOP, MFREE beyond it) and what a history records: the numbers
-that it has recorded would not be its own.
+The place is a field of a group in use, a variable of the common block, or, by its address, an integer word.
+All assignments are read and checked before the first is made. Then the state is proved as `check` does;
+if it is not sound, every word is put back. The size of the array (MTOP, MFREE beyond it) and what a history
+records cannot be changed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""What a group points to and what points to it, what those point to, and so on: as a list or in DOT.
+"""The pointers around a group: what it points to, what points to it, and so on; as a list or in DOT.
 
-Both ways count: a corner is near its block, although only the corner knows it. Groups are taken in waves from
-the one asked for, the nearest first, until there are as many as a picture can show; the rest is counted. A
-pointer to something else than the field table says is shown as what it is.
+Groups are taken in waves from the first, the nearest first, up to the number that a picture can show; the
+rest is counted. A pointer to something other than the field table says is marked.
 """
 
 from __future__ import annotations
@@ -34,12 +33,12 @@ class Node(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A pointer. told: what it leads to; sound: that is what the field table says."""
+    """A pointer. meaning: what it leads to; sound: that is what the field table says."""
 
     source: int
     field: str
     target: int
-    told: str
+    meaning: str
     sound: bool
 
 
@@ -134,13 +133,13 @@ def graph(atlas: Atlas, place: int | str, depth: int = 1) -> Listing:
     """The same as a list of pointers. Raises as `neighbourhood` does."""
     found = neighbourhood(atlas, place, depth)
     rows = [
-        (found.nodes[edge.source].name, edge.field, edge.told)
+        (found.nodes[edge.source].name, edge.field, edge.meaning)
         for edge in sorted(found.edges, key=lambda edge: (_depth(found, edge), edge))
     ]
-    return Listing(said(found), ("from", "field", "to"), rows)
+    return Listing(summary(found), ("from", "field", "to"), rows)
 
 
-def said(found: Graph) -> list[str]:
+def summary(found: Graph) -> list[str]:
     """What is in a graph, and what is not."""
     first, groups = next(iter(found.nodes.values())), sum(node.kind in KINDS for node in found.nodes.values())
     many = counted(len(found.edges), "pointer")
@@ -160,7 +159,7 @@ def dot(found: Graph) -> str:
     """A graph in the language of Graphviz."""
     lines = [
         "digraph heap {",
-        f'  label="{". ".join(said(found))}";',
+        f'  label="{". ".join(summary(found))}";',
         '  rankdir=LR; node [shape=box, style="rounded,filled", fontname="sans-serif"];',
     ]
     for key, node in found.nodes.items():

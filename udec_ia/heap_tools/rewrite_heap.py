@@ -1,20 +1,12 @@
 """A state written anew in the words of another scheme: every number in its field, every pointer to its group.
 
-A word of IA() says nothing of itself. It is known by its group and field, so a heap can only be written in
-another form if every word is in one group or in the junk list, and if every pointer leads to a group of the
-kind that the table gives it. Whether the map that they make is sound, and what the numbers are, does not
-matter.
+A word of IA() is known only by its group and field. So every word must be in one group or in the junk list,
+and every pointer must lead to a group of the kind that the table gives it. Each group is written field by
+field, and all addresses follow (field_translation.py). Groups keep their order in memory, side by side, and
+the junk list is empty afterwards. IA() keeps its number of words unless the groups need more or the addresses
+end before. The tolerances are those of the rounding length in reals of the new width.
 
-Sizes and offsets of groups differ with the number of integers in the space of a real, so each group is
-written anew, field by field by the table, and all addresses follow (field_translation.py). Groups keep their
-order in memory, side by side, and the junk list is empty afterwards. Where FIND takes its words from changes
-no result.
-
-IA() keeps its number of words, unless the groups need more or the addresses end before. The tolerances are
-those that reals of the new width make of the rounding length, as RESTART asks for.
-
-What does not fit is refused, and reals that lose digits are counted. Nothing else happens to a number: into
-wider words and back again is the same state, word for word if there was no junk.
+A number that does not fit is refused, and reals that lose digits are counted.
 """
 
 from __future__ import annotations
@@ -38,7 +30,7 @@ from udec_ia.reader.group_lists import Lists
 from udec_ia.reader.list_walks import Unsound
 
 
-def movable(array: MainArray) -> dict[str, Any]:
+def groups_in_list_order(array: MainArray) -> dict[str, Any]:
     """Addresses of the groups of every kind, in the order of their lists, those of blocks block by block.
 
     Raises Unsound unless the groups in use and the junk list fill the heap, each word once, and every pointer
@@ -112,10 +104,10 @@ class Rewritten(NamedTuple):
 def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     """The state of `array`, which stays as it is, in the words of the scheme `to`.
 
-    Raises Unsound if there are groups that cannot be told apart (movable.py), UdecError 1 if the addresses
+    Raises Unsound if there are groups whose kinds cannot be known, UdecError 1 if the addresses
     of `to` end before the groups do, and 28 if its integers or reals cannot hold all numbers.
     """
-    found = movable(array)
+    found = groups_in_list_order(array)
     _check_addresses(found, to)
     work = Translation(words_of(array), TABLE, to, found)
     work.move()

@@ -34,7 +34,7 @@ def _narrowed(keys: Sequence[Any]) -> tuple[list[Any], int]:
     return np.split(places, [len(keys[0])]), len(places)
 
 
-def in_turn(one: Any, two: Any, as_many: bool = False) -> Pairs:
+def pairs_in_order(one: Any, two: Any, as_many: bool = False) -> Pairs:
     """Rows with equal keys (n,) and (m,): the first of the one with the first of the other, and so on.
 
     as_many: only of keys that both have equally often.
@@ -50,7 +50,7 @@ def in_turn(one: Any, two: Any, as_many: bool = False) -> Pairs:
     return order[0][there], order[1][partner[there]]
 
 
-def only_ones(one: Any, two: Any) -> Pairs:
+def unique_pairs(one: Any, two: Any) -> Pairs:
     """Rows whose key (n,) and (m,) comes once in each."""
     single = []
     for keys in (one, two):
@@ -70,7 +70,7 @@ def votes(one: Any, two: Any) -> tuple[Any, Any, Any]:
     return one[first], two[first], times
 
 
-def elected(one: Any, two: Any) -> Pairs:
+def most_frequent_pairs(one: Any, two: Any) -> Pairs:
     """Pairs of the numbers (n,) and (n,) that come together more often than either does with another."""
     a, b, times = votes(one, two)
     best = np.lexsort((b, a, -times))
@@ -82,7 +82,7 @@ def elected(one: Any, two: Any) -> Pairs:
     return a[mine & theirs], b[mine & theirs]
 
 
-def unanimous(one: Any, two: Any) -> Pairs:
+def exclusive_pairs(one: Any, two: Any) -> Pairs:
     """Pairs of the numbers (n,) and (n,) of which neither comes with another, 0 for none being one."""
     a, b, _ = votes(one, two)
     alone = [np.unique(side, return_counts=True) for side in (a, b)]
@@ -91,7 +91,7 @@ def unanimous(one: Any, two: Any) -> Pairs:
     return a[good], b[good]
 
 
-def rising(numbers: Any) -> Any:
+def longest_rising(numbers: Any) -> Any:
     """Places of a longest part of the whole `numbers` (n,) that rises."""
     if not len(numbers) or bool((np.diff(numbers) > 0).all()):
         return np.arange(len(numbers))

@@ -1,8 +1,7 @@
 """What differs between two heaps: group by group and field by field, and the variables of the common block.
 
-A pointer differs if it leads to another group, and not if that has another address. The words of the common
-block that say how memory is used are no part of the state, and left out: MEMORY. Reals are compared in the
-words of the narrower scheme: absolute, as a share of the greater, and in last digits (ulp).
+A pointer differs if it leads to another group. The variables that say how memory is used (MEMORY) are left
+out. Reals are compared in the words of the narrower scheme: absolute, relative, and in last digits (ulp).
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ RELATIVE, ULPS = "relative", "ulp"
 UNITS = sorted({f.unit for part in (*(one.fields for one in TABLE.groups), TABLE.common) for f in part})
 
 
-class Apart(NamedTuple):
+class Differences(NamedTuple):
     """Numbers that differ: which rows (n,), and how far; of numbers that are no reals, 0. ulps as reals."""
 
     rows: Any
@@ -40,13 +39,13 @@ class Tolerance(NamedTuple):
     relative: float = 0.0
     ulps: float = 0.0
 
-    def allows(self, unit: str, apart: Apart) -> Any:
+    def allows(self, unit: str, distances: Differences) -> Any:
         """True for each difference that does not count."""
-        good = np.zeros(len(apart.rows), bool)
+        good = np.zeros(len(distances.rows), bool)
         limits = (
-            (apart.absolute, self.units.get(unit)),
-            (apart.relative, self.relative),
-            (apart.ulps, self.ulps),
+            (distances.absolute, self.units.get(unit)),
+            (distances.relative, self.relative),
+            (distances.ulps, self.ulps),
         )
         for distance, limit in limits:
             if limit:
@@ -73,13 +72,13 @@ def tolerance(texts: Iterable[str]) -> Tolerance:
     return Tolerance(units, units.pop(RELATIVE, 0.0), units.pop(ULPS, 0.0))
 
 
-def whole_apart(differ: Any) -> Apart:
+def whole_differences(differ: Any) -> Differences:
     """Whole numbers or groups (n,), which differ or not."""
     rows = np.flatnonzero(differ)
-    return Apart(rows, *(np.zeros(len(rows)),) * 3)
+    return Differences(rows, *(np.zeros(len(rows)),) * 3)
 
 
-def reals_apart(one: Any, two: Any) -> Apart:
+def real_differences(one: Any, two: Any) -> Differences:
     """Reals (n,) and (n,) of one width or two. NaN is NaN, and -0 is 0."""
     narrow = min(one.dtype, two.dtype, key=lambda kind: kind.itemsize)
     with np.errstate(all="ignore"):
@@ -88,7 +87,7 @@ def reals_apart(one: Any, two: Any) -> Apart:
         x, y = one[rows].astype(np.float64), two[rows].astype(np.float64)
         absolute = np.abs(x - y)
         relative = absolute / np.maximum(np.abs(x), np.abs(y))
-    return Apart(rows, absolute, relative, _ulps(a[rows], b[rows]))
+    return Differences(rows, absolute, relative, _ulps(a[rows], b[rows]))
 
 
 def _ulps(one: Any, two: Any) -> Any:
@@ -123,7 +122,7 @@ class Differing(NamedTuple):
     one: Any
     two: Any
     values: tuple[Any, Any]
-    apart: Apart
+    distances: Differences
     greatest: float
     many: int
 
@@ -137,7 +136,7 @@ class Differing(NamedTuple):
     def share(self) -> Any:
         """Differences as shares of the greatest value (n,)."""
         with np.errstate(invalid="ignore"):
-            return self.apart.absolute / self.greatest if self.greatest > 0 else self.apart.absolute
+            return self.distances.absolute / self.greatest if self.greatest > 0 else self.distances.absolute
 
 
 class Compared(NamedTuple):
@@ -164,7 +163,7 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     only: kinds of groups and fields, such as contact or contact.KCFN, or common.FRAC; all if there are none.
     ValueError for one that is not known.
     """
-    wanted = chosen(only)
+    wanted = selected_fields(only)
     matching = Matching(one, two)
     fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
     fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
@@ -172,7 +171,7 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     return Compared(matching, fields, alone, {kind for kind, _ in wanted})
 
 
-def chosen(only: Iterable[str]) -> set[tuple[str, str]]:
+def selected_fields(only: Iterable[str]) -> set[tuple[str, str]]:
     """Kinds and fields of texts such as contact.KCFN; with all fields of a kind that is named alone."""
     fields = {kind: [one.name for one in TABLE.group(kind).fields] for kind in KINDS}
     fields[COMMON] = [one.name for one in TABLE.common]
@@ -232,21 +231,21 @@ def _differing(
     field = of[1]
     greatest = 0.0
     if field.real:
-        apart = reals_apart(*values)
-        counts = ~tolerance.allows(field.unit, apart)
-        apart = Apart(*(column[counts] for column in apart))
+        distances = real_differences(*values)
+        counts = ~tolerance.allows(field.unit, distances)
+        distances = Differences(*(column[counts] for column in distances))
         with np.errstate(invalid="ignore"):
             greatest = float(max(np.max(np.abs(one), initial=0.0) for one in values)) if counts.any() else 0.0
     elif field.target or field.name in ADDRESSES:
-        apart = whole_apart(_lead_apart(matching, values))
+        distances = whole_differences(_pointers_differ(matching, values))
     else:
-        apart = whole_apart(values[0] != values[1])
-    rows = apart.rows
+        distances = whole_differences(values[0] != values[1])
+    rows = distances.rows
     some = values[0][rows], values[1][rows]
-    return Differing(*of, at[0][rows], at[1][rows], some, apart, greatest, len(values[0]))
+    return Differing(*of, at[0][rows], at[1][rows], some, distances, greatest, len(values[0]))
 
 
-def _lead_apart(matching: Matching, values: tuple[Any, Any]) -> Any:
+def _pointers_differ(matching: Matching, values: tuple[Any, Any]) -> Any:
     """True for each pointer (n,) of both that does not lead to one group, or to the same nonsense."""
     numbers, groups = [], []
     for side, addresses in zip(matching.sides, values, strict=True):

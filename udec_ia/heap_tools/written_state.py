@@ -1,8 +1,7 @@
-"""The words of a state that another table or word scheme has written, and where its groups lie and go.
+"""The words of a state of any table and word scheme, and where its groups lie and go.
 
-If no kind of group in use gets another size, every group keeps its address and the junk list stays. Else they
-are laid side by side in the order that they have, and there is no junk: a junk group has a size and no kind,
-and two kinds that are of one size in a scheme are not in another, so its new size would be unknown.
+If no kind of group in use changes its size, every group keeps its address and the junk list stays. Else the
+groups are laid side by side in their order, without junk: the new size of a junk group would be unknown.
 """
 
 from __future__ import annotations
@@ -79,7 +78,7 @@ class Faults:
         first, before = self._found.get(alike or (phrase,), (phrase, 0))
         self._found[alike or (phrase,)] = first, before + many
 
-    def told(self) -> list[str]:
+    def phrases(self) -> list[str]:
         """A phrase for each sort of fault."""
         return [
             first + (f", and {many - 1} more" if many > 1 else "") for first, many in self._found.values()

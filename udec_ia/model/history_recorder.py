@@ -33,10 +33,10 @@ class HistoryRecorder:
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
     ) -> list[Series]:
         """New histories of `field`, every `n` cycles, of the groups at an address or at points."""
-        from udec_ia.reader.group_positions import choose
+        from udec_ia.reader.group_positions import select_groups
 
         what = named(field)
-        chosen = choose(array, what.group, field, address, at)
+        chosen = select_groups(array, what.group, field, address, at)
         define(array, what, [one.address for one in chosen], n)
         first = len(self.series)
         Recording(array, self.series).look()

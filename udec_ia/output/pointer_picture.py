@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.files import put_in_place
-from udec_ia.heap_tools.pointer_graph import Edge, Graph, Node, colour, dot, neighbourhood, said
+from udec_ia.heap_tools.pointer_graph import Edge, Graph, Node, colour, dot, neighbourhood, summary
 from udec_ia.output.block_drawing import INK, picture_path, write_as
 from udec_ia.reader.atlas import NOTHING, Atlas
 from udec_ia.reader.kind_colours import COLOURS
@@ -40,7 +40,7 @@ def draw(atlas: Atlas, place: int | str, out: str | Path, depth: int = 1) -> Lis
         put_in_place(path, dot(found).encode(), force=False)
     else:
         write_as(figure(found), path)
-    return Listing([*said(found), f"wrote {path}"])
+    return Listing([*summary(found), f"wrote {path}"])
 
 
 def figure(found: Graph) -> Figure:
@@ -63,7 +63,7 @@ def figure(found: Graph) -> Figure:
         _arrow(axes, one, places[one], places[other[0]], edges)
     for key, node in found.nodes.items():
         _box(axes, places[key], node)
-    notes = ". ".join(said(found))
+    notes = ". ".join(summary(found))
     axes.text(0.0, height - 2.6 * EDGE, notes, fontsize=7, color=INK, va="top")
     return picture
 

@@ -1,13 +1,11 @@
-"""What each word of IA() is: part of a group, of a junk group, of nothing, or unused; and names of groups.
+"""What each word of IA() is: part of a group, of a junk group, not linked, or unused; and names of groups.
 
-The census (heap/census.py) finds the groups that the lists reach; the junk list has what was given back.
-Between them there may be words that nothing leads to, in a damaged heap, and groups may lie in each other: a
-word then belongs to the group that begins nearest before it. Above MFREE nothing has been used.
+The census (heap/census.py) finds the groups that the lists reach; the junk list has those given back. In a
+damaged heap there may be words that nothing leads to, and groups may lie in each other: a word then belongs
+to the group that begins nearest before it. Above MFREE nothing has been used. Nothing is trusted.
 
-A group is called by its kind, its address and the block that it belongs to, as in corner@412 of block@88; a
-junk group by its place in the junk list; other words by the stretch that they are in.
-
-Nothing is trusted, and making an atlas takes time in proportion to the words that are in use.
+Names: corner@412 of block@88 for a group; a junk group by its place in the junk list; other words by the
+stretch that they are in.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
-"""Conditions on groups, such as `block where KXD > 0.1 and KMAT == 2`: read, judged and worked out for all.
+"""Conditions on groups, such as `block where KXD > 0.1 and KMAT == 2`: parsed, checked and evaluated.
 
-The part after `where` has the form of a Python expression, of which only this is allowed: fields of the
-kind, KZG(2) for the second element of one that has several, `address`, numbers, names of codes, comparisons,
-and, or, not, + - * /, abs(). Nothing of it is ever run as Python: the tree is walked, and each part of it is
-one NumPy array with an element for each group. A part is a number, or it is true or false, and neither
-stands for the other.
+The part after `where` has the form of a Python expression of fields of the kind, KZG(2) for an element,
+`address`, numbers, names of codes, comparisons, and, or, not, + - * / and abs(). It is never run as Python:
+each node of its tree gives one NumPy array with an element for each group. A part is either a number or a
+truth value; neither stands for the other.
 """
 
 from __future__ import annotations

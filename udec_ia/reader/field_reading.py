@@ -17,7 +17,7 @@ from udec_ia.heap.census import CHOICES
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Field, layouts, read_table
-from udec_ia.reader.list_walks import HEADS, Unsound
+from udec_ia.reader.list_walks import Unsound
 
 Numbers = NDArray[Any]
 INDEX = np.int32  # of the index into a list: as many items as that would take a heap of 80 GB
@@ -25,7 +25,6 @@ INDEX = np.int32  # of the index into a list: as many items as that would take a
 TABLE = read_table()
 FIELDS = {field.name: field for group in TABLE.groups for field in group.fields}
 LISTED = [group.name for group in TABLE.groups if group.list_head]
-KIND_OF_HEAD = {code: kind for kind, codes in HEADS.items() for code in codes}
 KIND_CODE = {group.name: code for code, group in enumerate(TABLE.groups, 1)}
 TARGETS: dict[str, tuple[str, ...]] = {kind: (kind,) for kind in KIND_CODE}
 TARGETS |= CHOICES | {"any": tuple(KIND_CODE)}
@@ -91,24 +90,6 @@ class Reading:
             return np.asarray(gather(self.h, addresses, (k - 1) * self.ratio, True), np.float64)
         return np.asarray(gather(self.h, addresses, k, False))
 
-    def hosts(self, contact: int) -> tuple[int, int]:
-        """The two blocks that the contact names."""
-        one, two = HOSTS
-        return self.get(contact, one), self.get(contact, two)
-
-    def link(self, block: int, iad: int) -> str:
-        """The clockwise link of the item at `iad` on `block`, in words."""
-        if self.kind(iad) == "corner":
-            return f"{KL} of corner@{iad}"
-        return f"{FORWARD[self.hosts(iad).index(block)]} of contact@{iad}"
-
-    def kind(self, iad: int) -> str | None:
-        """Kind of the group at `iad` by head code, if a whole group of that kind can stand there."""
-        if not 1 <= iad < self.free or (iad - 1) % self.ratio:
-            return None
-        kind = KIND_OF_HEAD.get(self.words[iad - 1])
-        return kind if kind and iad <= self.last(kind) else None
-
 
 def allowed(field: Field, values: Numbers) -> Numbers:
     """True for each of `values` that the field may hold."""
@@ -130,7 +111,7 @@ def in_words(field: Field) -> str:
 ROOM = 100  # rows that are expected
 
 
-def told(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
+def kernel_rows(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
     """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
 
     groups: how many it goes through; of: int or float.

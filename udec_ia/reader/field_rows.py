@@ -1,6 +1,6 @@
 """Fields of groups, one a line: words, name, value, unit and what the value means. Many groups at a time.
 
-A value that the field table does not allow, and a pointer to something else than it says, are told as such.
+A value that the field table does not allow, and a pointer to something else than it says, are marked.
 """
 
 from __future__ import annotations

@@ -2,12 +2,10 @@
 
 A block, contact or domain is in use if it stands in its main list; a corner, if it stands in the clockwise or
 the reverse list of a block in use; any other group, if a group in use points to it, or to the first of a list
-in which it stands. A word of IA() has no type of its own, so nothing else can tell a group from a heap of
-numbers. Every address is tested before it is used and every walk is bounded, whatever the words say.
+in which it stands. Every address is tested before it is used and every walk is bounded.
 
-A list that breaks ends it in Unsound; the checker notes it and goes on with the rest (check/groups.py). What
-a heap still holds, found by whatever pointer leads there, the census says (heap/census.py): what it knows
-and no list leads to has been lost, and that ends it in Unsound, too.
+A list that breaks raises Unsound; the checker reports it and goes on with the rest. So does a group that the
+census (heap/census.py) finds and no list leads to.
 """
 
 from __future__ import annotations
@@ -22,7 +20,16 @@ from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.untrusted_lists import chains, wrong_pointers
 from udec_ia.reader.block_rings import Boundaries, boundaries
-from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names, told
+from udec_ia.reader.field_reading import (
+    KIND_CODE,
+    LISTED,
+    TABLE,
+    TARGETS,
+    Numbers,
+    Reading,
+    kernel_rows,
+    names,
+)
 from udec_ia.reader.list_walks import HEADS
 
 CHAINS = InterpretWhenSmall(chains, 2e7)  # places where a group could begin
@@ -79,7 +86,7 @@ class Lists(Reading):
         """
         groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
         where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
-        return [*told(WRONG_POINTERS, len(groups), 2, *where).tolist()]
+        return [*kernel_rows(WRONG_POINTERS, len(groups), 2, *where).tolist()]
 
     def is_one(self, iad: int, kinds: Sequence[str]) -> bool:
         """True if a group of the kinds `kinds` followed so far begins at the address `iad`."""
@@ -87,7 +94,7 @@ class Lists(Reading):
         there = 0 <= place < len(self.kind_at) and not beside
         return there and self.kind_at[place] in [KIND_CODE[kind] for kind in kinds]
 
-    def tell_lost(self, *kinds: str) -> None:
+    def report_lost(self, *kinds: str) -> None:
         """Report groups of these kinds that the census knows, but no list leads to."""
         known = census(self.h)
         for kind in kinds:

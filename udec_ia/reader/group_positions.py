@@ -1,11 +1,9 @@
 """Where groups lie in the rock, and which group is nearest to a point.
 
-A block is where its centroid is, a corner where it is sharp, a contact at its contact point; a zone in the
-middle of its grid-points, a domain in the middle of the contacts around it. An extension is where the group
-is that it belongs to, a boundary condition where its grid-point, edge or block is. The outer domain, virtual
-contacts, signals and their points are nowhere.
-
-In a damaged heap the corners of a block are those that name it as their host, wherever the lists lead.
+A block is at its centroid, a corner where it is sharp, a contact at its contact point; a zone amid its
+grid-points, a domain in the middle of the contacts around it. An extension is where its owner is, a
+boundary condition where its grid-point, edge or block is. The outer domain, virtual contacts, signals and
+their points have no position. In a damaged heap the corners of a block are those that name it as their host.
 """
 
 from __future__ import annotations
@@ -28,14 +26,14 @@ OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
 SUBJECTS = (("block", "KUB"), ("corner", "KUP"), ("gridpoint", "KUG"))  # of a boundary condition, last counts
 
 
-class Chosen(NamedTuple):
+class Selected(NamedTuple):
     """A group, 0 for none. place: where it is, if it was chosen by a point."""
 
     address: int
     place: str = ""
 
 
-def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any) -> list[Chosen]:
+def select_groups(array: MainArray, kind: str, field: str, address: int | None, at: Any) -> list[Selected]:
     """The groups of `kind` meant by an address or by points, one pair or several; none for the kind "".
 
     field: what is wanted of them, for the messages. Errors 7, 8 and 10 for what is given wrongly, 26 and 30
@@ -47,12 +45,12 @@ def choose(array: MainArray, kind: str, field: str, address: int | None, at: Any
         if len(at) or address is not None:
             detail = f"{field} belongs to no group"
             raise UdecError(10, detail, "omit address and point", parameter="at" if len(at) else "address")
-        return [Chosen(0)]
+        return [Selected(0)]
     if address is not None:
         if address not in table(array, kind)["address"]:
             detail = f"{address} is not the address of a {kind} in use"
             raise UdecError(30, detail, f"{field} belongs to a {kind}", parameter="address")
-        return [Chosen(address)]
+        return [Selected(address)]
     if not len(at):
         detail = f"{field} of which {kind}?"
         raise UdecError(7, detail, "give its address, or a point near it", parameter="field")
@@ -73,7 +71,7 @@ def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     return list(zip(values[::2], values[1::2], strict=True))
 
 
-def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Chosen]:
+def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Selected]:
     """The groups of `kind` nearest to the points; of several as near the first in the list."""
     address, place = _places(array, kind)
     if not len(address):
@@ -81,7 +79,7 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
             raise UdecError(26, f"no {kind} has a position", "give its address", parameter="field")
         raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
     nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
-    return [Chosen(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
+    return [Selected(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
 
 
 def _places(array: MainArray, kind: str) -> tuple[Any, Any]:

@@ -26,7 +26,7 @@ def table(array: MainArray, kind: str) -> Any:
         raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(groups)}")
     lists, fields = Lists(array), groups[kind].fields
     at = lists.addresses(kind)
-    lists.tell_lost(kind)
+    lists.report_lost(kind)
     types: list[Any] = [("address", np.int64)]
     for field in fields:
         base = array.scheme.real_type if field.real else np.dtype(np.int64)

@@ -1,7 +1,7 @@
-"""What a look into a heap gives: a few sentences and a table, for people, programs and Python alike.
+"""A listing: a few sentences and a table, as text, JSON or Python objects.
 
-Here it is plain text and JSON, line by line, so that a table of millions of rows needs no room. A terminal
-gets the same lines in colour (command_line/coloured_listing.py).
+Text and JSON are made line by line, so that a table of millions of rows needs no memory. Colours are added in
+command_line/coloured_listing.py.
 """
 
 from __future__ import annotations

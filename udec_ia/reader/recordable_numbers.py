@@ -1,11 +1,8 @@
 """What HISTORY can record: every single number that has a name.
 
-A name of the field table says of itself which kind of group it belongs to, so `KXD` is enough to mean a
-block's velocity. Beside the fields there are the variables of the common block (`TIME`, `WFRIC`, ...), and a
-few quantities of the whole model, which are calculated when they are recorded.
-
-In IA() a history holds the kind as a number: that of the group in the order of the table, counted from 1,
-COMMON_BLOCK for the common block or WHOLE_MODEL for the whole model.
+That is a field of a group by its name (KXD), a variable of the common block (TIME), or a quantity of the
+whole model. A history group holds the number of the kind in the order of the table, from 1, or COMMON_BLOCK
+or WHOLE_MODEL.
 """
 
 from __future__ import annotations

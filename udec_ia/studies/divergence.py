@@ -97,7 +97,7 @@ class StateComparison:
         if field.field.real:
             greatest = _greatest(found.matching.sides, field.field.unit)
             with np.errstate(all="ignore"):
-                shares = np.nan_to_num(field.apart.absolute / greatest, nan=np.inf)
+                shares = np.nan_to_num(field.distances.absolute / greatest, nan=np.inf)
         else:
             shares = np.full(len(field.one), np.inf)
         row = int(np.argmax(shares))

@@ -22,7 +22,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy_account import balance
 from udec_ia.reader.atlas import Atlas, Word
 from udec_ia.reader.conditions import satisfying
-from udec_ia.reader.group_positions import choose
+from udec_ia.reader.group_positions import select_groups
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.recordable_numbers import Recordable
 from udec_ia.running.history_series import Series
@@ -116,7 +116,7 @@ def positions(atlas: Atlas, kind: str) -> Any:
 def _nearest(array: MainArray, place: Place) -> int | str:
     kind, x, y = place
     try:
-        return choose(array, kind, "", None, [(x, y)])[0].address
+        return select_groups(array, kind, "", None, [(x, y)])[0].address
     except UdecError as error:
         return error.detail
 

@@ -25,9 +25,10 @@ from udec_ia.kernels.geometry.range_selection import edges_between, points_betwe
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Range, chain, check_range, why_nothing
+from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
 from udec_ia.ops.common.hosted_groups import HOSTED, drop
 from udec_ia.ops.common.number_limits import finite, held, not_negative, positive, reals, whole
+from udec_ia.reader.list_walks import chain
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
 Target = tuple[int, int, int, int]  # as KUB, KUG, KUP and KUQ of a condition

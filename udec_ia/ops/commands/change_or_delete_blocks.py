@@ -27,10 +27,11 @@ from udec_ia.ops.commands.boundary_conditions import forget_blocks
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
 from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.array_growth import all_or_nothing, require
-from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, items
+from udec_ia.ops.common.block_ranges import Range, blocks_in, items
 from udec_ia.ops.common.deformable_scene import renew_forces
 from udec_ia.ops.common.hosted_groups import lose_hosted
 from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
+from udec_ia.reader.list_walks import chain
 
 STAYS = "leave the block fully-deformable"
 TYPES = {"rigid": g.MRIG, "sdef": g.MSDEF, "fdef": g.MFDEF}

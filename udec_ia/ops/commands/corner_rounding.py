@@ -14,6 +14,7 @@ from udec_ia.kernels.links.linked_lists import flag_all
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spare
 from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, check_resolution, positive
+from udec_ia.reader.list_walks import chain
 
 STIFFER = "use a larger rounding length, or stiffer joints"
 Point = tuple[float, float]
@@ -69,13 +70,11 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
     At a contact, or by `reach` at most where a corner has come out in a neighbour that it did not touch.
     """
     h = array.h
-    ic = int(h.ci[g.ICPNT])
-    while ic != 0:
+    for ic in chain(h, int(h.ci[g.ICPNT]), g.KC):
         overlap = getr(h, ic, g.KCN)
         if overlap > h.cr[g.DTOL2] and iget(h, ic, g.KCCOD) != g.VIRTUAL:
             place = float(getr(h, ic, g.KXC)), float(getr(h, ic, g.KYC))
             raise _too_deep(h, iget(h, ic, g.KB1), iget(h, ic, g.KB2), overlap, place, advice)
-        ic = iget(h, ic, g.KC)
     if h.ci[g.MCTOT] == 0:  # blocks that have not moved fit
         return
     ip, iq, overlap = deep_overlap(h, h.cr.dtype.type(reach))

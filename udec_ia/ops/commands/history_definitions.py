@@ -19,6 +19,7 @@ from udec_ia.kernels.drive.history_recording import DOUBLE, INTEGER, REAL
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import whole
+from udec_ia.reader.list_walks import chain
 from udec_ia.reader.recordable_numbers import Recordable, by_codes, recordable
 
 CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}
@@ -73,12 +74,7 @@ def define(array: MainArray, what: Recordable, groups: Sequence[int], every: int
 
 def addresses(array: MainArray) -> list[int]:
     """Addresses of the history groups, in the order of their numbers."""
-    found = []
-    ih = int(array.h.ci[g.IHPNT])
-    while ih != 0:
-        found.append(ih)
-        ih = iget(array.h, ih, g.KH)
-    return found
+    return list(chain(array.h, int(array.h.ci[g.IHPNT]), g.KH))
 
 
 def definitions(array: MainArray) -> list[Definition]:

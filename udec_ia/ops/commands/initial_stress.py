@@ -15,9 +15,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_conditions import ZERO, Triple
-from udec_ia.ops.common.block_ranges import Range, blocks_in, chain, why_no_block
+from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
 from udec_ia.ops.common.deformable_scene import renew_forces
 from udec_ia.ops.common.number_limits import finite, held
+from udec_ia.reader.list_walks import chain
 
 
 def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:

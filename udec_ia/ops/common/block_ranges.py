@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import hypot
 
-from udec_ia.heap.accessors import Memory, Offset, getr, iget
+from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.range_selection import blocks_between
 from udec_ia.kernels.links.linked_lists import nextcp
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.number_limits import finite
+from udec_ia.reader.list_walks import chain
 
 Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 Point = tuple[float, float]
@@ -65,9 +66,6 @@ def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point
     return f"no {what} in {here}, the nearest is {name} at {place}{limit}"
 
 
-# ---- Walks along the lists of a sound heap, for what happens once a command
-
-
 def items(h: Memory, ib: int) -> Iterator[int]:
     """Corners and contacts of block `ib`, clockwise."""
     first = item = iget(h, ib, g.KP)
@@ -76,11 +74,3 @@ def items(h: Memory, ib: int) -> Iterator[int]:
         item = nextcp(h, ib, item)
         if item == first:
             return
-
-
-def chain(h: Memory, first: int, link: Offset) -> Iterator[int]:
-    """Groups of a list from `first` on, linked by `link`; the one at hand may be given back."""
-    while first:
-        following = iget(h, first, link)
-        yield first
-        first = following

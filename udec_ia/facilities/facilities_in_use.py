@@ -19,10 +19,10 @@ from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
 from udec_ia.ops.commands.model_settings import PROPERTIES
-from udec_ia.ops.common.block_ranges import chain
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.printable import counted
 from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.list_walks import chain
 from udec_ia.reader.listing import Listing
 
 LISTS = {"block": ("KB", g.IBPNT), "contact": ("KC", g.ICPNT), "bound": ("KU", g.IBNPNT)}
@@ -42,7 +42,7 @@ class Scene:
         return len(self.atlas.groups[kind])
 
     def found(self, _: MainArray, kind: str) -> Any:
-        """Addresses of all groups of a kind, as remarks.py wants them told: no kernel is called for them."""
+        """Addresses of all groups of a kind, as checks of the input take them, without a call of a kernel."""
         return self.atlas.groups[kind]
 
     def words(self, *kinds: str) -> int:
@@ -172,7 +172,7 @@ def _block_laws(s: Scene) -> str:
 
 
 def _coefficient(k: int, name: str, unit: str) -> Callable[[Scene], str]:
-    """Says the value of a damping coefficient that the user has given."""
+    """The value of a damping coefficient that the user has given."""
     return lambda s: f"{name} {s.h.cr[k]:.4g} {unit}" if s.h.cr[k] and not _adapts(s) else ""
 
 
@@ -215,8 +215,8 @@ def _others(s: Scene) -> str:
 
 
 MAP = ("block", "corner", "contact", "domain", "jointext")
-TOLD = (*MAP, "sdef", "fdef", "zone", "gridpoint", "bound", "signal", "tabpoint", "history", "relax")
-OTHERS = [group.name for group in read_table().groups if group.name not in TOLD]  # that no line speaks of
+LISTED = (*MAP, "sdef", "fdef", "zone", "gridpoint", "bound", "signal", "tabpoint", "history", "relax")
+OTHERS = [group.name for group in read_table().groups if group.name not in LISTED]
 FACILITIES = (
     Facility("blocks and contacts", _map, lambda s: s.words(*MAP)),
     Facility("domain pass", _domain_pass),
@@ -246,7 +246,7 @@ LOADS = ("KUFX", "KUFY", "KUCXX", "KUCXY", "KUCYY")
 MODULI = ("bulk", "g")
 
 
-def idle(array: MainArray) -> Listing:
+def facilities_without_effect(array: MainArray) -> Listing:
     """What was asked for and has no effect in the state in `array`, and why."""
     scene = Scene(array)
     if not scene.lists_end:
@@ -326,10 +326,4 @@ def _materials(s: Scene) -> Found:
     yield from (("PROPERTY", text) for text in check_laws(s.array, s.found))
 
 
-def _pressures(s: Scene) -> Found:
-    """Pore pressures, which have words and no code."""
-    if many := int((s.column("domain", "KPP") != 0).sum()):
-        yield "pore pressure", f"set in {counted(many, 'domain')}, and no routine looks at it"
-
-
-RULES = (_motion, _damping, _fixed, _idle_conditions, _histories, _materials, _pressures)
+RULES = (_motion, _damping, _fixed, _idle_conditions, _histories, _materials)

@@ -16,10 +16,10 @@ from support.mechanics_scenes import on_base
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap_tools import facility_costs as cost
-from udec_ia.heap_tools.facilities import FACILITIES, facilities, idle
-from udec_ia.heap_tools.facility_costs import WITHOUT, costs
+from udec_ia.facilities import facility_costs as cost
+from udec_ia.facilities.facilities_in_use import FACILITIES, facilities, facilities_without_effect
+from udec_ia.facilities.facility_costs import WITHOUT, costs
+from udec_ia.heap.accessors import puti
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g
 from udec_ia.layout.table import read_table
@@ -55,7 +55,7 @@ def used(m: Model) -> dict[str, int]:
 
 
 def vain(m: Model) -> dict[str, str]:
-    return {row[0]: row[1] for row in idle(m.array).rows}
+    return {row[0]: row[1] for row in facilities_without_effect(m.array).rows}
 
 
 def test_each_facility_says_how_to_do_without_it() -> None:
@@ -214,18 +214,12 @@ def test_what_is_asked_for_in_vain_is_named_with_the_reason(
     assert name not in vain(other)
 
 
-def test_pore_pressures_have_no_effect() -> None:
-    m = scene()
-    putr(m.array.h, int(m.table("domain")["address"][0]), g.KPP, 1e5)
-    assert vain(m) == {"pore pressure": "set in 1 domain, and no routine looks at it"}
-
-
 def test_damaged_lists_are_not_followed() -> None:
     m = scene()
     block = int(m.table("block")["address"][0])
     puti(m.array.h, block, g.KB, block)
     assert used(m).keys() >= {"blocks and contacts"}
-    listing = idle(m.array)
+    listing = facilities_without_effect(m.array)
     assert "damaged" in listing.said[0]
     assert not [*listing.rows]
 
