@@ -286,20 +286,6 @@ def test_what_damps_is_said_when_a_deck_begins_to_run(tmp_path: Path) -> None:
     assert "damping: none" not in printed
 
 
-def test_slivers_are_named_before_the_run(tmp_path: Path) -> None:
-    m = Model(out=tmp_path)
-    m.property(1, density=2000, kn=1e8, ks=1e8)
-    m.round(0.001)
-    m.block(0, 0, 0, 2, 4, 2, 4, 0)
-    m.split(-1, 1, 5, 1)
-    m.split(-1, 1.02, 5, 1.02)
-    said = collect_remarks(m)
-    m.cycle(0)
-    text = said[said.keys.index("slivers")]
-    assert "1 of 3 blocks" in text
-    assert "4 m long, is 0.02 m wide" in text
-
-
 def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None:
     """Which of them a contact takes is the map's affair: said once, and not where it does not matter."""
     m = Model(out=tmp_path)
@@ -331,13 +317,3 @@ def test_initial_tension_is_remarked(
     m.insitu(0, 1, 1, 2, *stress)
     assert said.keys == ["initial-tension"] * warned
     assert all("4e+06" in one for one in said)
-
-
-def test_a_tiny_fraction_is_remarked(tmp_path: Path) -> None:
-    m = soft(tmp_path)
-    said = collect_remarks(m)
-    m.fraction(0.01)
-    assert said == []
-    m.fraction(1e-300)
-    assert said.keys == ["tiny-fraction"]
-    assert "1e+300 cycles" in said[0]

@@ -34,10 +34,8 @@ OF_JOINTS = {  # properties of joints, by their places in the common block
     one.keyword.upper(): getattr(g, one.array) for one in read_table().properties if one.array in JOINT_ARRAYS
 }
 SLIVER = 40  # mean edge over the shortest, from which on to warn
-SLENDER = 100  # length over mean width of a block, from which on it is a sliver
 Groups = Callable[[MainArray, str], Any]  # finds the addresses of all groups of a kind
 RESOLVED = 0.005  # of the mean force on a contact: force of a last digit from which on to warn
-TINY = 1e-4  # fraction of the critical time-step from which downwards to warn
 GREATER = 1.005  # moment of inertia of zones over that of the body from which on to report it
 STEEP = 5  # tangent of 79 degrees; no joint is as rough, and 90 and more are no degrees
 
@@ -99,16 +97,6 @@ def check_spin(array: MainArray, ib: int, before: float) -> Iterator[Remark]:
         )
 
 
-def check_fraction(f: float) -> Iterator[Remark]:
-    """FRACTION: a step in which nothing happens."""
-    if f < TINY:
-        yield Remark(
-            "tiny-fraction",
-            f"FRACTION {f:g}: it takes {1 / f:.2g} cycles until blocks do what they can do in one critical "
-            "time-step; 0.1 is usual",
-        )
-
-
 def check_tension(stress: Sequence[float], gradients: Sequence[float]) -> Iterator[Remark]:
     """INSITU: tension in all of the range. stress: 11, 12, 22, Pa; gradients: their growth per metre."""
     s11, _, s22 = stress
@@ -127,7 +115,7 @@ def check_input(array: MainArray, own_laws: Collection[int]) -> Iterator[Remark]
     yield from check_laws(array)
     yield from check_joints(array)
     yield from check_loads(array)
-    yield from list(check_edges(array)) or check_slivers(array)
+    yield from check_edges(array)
     yield from check_softness(array)
     yield from check_resolution(array)
 
@@ -234,28 +222,6 @@ def check_edges(array: MainArray) -> Iterator[Remark]:
             f"where the mean edge has {mean:.3g} m, makes "
             f"the rounding length {h.cr[g.DTOL]:.3g} m and allows overlaps up to half of that: "
             "cut elsewhere, or DELETE the sliver",
-        )
-
-
-def check_slivers(array: MainArray) -> Iterator[Remark]:
-    """CYCLE, before the first one: blocks much longer than they are wide on the average."""
-    h = array.h
-    if h.ci[g.MCTOT]:
-        return
-    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
-    mass, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KBM, g.KBRO))
-    area = mass / h.cr[g.DENS + integers(h, blocks, g.KMAT) - 1]
-    with np.errstate(divide="ignore"):
-        slender = 4 * reach * reach / area
-    many, k = int((slender > SLENDER).sum()), int(slender.argmax())
-    if many:
-        x, y = (float(getr(h, int(blocks[k]), at)) for at in (g.KX, g.KY))
-        yield Remark(
-            "slivers",
-            f"{many} of {len(blocks)} blocks are slivers, more than {SLENDER} times as long as wide; "
-            f"block@{blocks[k]} at ({x:.4g}, {y:.4g}), {2 * reach[k]:.3g} m long, is "
-            f"{area[k] / (2 * reach[k]):.2g} m wide: the time-step is as short as their masses are small; "
-            "cut elsewhere, or DELETE them",
         )
 
 

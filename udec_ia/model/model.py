@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
 from udec_ia.advice.input_warnings import (
-    check_fraction,
     check_properties,
     check_tension,
 )
@@ -319,7 +318,6 @@ class Model:
         """
         self.session.ensure_ready(sound=False)
         model_settings.set_fraction(self.array, f, safe, scaled)
-        self.session.remark(check_fraction(f))
 
     @keeps_step
     def scale(self, s: float) -> None:

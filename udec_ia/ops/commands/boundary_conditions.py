@@ -102,6 +102,9 @@ def boundary(
     _check_free(array.h, [target[0] for target in loads if target[2] == 0], xvel=xvel, yvel=yvel)
     held(array, "a force or an impedance", (value for load in loads.values() for value in astuple(load)))
     signal = find_function(array.h, function) if function is not None else 0
+    if function is not None and not signal:
+        advice = f"define it first: FUNCTION {function} t1 f1 t2 f2 ..."
+        raise UdecError(26, f"FUNCTION {function}", advice)
     require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
     h = array.h
     if sine is not None:
@@ -345,11 +348,9 @@ def _make_signal(h: Memory) -> int:
 
 
 def find_function(h: Memory, number: int) -> int:
-    """The signal that is FUNCTION `number`. Error 26 if there is none."""
-    for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
-        if iget(h, isg, g.KTP) and iget(h, isg, g.KTNUM) == number:
-            return isg
-    raise UdecError(26, f"FUNCTION {number}", f"define it first: FUNCTION {number} t1 f1 t2 f2 ...")
+    """The signal that is FUNCTION `number`, 0 if there is none."""
+    signals = chain(h, int(h.ci[g.ISGPNT]), g.KT)
+    return next((s for s in signals if iget(h, s, g.KTP) and iget(h, s, g.KTNUM) == number), 0)
 
 
 def set_function(array: MainArray, number: int, points: Sequence[tuple[float, float]]) -> None:
@@ -370,14 +371,7 @@ def set_function(array: MainArray, number: int, points: Sequence[tuple[float, fl
         finite(array, **{f"t{k} - t{k - 1}": t2 - t1, f"f{k} - f{k - 1}": f2 - f1})
     require(array, size_of(array.h, g.NVSG) + len(points) * size_of(array.h, g.NVTP))
     h = array.h
-    isg = next(
-        (
-            s
-            for s in chain(h, int(h.ci[g.ISGPNT]), g.KT)
-            if iget(h, s, g.KTP) and iget(h, s, g.KTNUM) == number
-        ),
-        0,
-    )
+    isg = find_function(h, number)
     for it in chain(h, iget(h, isg, g.KTP), g.KTPN) if isg else ():
         lose(h, it, g.NVTP)
     isg = isg or _make_signal(h)
