@@ -85,7 +85,7 @@ def gaps(starts: Numbers, sizes: Numbers, free: int) -> Numbers:
     Address of the group before, 0 for none; the word after it; and where the next group begins, or `free`.
     """
     before, end, start = np.append(0, starts), np.append(1, starts + sizes), np.append(starts, free)
-    return np.column_stack((before, end, start))[end != start]
+    return np.asarray(np.column_stack((before, end, start))[end != start])
 
 
 def _check_tiling(state: State, junk: dict[int, int]) -> None:
