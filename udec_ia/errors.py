@@ -163,7 +163,7 @@ ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 OVERFLOW = 1
 TOO_SHORT = 14  # an edge can no longer hold its roundings
 OVERLAP_TOO_GREAT = 15  # blocks overlap by more than DTOL2, or without a contact
-DAMAGED = 20  # after this error the state can be saved by force only, to be looked at
+DAMAGED = 20  # after this error the state can be saved by force only, for inspection
 INSIDE_OUT = 32  # a body or zone is strained until it has no area any more
 LAW_FAILED = 35
 TOO_FAR = 36
@@ -178,7 +178,7 @@ DISORDERED = (
 
 
 def spoilt(number: int, cycle: int) -> str:
-    """What is to be said of a state that error `number` has ended a run of, in `cycle` (NSPOIL, MCSPOI)."""
+    """Sentence on a state in which error `number` has ended a run, in `cycle` (NSPOIL, MCSPOI)."""
     return f"error {number} in cycle {cycle}, {MESSAGES[number]}, has ended a run of this state"
 
 

@@ -90,7 +90,7 @@ def _alike(path: Path, content: Content) -> Judge:
     """Judges by the first bytes, which must be those of `content`."""
 
     def judge(front: bytes, _: int) -> str:
-        alike = front[:SIGNATURE] == bytes(content[:SIGNATURE])
+        alike = front.startswith(bytes(content[:SIGNATURE]))
         return "" if alike else f"exists, but is not a {path.suffix[1:].upper()} file of this program"
 
     return judge
@@ -142,7 +142,7 @@ def keep_rights(file: Path, before: os.stat_result) -> None:
 
 
 def takes_files(folder: Path) -> bool:
-    """False if no file can be put into `folder`, as far as that can be told before it is made."""
+    """False if no file can be put into `folder`, as far as is known before it is made."""
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 

@@ -1,18 +1,17 @@
-"""Text of others, made safe to print.
+"""Text from files and users, made safe to print.
 
-A terminal obeys what it is sent. A name out of a file can hold escape sequences, marks that turn the line
-round, or bytes that are no text, and it can be as long as it likes: all that is not plainly visible becomes
-an escape, as Python writes it, and the end of what is long is left out. What is said in words keeps to the
-width of a terminal.
+A terminal obeys escape sequences, and a name in a file can contain them, or characters that reverse the line,
+or bytes that are not text. All that is not visible becomes an escape, as Python writes it, and a long name is
+cut. Sentences are folded to the width of a terminal.
 """
 
 from __future__ import annotations
 
 from textwrap import TextWrapper
 
-NAME = 100  # characters of a name that somebody else has chosen
+NAME = 100  # characters of a foreign name
 WIDTH, INDENT = 80, "    "  # columns of a line, and what is before what does not fit
-MESSAGE = 2000  # characters of a whole message, in which there may be paths of the user's own
+MESSAGE = 2000  # characters of a whole message, which may contain paths of the user
 
 
 def printable(text: str, limit: int = NAME) -> str:

@@ -1,16 +1,15 @@
 """Ctrl-C and SIGTERM wait until they can do no harm.
 
 Python raises KeyboardInterrupt between any two of its steps: half-way through a change of the map, and in the
-midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only noted. It is
-handed to the handler that was there before, which raises, as soon as the command is done. Commands that
+midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only recorded.
+It is handed to the handler that was there before, which raises, as soon as the command is done. Commands that
 take long let it through on the way: a run between two pieces of its cycles (`poll`), what only looks or draws
-at any time (`passing`). Who presses Ctrl-C twice does not wait: the command is taken back (transaction.py).
+at any time (`passing`). A second Ctrl-C does not wait: the command is taken back (model/undo.py).
 
 An exception that is raised where Python cleans up, in a `__del__` or a callback of a weak reference, is lost.
-So what is let through at any time stays noted until it has ended something, else it is handed on again; that
-it was lost on the way is then nothing to tell. A library may also turn it into an error of its own, with or
-without saying by what: an error that comes while a signal was let through and has ended nothing is that
-signal.
+So a signal that is let through stays recorded until it has ended something; otherwise it is handed on again,
+and its loss is not reported. A library may also turn it into an error of its own: an error that comes while a
+signal was let through and has ended nothing is that signal.
 
 Handlers belong to the main thread of a process. In another one nothing waits, for no signal comes there. A
 signal that kills or is ignored is left alone: SIGTERM waits where the command line has it raise Terminated.

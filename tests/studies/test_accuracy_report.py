@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from udec_ia.cli import main
-from udec_ia.studies.accuracy_report import answer, half_step, shown_rows, study_table
+from udec_ia.studies.accuracy_report import answer, study_table, table_rows
 from udec_ia.studies.accuracy_study import AccuracyStudy, depends_on_step, path_differences, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import Extrapolation
@@ -41,11 +41,13 @@ def test_what_is_the_same_at_all_steps_recommends_nothing_alone(tmp_path: Path) 
     lines = answer(study)
     assert study.best is None
     assert study.known == ["force"]
-    assert lines[CHANGE].startswith("to change: no recommendation: way has no reference")
+    assert lines[CHANGE].startswith(
+        "to change: no recommendation: without a reference that is known well enough: way"
+    )
     assert "way converges to" in lines[ACCURACY]
     assert "force is 0 at all these steps" in lines[ACCURACY]
-    assert not any("within" in str(row[-1]) for row in shown_rows(study))
-    one = replace(study, levels=study.levels[:1], parting=None, rows=study.rows[:1])
+    assert not any("within" in str(row[-1]) for row in table_rows(study))
+    one = replace(study, levels=study.levels[:1], separation=None, rows=study.rows[:1])
     assert "no run with half the time-step has ended" in answer(one)[CHANGE]
 
 
@@ -54,7 +56,7 @@ def test_an_answer_has_five_lines_and_names_what_it_does_not_hold_for(tmp_path: 
     lines = answer(study)
     assert len(lines) == 5
     assert study.known == ["way", "force"]
-    assert "cycles has no reference" in lines[UNKNOWN]
+    assert "known well enough: cycles" in lines[UNKNOWN]
 
 
 def test_which_quantities_are_enough_to_choose_by() -> None:
@@ -100,7 +102,7 @@ def test_whether_the_result_depends_on_the_loading_path(tmp_path: Path) -> None:
 
 def test_the_table_has_the_value_and_error_of_every_quantity_at_every_setting(tmp_path: Path) -> None:
     study = studied(FALL, tmp_path, WAY, FORCE, tolerance=1e-2)
-    (file, _) = study_table(study).write(tmp_path / "x", {})
+    file = study_table(study).write(tmp_path / "x")
     with file.open(newline="") as text:
         rows = {row["run"]: row for row in csv.DictReader(text)}
     assert {*rows} == {row.setting.name for row in study.rows}
@@ -118,32 +120,16 @@ def test_a_quantity_that_tends_to_0_has_no_relative_error(tmp_path: Path) -> Non
     """The displacement of a block on springs goes with one over their stiffness: it tends to 0."""
     deck = Deck(f"{PILE}CYCLE 2000\n", "x.dat")
     with SettingRunner(deck, Options(("way = max block.DISPLACEMENT",), jobs=0), tmp_path) as runner:
-        runner.survey_deck()
+        runner.run_own_deck()
         _, rows = vary_lever(runner, "stiffness")
     off = [row[COLUMNS.index("off its limit")] for row in rows]
     assert off == pytest.approx([1, 0.5, 0.25], rel=0.05)
     assert all("tends to 0" in str(row[-1]) for row in rows)
 
 
-def test_samples_may_be_what_differs(tmp_path: Path) -> None:
-    study = studied(FALL, tmp_path / "a", "top = max history 1", half_step=True)
-    assert study.sampled == {"top": 50}
-    (line,) = half_step(study)
-    assert "ITS SAMPLES, every 50 cycles" in line
-    assert "HISTORY 1 before a smaller FRACTION" in line
-    assert "TOO LARGE" not in line
-    every = studied(
-        FALL.replace("HISTORY 50", "HISTORY 1"), tmp_path / "b", "top = max history 1", half_step=True
-    )
-    assert every.sampled == {}
-    assert "TOO LARGE" in half_step(every)[0]
-    study = studied(FALL, tmp_path / "a", "top = last history 1", tolerance=1e-14)
-    assert "its samples are 50 cycles apart" in answer(study)[ACCURACY]
-
-
 def test_finer_zones_leave_joints_as_stiff_as_they_are(tmp_path: Path) -> None:
     with SettingRunner(Deck(MESHED, "x.dat"), Options((FORCE,), jobs=0), tmp_path) as runner:
-        runner.survey_deck()
+        runner.run_own_deck()
         notes, rows = vary_lever(runner, "zones")
     contacts = [row[COLUMNS.index("contacts")] for row in rows]
     assert contacts == sorted({*contacts})  # type: ignore[type-var]

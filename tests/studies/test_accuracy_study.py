@@ -15,15 +15,14 @@ import pytest
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.layout import offsets as g
-from udec_ia.studies.accuracy_report import answer, half_step, shown_rows
+from udec_ia.studies.accuracy_report import answer, half_step, table_rows
 from udec_ia.studies.accuracy_study import AccuracyStudy, Row, recommended, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck, list_changes
-from udec_ia.studies.perturbed_run import PerturbedRun
-from udec_ia.studies.setting_runner import SURVEY, Options, SettingRunner
+from udec_ia.studies.setting_runner import Options, SettingRunner
 from udec_ia.studies.settings import Fraction, Numbers, Setting
-from udec_ia.studies.significant_digits import Ensemble, FieldBlame, measure_digits
+from udec_ia.studies.significant_digits import Ensemble, FieldBlame, PerturbedRun, measure_digits
 from udec_ia.studies.study_run import ENDED, RunResult
-from udec_ia.studies.survey_run import find_parting, read_segments
+from udec_ia.studies.survey_run import find_separation, read_segments
 from udec_ia.studies.worker_pool import RUNS, run_all
 
 PROPERTIES = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 FRICTION=0.5\n"
@@ -115,7 +114,7 @@ def test_the_lines_to_change_make_the_recommended_run(fall: AccuracyStudy, tmp_p
 
 
 def test_the_survey_knows_the_time_steps(fall: AccuracyStudy) -> None:
-    found = read_segments(fall.folder / RUNS / SURVEY)
+    found = read_segments(fall.folder / RUNS / Setting().name)
     assert [one.asked for one in found] == [120, 80]
     assert [one.step for one in found] == pytest.approx([STEP] * 2)
     assert found[1].began == pytest.approx(120 * STEP)
@@ -142,8 +141,9 @@ def test_rest_is_sought_more_closely(tmp_path: Path) -> None:
 
 def test_a_budget_that_is_too_small_says_so(tmp_path: Path) -> None:
     found = priced(FALL, tmp_path, quantities=FELL, budget=1e-6)
-    assert not found.rows
-    assert "more than the budget" in found.notes[0]
+    assert found.best is None
+    assert [row.setting for row in found.rows if row.result] == [Setting()]
+    assert "budget" in found.notes[0]
 
 
 def test_a_deck_that_fails_is_a_result(tmp_path: Path) -> None:
@@ -154,11 +154,11 @@ def test_a_deck_that_fails_is_a_result(tmp_path: Path) -> None:
 def test_runs_that_go_apart_part_somewhere(tmp_path: Path) -> None:
     price = priced(FALL, tmp_path, quantities=FELL, half_step=True)
     one, two = (price.path(row) for row in price.levels)
-    found = find_parting(one, two, 1e-3)
+    found = find_separation(one, two, 1e-3)
     assert found is not None
     assert (found.x, found.y) == (0.5, 0.5)
     assert found.apart == pytest.approx(0.5 * 10 * (200 * STEP) ** 2 * (1 / 200 - 1 / 400))
-    assert find_parting(one, one, 1e-3) is None
+    assert find_separation(one, one, 1e-3) is None
 
 
 # ---- digits
@@ -210,7 +210,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     told = capsys.readouterr().out
     assert told.startswith("to change: ")
     assert len(told.splitlines()) == 6
-    names = {f"fall-trade.{kind}" for kind in ("csv", "h5", "png", "svg")}
+    names = {f"fall-trade.{kind}" for kind in ("csv", "png", "svg")}
     assert {path.name for path in out.glob("fall-trade.*")} == names
     assert main(["trade", str(deck), *asked, "--half-step"]) == 0
     assert "TOO LARGE" in capsys.readouterr().out
@@ -219,8 +219,8 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 
 def test_what_was_not_run_has_no_numbers(fall: AccuracyStudy) -> None:
     setting, numbers = fall.rows[0].setting, fall.rows[0].numbers
-    (row,) = shown_rows(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
-    assert row == (setting.name, "", "", 2.0, "", "", 0, "not run: beyond the budget")
+    (row,) = table_rows(replace(fall, rows=[Row(setting, numbers, predicted=2.0)]))
+    assert row == (setting.name, "", "", "", 0, "not run: beyond the budget")
 
 
 MILD = (
@@ -269,11 +269,12 @@ def test_a_deck_that_goes_on_from_a_file_keeps_its_fraction(
         tmp_path,
     )
     assert price.fraction == fraction
-    for name in (SURVEY, Setting().name):
+    for name in (Setting().name, Setting(step=0.5).name):
         runs = read_segments(tmp_path / "out" / RUNS / name)
         assert (runs[0].safe, runs[0].scaled) == (bool(fraction[1]), fraction[1] == " SCALED")
         same = 1e-3 if fraction[1] else 1e-12  # the safe bound is found anew: contacts are not what they were
-        assert runs[0].step == pytest.approx(float(m.h.cr[g.TDEL]), rel=same)
+        step = float(m.h.cr[g.TDEL]) * (1 if name == Setting().name else 0.5)
+        assert runs[0].step == pytest.approx(step, rel=same)
     assert all(row.ran for row in price.rows if row.result is not None)
 
 

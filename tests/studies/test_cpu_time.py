@@ -68,16 +68,15 @@ def test_a_run_that_has_done_its_cycles_is_not_late(
         return 0.0 if not watched[0].model.array.h.ci[MCTOT] >= 200 else 99.0
 
     from udec_ia.layout.offsets import MCTOT
-    from udec_ia.studies import observer
 
-    watched: list[observer.StudyObserver] = []
-    begin = observer.StudyObserver.begin
+    watched: list[execute_run.StudyObserver] = []
+    begin = execute_run.StudyObserver.begin
 
-    def begun(self: observer.StudyObserver, *about: Any) -> None:
+    def begun(self: execute_run.StudyObserver, *about: Any) -> None:
         watched.append(self)
         begin(self, *about)
 
-    monkeypatch.setattr(observer.StudyObserver, "begin", begun)
+    monkeypatch.setattr(execute_run.StudyObserver, "begin", begun)
     monkeypatch.setattr(
         execute_run.CpuTime, "seconds", property(lambda self: seconds(self) if watched else 0.0)
     )

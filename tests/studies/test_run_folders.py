@@ -67,7 +67,7 @@ def test_what_is_not_ours_stays_and_nothing_is_run(kind: str, tmp_path: Path) ->
     foreign(place, kind)
     with pytest.raises(UdecError, match="31") as caught:
         run_all(piles(0.1, 0.2), tmp_path, jobs=0)
-    assert f"{place}, the place of a run, is " in caught.value.detail
+    assert f"{place}, the place of a run, " in caught.value.detail
     assert "move it away, or give another folder" in caught.value.advice
     assert sorted(os.listdir(tmp_path / RUNS)) == [LOCK, "F=0.2"]
     assert (
@@ -85,10 +85,10 @@ def test_what_comes_to_stand_there_meanwhile_stays(tmp_path: Path) -> None:
 
 
 def test_a_trade_leaves_it_as_well(tmp_path: Path) -> None:
-    foreign(tmp_path / RUNS / "survey", "folder")
+    foreign(tmp_path / RUNS / "i32r64,step=1", "folder")
     with pytest.raises(UdecError, match="not made"):
         study_accuracy(PILE, "pile.dat", {}, tmp_path, Options(jobs=0))
-    assert (tmp_path / RUNS / "survey" / "thesis.txt").read_text() == "mine"
+    assert (tmp_path / RUNS / "i32r64,step=1" / "thesis.txt").read_text() == "mine"
 
 
 def test_an_empty_folder_and_one_of_ours_are_replaced(tmp_path: Path) -> None:

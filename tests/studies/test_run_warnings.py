@@ -44,8 +44,8 @@ def test_they_are_shown(
     for _ in range(2):  # the second time the results are read
         assert main(command) == 0
         printed = capsys.readouterr().out
-        assert f"\n2 of 3 runs were warned: {TANGENT}" in printed
-        assert printed.count("warned") == 1
+        assert f"\nwarning in 2 of 3 runs: {TANGENT}" in printed
+        assert printed.count("warning in") == 1
         assert "(F=10,N=2, in log.txt)\n" in printed
         assert "seconds  warnings  message" in printed
         with Path("pile-sweep/pile.csv").open(newline="") as file:
@@ -61,9 +61,9 @@ def test_a_thousand_runs_are_a_few_lines() -> None:
     ]
     said = summarise_warnings(runs, "log.txt")
     assert said == [
-        "1000 of 1000 runs were warned: a step of 0 s (F=0, in log.txt)",
-        "800 of 1000 runs were warned: block@1 is a sliver (F=1, in log.txt)",
-        "600 of 1000 runs were warned: force 2e-3 and 0.3 (F=2, in log.txt)",
+        "warning in 1000 of 1000 runs: a step of 0 s (F=0, in log.txt)",
+        "warning in 800 of 1000 runs: block@1 is a sliver (F=1, in log.txt)",
+        "warning in 600 of 1000 runs: force 2e-3 and 0.3 (F=2, in log.txt)",
         "2 other warnings: see warnings in the table, and log.txt",
     ]
     assert summarise_warnings([RunResult("x", {}, "ended")], "log.txt") == []

@@ -15,7 +15,7 @@ import pytest
 from udec_ia import Model, UdecError
 from udec_ia.layout.offsets import MCTOT, MFREE
 from udec_ia.studies.execute_run import execute, rehearse
-from udec_ia.studies.quantity_syntax import read_quantities
+from udec_ia.studies.quantities import read_quantities
 from udec_ia.studies.run_folder import LOCK
 from udec_ia.studies.study_run import RunResult, StudyRun, kept_result, write_result
 from udec_ia.studies.worker_pool import RUNS, run_all
@@ -100,7 +100,7 @@ def test_an_exception_of_ours_is_a_result_too(tmp_path: Path, monkeypatch: pytes
     def broken(*_: object) -> None:
         raise ZeroDivisionError("in the program")
 
-    monkeypatch.setattr("udec_ia.studies.observer.StudyObserver.begin", broken)
+    monkeypatch.setattr("udec_ia.studies.execute_run.StudyObserver.begin", broken)
     result = execute(of({}), tmp_path)
     assert (result.status, result.message) == ("error", "ZeroDivisionError: in the program")
     assert "Traceback" in (tmp_path / "run" / "log.txt").read_text()
@@ -217,7 +217,7 @@ def test_an_interrupted_run_leaves_no_folder(tmp_path: Path, monkeypatch: pytest
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("udec_ia.studies.observer.StudyObserver.begin", interrupted)
+    monkeypatch.setattr("udec_ia.studies.execute_run.StudyObserver.begin", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_all([of({})], tmp_path, jobs=0)
     assert os.listdir(tmp_path / RUNS) == [LOCK]

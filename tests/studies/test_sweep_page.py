@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from udec_ia.cli import main
-from udec_ia.studies.quantity_syntax import read_quantities, read_rule
+from udec_ia.studies.quantities import read_quantities, read_rule
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "sweep.md").read_text()

@@ -9,11 +9,9 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.studies.accuracy_study import study_accuracy
-from udec_ia.studies.deck_rewriting import Deck, at_own_line, list_changes, own_lines
+from udec_ia.studies.deck_rewriting import Deck, list_changes
 from udec_ia.studies.setting_runner import Options
 from udec_ia.studies.settings import Fraction, Numbers, Setting
-from udec_ia.studies.study_run import ERROR, RunResult
-from udec_ia.studies.survey_run import SurveyRun
 
 HEAD = "START ; begin\nPROP MAT=1 DENS=2000\n+ KN=1E8 KS=1E8 FRICTION=0.5\nBLOCK 0 0 0 1 1 1 1 0\n"
 LAYOUTS = {
@@ -79,10 +77,5 @@ def test_what_stays_the_same_is_not_listed() -> None:
 
 def test_errors_name_the_line_of_the_users_deck(tmp_path: Path) -> None:
     text = HEAD + "CYCLE 5\nDELETE 0 1 0 1\n"
-    pieces = Deck(text, "x.dat").pieces(Setting(), None, Fraction(0.1))
-    run = SurveyRun("a", "", "x.dat", lines=own_lines(pieces))
-    assert run.lines == (1, 1, 2, 3, 4, 5, 6)
-    result = RunResult("a", {}, ERROR, message="x.dat:7:1: error 12")
-    assert at_own_line(result, run).message == "x.dat:6:1: error 12"
     price = study_accuracy(text, "x.dat", {}, tmp_path, Options(builds=("i32r64",), jobs=0))
     assert "nothing to compare: x.dat:6:1: error" in price.notes[-1]

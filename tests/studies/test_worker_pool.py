@@ -61,7 +61,7 @@ def test_a_run_that_kills_its_process_is_a_result(tmp_path: Path) -> None:
     told: list[str] = []
     again = run_all(runs, tmp_path, jobs=1, report=lambda _, why: told.append(why))
     assert outcomes(again) == outcomes(results)
-    assert sorted(told) == ["kept", "kept", "the process had died"]
+    assert sorted(told) == ["kept", "kept", "the system had failed"]
 
 
 def whole(folder: Path) -> int:

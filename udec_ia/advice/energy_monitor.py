@@ -126,7 +126,7 @@ class EnergyMonitor:
         if self._account is not None:
             self._account = replace(self._account, ended=_stock(array.h))
 
-    def ahead(self, h: Memory) -> int:
+    def cycles_ahead(self, h: Memory) -> int:
         """Cycles until the next look. It depends on the number of the cycle alone."""
         every = JUDGE if self._account is None else LOOK
         return every - int(h.ci[g.MCTOT]) % every

@@ -42,7 +42,7 @@ class RunMonitors(Observer):
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
         """Cycles until the next look. They depend on the number of the cycle alone."""
-        return min(n, self.energy.ahead(array.h))
+        return min(n, self.energy.cycles_ahead(array.h))
 
     def look(self, array: MainArray, cycles: int) -> None:
         """See Observer. Error 37 if the run gains energy from nowhere."""

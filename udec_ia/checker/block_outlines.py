@@ -1,4 +1,4 @@
-"""Invariant 7: the outlines of the blocks, taken apart once, and what holds for each alone.
+"""Invariant 7: the outlines of the blocks, and what holds for each alone.
 
 All is computed in 64 bits; what the heap says may differ by as much as its own reals can.
 """
@@ -84,8 +84,8 @@ def outlines(state: State) -> Outlines | None:
 def check_outlines(state: State, o: Outlines) -> None:
     """Invariant 7: areas are positive, corners are rounded as DTOL says, edges hold their roundings.
 
-    Blocks that deform may shorten their edges until the roundings overlap by FTOL: a flat part shorter than
-    that is none to the program. Beyond it error 14 ends the run.
+    Blocks that deform may shorten their edges until the roundings overlap by FTOL: the program ignores a
+    shorter flat part. Beyond it error 14 ends the run.
     """
     if not o.d > 0:
         state.report(7, f"DTOL is {o.d}, but there are blocks")

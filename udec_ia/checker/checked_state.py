@@ -78,7 +78,7 @@ def corner_before(rings: Rings) -> Numbers:
 
 ROWS_OF = InterpretWhenSmall(rows_of, 1e6)  # addresses
 
-LOST = "are in no group"  # what is said of words that no list leads to
+LOST = "are in no group"  # ends the message on words that no list leads to
 
 
 @dataclass(frozen=True)
@@ -178,8 +178,8 @@ class State(Lists):
         """Those of a main list, if it has any."""
         for back in names(kind, "back"):
             (link,) = names(kind, "next")
-            before, noted = np.concatenate(([0], at[:-1])), self.read(at, back)
-            for row in np.flatnonzero(noted != before[: len(at)]).tolist():
+            before, found = np.concatenate(([0], at[:-1])), self.read(at, back)
+            for row in np.flatnonzero(found != before[: len(at)]).tolist():
                 source = f"{link} of {kind}@{at[row - 1]}" if row else TABLE.group(kind).list_head
-                text = f"{back} of {kind}@{at[row]} is {noted[row]}"
+                text = f"{back} of {kind}@{at[row]} is {found[row]}"
                 self.report(2, f"{text}, but {source} leads here from {before[row]}")

@@ -67,10 +67,10 @@ def _check_items(state: State) -> None:
     wrong = []
     for which, (where, wanted) in enumerate(of_corners + of_contacts):
         at = np.flatnonzero(where)
-        noted = state.read(rings.item[at], fields[which])
-        for row in np.flatnonzero(noted != wanted[at]).tolist():
+        stored = state.read(rings.item[at], fields[which])
+        for row in np.flatnonzero(stored != wanted[at]).tolist():
             k = int(at[row])
-            wrong.append((k, which, int(noted[row]), int(wanted[k])))
+            wrong.append((k, which, int(stored[row]), int(wanted[k])))
     for k, which, value, right in sorted(wrong):
         item, host, name = rings.item[k], int(block[k]), fields[which]
         what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {value}"

@@ -67,20 +67,22 @@ def touches(state: State, o: Outlines) -> Touches:
 def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
     """Invariant 7: overlap and place of each contact are those of the outlines, the overlap within DTOL2."""
     contacts = state.address["contact"][touch.row]
-    noted, x, y = (state.column("contact", name)[touch.row] for name in ("KCN", "KXC", "KYC"))
+    stored, x, y = (state.column("contact", name)[touch.row] for name in ("KCN", "KXC", "KYC"))
     limit = state.tolerance("DTOL2")
     by_outlines = touch.overlap, touch.point, touch.slack
-    for k, what in kernel_rows(UNLIKE, len(noted), 2, noted, x, y, *by_outlines, limit).tolist():
+    for k, what in kernel_rows(UNLIKE, len(stored), 2, stored, x, y, *by_outlines, limit).tolist():
         contact, overlap = contacts[k], touch.overlap[k]
         if what == OVERLAP:
             ends = f"corner@{o.corner[touch.i[k]]} and corner@{o.corner[touch.j[k]]}"
-            text = f"KCN of contact@{contact} is {noted[k]}"
+            text = f"KCN of contact@{contact} is {stored[k]}"
             state.report(7, f"{text}, but at {ends} the outlines overlap by {overlap}")
         elif what == PLACE:
             text = f"KXC, KYC of contact@{contact} are {x[k]}, {y[k]}"
             state.report(7, f"{text}, but the outlines meet at {touch.point[k, 0]}, {touch.point[k, 1]}")
         else:
-            state.report(7, f"the overlap of contact@{contact} is {max(noted[k], overlap)}, DTOL2 is {limit}")
+            state.report(
+                7, f"the overlap of contact@{contact} is {max(stored[k], overlap)}, DTOL2 is {limit}"
+            )
 
 
 STANDING = InterpretWhenSmall(standing, 2e5)  # contacts

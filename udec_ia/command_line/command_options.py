@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,6 +63,30 @@ def variables(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="value of a variable of the deck ($NAME), in place of its DEFAULT; repeatable",
     )
+
+
+def study_options(parser: argparse.ArgumentParser, quantity: str, out: str) -> None:
+    """The arguments that sweep and trade share. quantity: what one is for. out: the default folder."""
+    repeated = (
+        ("--quantity", "QUANTITY", f'{quantity}, as in "force = max contact.KCFN"'),
+        ("--constitutive", "LAW", "as for udec run"),
+    )
+    for option, metavar, text in repeated:
+        parser.add_argument(option, action="append", default=[], metavar=metavar, help=f"{text}; repeatable")
+    word_scheme(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help=f"folder for all files (default: {out})")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
+
+
+def names(option: str, text: str | None, known: Collection[str]) -> list[str]:
+    """The names in a list with commas, each once; [] without the option. ValueError for unknown ones."""
+    if text is None:
+        return []
+    found = [one.strip() for one in text.split(",")]
+    for name in found:
+        if name not in known:
+            raise ValueError(f"{option} {name or repr(text)}: choose from {', '.join(known)}")
+    return [*dict.fromkeys(found)]
 
 
 def given(texts: Sequence[str]) -> dict[str, str]:

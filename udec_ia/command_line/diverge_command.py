@@ -95,8 +95,7 @@ def _laws(args: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]
 
 def _values(args: argparse.Namespace) -> tuple[dict[str, str], dict[str, str]]:
     """Values of the variables of the first and the second."""
-    values = given(args.set)
-    return values, values | given(args.other_set or [])
+    return given(args.set), given(args.set) | given(args.other_set or [])
 
 
 def _run(
@@ -120,14 +119,14 @@ def _run(
 def _diverge(args: argparse.Namespace) -> Listing:
     """What a deck writes goes to a folder that is taken away. An error of a run is trouble: ValueError."""
     from udec_ia.reader.listing import Listing
-    from udec_ia.studies.divergence import StateComparison, find_divergence
+    from udec_ia.studies.divergence import find_divergence
 
     builds, paths = _builds(args), (args.file, args.other or args.file)
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         try:
             each = zip(paths, builds, _laws(args), _values(args), (first, second), strict=True)
             runs = [_run(args, *one) for one in each]
-            found = find_divergence(runs[0], runs[1], StateComparison(args.tolerance))
+            found = find_divergence(runs[0], runs[1], args.tolerance)
         except OSError as error:
             raise ValueError(f"{printable(str(error.filename))}: {error.strerror}") from error
         except UdecError as error:
@@ -167,9 +166,9 @@ def _script(args: argparse.Namespace) -> str:
         made = f"of_state(Model.restore(path, constitutive=laws), {args.cycles})"
     return (
         "from pathlib import Path\n\nfrom udec_ia import Model\n"
-        "from udec_ia.studies.divergence import StateComparison, find_divergence, of_deck, of_state\n\n"
+        "from udec_ia.studies.divergence import find_divergence, of_deck, of_state\n\n"
         f"given = zip({paths}, {builds}, {_laws(args)}, {_values(args)})\n"
         f"runs = [{made} for path, build, laws, values in given]\n"
-        f"found = find_divergence(*runs, StateComparison({args.tolerance}))\n"
+        f"found = find_divergence(*runs, {args.tolerance})\n"
         "print(found if isinstance(found, int) else (found.cycle, found.in_pass, found.line, *found.off))"
     )

@@ -9,11 +9,10 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.command_line.command_options import command, given, seconds, variables, word_scheme
+from udec_ia.command_line.command_options import command, given, names, seconds, study_options, variables
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing, Tables
@@ -28,28 +27,16 @@ def add_commands(commands: Any) -> None:
     parser = command(commands, "trade", TEXT, _trade, _script)
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
     variables(parser)
-    parser.add_argument(
-        "--quantity",
-        action="append",
-        default=[],
-        metavar="QUANTITY",
-        help='quantity that must be right, as in "max contact.KCFN"; repeatable',
-    )
-    parser.add_argument(
-        "--constitutive", action="append", default=[], metavar="LAW", help="as for udec run; repeatable"
-    )
+    study_options(parser, "quantity that must be right", "NAME-trade")
     parser.add_argument(
         "--tolerance", metavar="SHARE", help="greatest relative error, as 1e-3 or 0.1%% (default: 1e-3)"
     )
     parser.add_argument(
         "--budget", default="5m", metavar="TIME", help="time for all runs: 60s, 5m, 1h (default: 5m)"
     )
-    word_scheme(parser)
     parser.add_argument(
         "--builds", metavar="A,B", help="word schemes to try (default: the one with 32-bit reals)"
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for all files (default: NAME-trade)")
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one for each processor)")
     parser.add_argument("--table", action="store_true", help="print a line for each setting as well")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
@@ -62,7 +49,7 @@ def add_commands(commands: Any) -> None:
         "--blame", action="store_true", help="the same, and the fields in which the other digits are lost"
     )
     what.add_argument(
-        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness,types"
+        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness"
     )
     parser.add_argument(
         "--runs", type=int, metavar="N", help="perturbed runs for --digits and --blame (default: 16)"
@@ -76,12 +63,12 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         answer,
         draw_costs,
         half_step,
-        shown_rows,
         study_table,
+        table_rows,
     )
     from udec_ia.studies.accuracy_study import study_accuracy
     from udec_ia.studies.study_run import read_deck
-    from udec_ia.studies.study_table import check_paths, picture_paths, table_paths
+    from udec_ia.studies.study_table import check_paths, picture_paths, table_path
 
     if args.digits or args.blame:
         return _digits(args)
@@ -89,17 +76,17 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         return _levers(args)
     base, options = _folder(args) / f"{args.deck.stem}-trade", _options(args)
     if not args.half_step:
-        check_paths([*table_paths(base), *picture_paths(base)])
+        check_paths([table_path(base), *picture_paths(base)])
     text, values = read_deck(args.deck), given(args.set)
     study = study_accuracy(text, args.deck.name, values, _folder(args), options, args.deck.parent)
     if args.half_step:
         return Listing(half_step(study), status=int(len(study.levels) < 2))
     if not study.rows:
         return Listing(answer(study), status=1)
-    files = study_table(study).write(base, {"deck": study.deck.text})
+    files = [study_table(study).write(base)]
     files += draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
     lines = [*answer(study), f"written: {', '.join(map(str, files))}"]
-    return Listing(lines, COLUMNS, shown_rows(study)) if args.table or args.json else Listing(lines)
+    return Listing(lines, COLUMNS, table_rows(study)) if args.table or args.json else Listing(lines)
 
 
 def _runner(args: argparse.Namespace) -> SettingRunner:
@@ -137,14 +124,13 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
 
 def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.reader.listing import Listing
-    from udec_ia.studies.model_levers import COLUMNS, LEVERS, vary_lever
-    from udec_ia.studies.study_run import ENDED
+    from udec_ia.studies.model_levers import COLUMNS, FACTORS, vary_lever
 
-    levers = _names("--levers", args.levers, LEVERS)
+    levers = names("--levers", args.levers, FACTORS)
     with _runner(args) as runner:
-        result = runner.survey_deck()
-        if result.status != ENDED or not runner.survey:
-            return Listing([f"the deck as it is gives nothing to compare: {result.message}"], status=1)
+        why = runner.run_own_deck()
+        if why:
+            return Listing([why], status=1)
         found = [vary_lever(runner, lever) for lever in levers]
     notes, rows = ([one for part in parts for one in part] for parts in zip(*found, strict=True))
     return Listing(notes, COLUMNS, rows)
@@ -163,7 +149,7 @@ def _options(args: argparse.Namespace) -> Options:
         "tolerance": _share(args.tolerance),
         "budget": seconds("--budget", args.budget),
         "build": args.build,
-        "builds": tuple(_names("--builds", args.builds, ALL_SCHEMES)),
+        "builds": tuple(names("--builds", args.builds, ALL_SCHEMES)),
         "constitutive": tuple(args.constitutive),
         "jobs": args.jobs,
         "half_step": args.half_step,
@@ -184,17 +170,6 @@ def _share(text: str | None) -> float | None:
     if not 0 < share < math.inf:
         raise ValueError(f"--tolerance {text}: give a relative error above 0, as in 1e-3 or 0.1%")
     return share
-
-
-def _names(option: str, text: str | None, known: Collection[str]) -> list[str]:
-    """The names in a list with commas; [] without the option. ValueError for unknown ones."""
-    if text is None:
-        return []
-    names = [one.strip() for one in text.split(",")]
-    for name in names:
-        if name not in known:
-            raise ValueError(f"{option} {name or repr(text)}: choose from {', '.join(known)}")
-    return [*dict.fromkeys(names)]
 
 
 def _script(args: argparse.Namespace) -> str:

@@ -1,24 +1,27 @@
 """The command that runs problems with exact answers.
 
 udec verify        udec verify incline toppling --blocks rigid,fdef --build i32r64,i32r32
-udec verify --out docs
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.command_line.command_options import command
+from udec_ia.command_line.command_options import command, names
 from udec_ia.printable import counted
 
 if TYPE_CHECKING:
     from udec_ia.reader.listing import Listing
-    from udec_ia.studies.verification import Problem
+    from udec_ia.studies.verification import Problem, ProblemResult
 
 VERBS = ("verify",)
+COLUMNS = (
+    *("problem", "blocks", "build", "what", "unit"),
+    *("computed", "exact", "error", "tolerance", "verdict", "why"),
+)
 TEXT = "run problems with exact or published answers; exit status 1 if an error is above its tolerance"
 
 
@@ -33,9 +36,6 @@ def add_commands(commands: Any) -> None:
     )
     parser.add_argument("--build", metavar="A,B", help="word schemes (default: i32r64)")
     parser.add_argument("--blocks", metavar="A,B", help="types of blocks (default: rigid,sdef,fdef)")
-    parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="write verification.md and images/verify into this folder"
-    )
     parser.add_argument("--list", action="store_true", help="list the problems without running them")
 
 
@@ -45,30 +45,21 @@ def _problems(args: argparse.Namespace) -> list[Problem]:
     return [find_problem(name) for name in args.names or problem_names()]
 
 
-def _chosen(option: str, given: str | None, default: str, known: Any) -> list[str]:
-    """The words of a list with commas, in its order. ValueError for one that is not known."""
-    words = (given or default).split(",")
-    if not {*words} <= {*known}:
-        raise ValueError(f"{option} {given}: choose from {', '.join(known)}, with commas between")
-    return words
-
-
-def _choice(args: argparse.Namespace) -> tuple[list[str], list[str]]:
+def _cases(args: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Word schemes and types of blocks."""
     from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
     from udec_ia.studies.verification import BLOCKS
 
-    builds = _chosen("--build", args.build, DEFAULT_SCHEME, ALL_SCHEMES)
-    return builds, _chosen("--blocks", args.blocks, ",".join(BLOCKS), BLOCKS)
+    builds = names("--build", args.build, ALL_SCHEMES) or [DEFAULT_SCHEME]
+    return builds, names("--blocks", args.blocks, BLOCKS) or [*BLOCKS]
 
 
 def _verify(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.word_scheme import scheme
     from udec_ia.reader.listing import Listing
     from udec_ia.studies.verification import solve_problems
-    from udec_ia.studies.verification_page import COLUMNS, brief_rows, result_rows, write_page
 
-    problems, (builds, blocks) = _problems(args), _choice(args)
+    problems, (builds, blocks) = _problems(args), _cases(args)
     if args.list:
         named: list[tuple[Any, ...]] = [
             (one.name, ", ".join(one.blocks), one.reals, one.title) for one in problems
@@ -91,20 +82,22 @@ def _verify(args: argparse.Namespace) -> Listing:
         lines.append(
             f"not run with 32-bit reals, which are too coarse for what they measure: {', '.join(short)}"
         )
-    if args.out is not None:
-        lines.append(f"written: {write_page(results, args.out, _command(args))}")
-    return Listing(lines, COLUMNS, list((result_rows if args.json else brief_rows)(results)), int(wrong > 0))
+    return Listing(lines, COLUMNS, [*_result_rows(results)], int(wrong > 0))
 
 
-def _command(args: argparse.Namespace) -> str:
-    """The command line that was given."""
-    options = [("--build", args.build), ("--blocks", args.blocks), ("--out", args.out)]
-    given = [word for name, value in options if value is not None for word in (name, str(value))]
-    return " ".join(["udec verify", *args.names, *given])
+def _result_rows(results: Sequence[ProblemResult]) -> Iterator[tuple[Any, ...]]:
+    """One for each answer, and one for what was ended: the COLUMNS."""
+    for one in results:
+        case = one.problem.name, one.case.blocks, one.case.build
+        for a in one.answers:
+            verdict = "holds" if a.holds else "FAILS"
+            yield (*case, a.what, a.unit, a.computed, a.exact, a.error, a.tolerance, verdict, a.why)
+        if one.failure:
+            yield (*case, *[""] * 6, "FAILS", one.failure)
 
 
 def _script(args: argparse.Namespace) -> str:
-    builds, blocks = _choice(args)
+    builds, blocks = _cases(args)
     return (
         "from udec_ia.studies.verification import find_problem, problem_names, solve_problems\n\n"
         f"problems = map(find_problem, {args.names or 'problem_names()'})\n"

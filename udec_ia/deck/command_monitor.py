@@ -140,11 +140,16 @@ class Monitor:
         session = self.model.session
         before = session.tell, session.inform, session.explain_step, session.logs_calls
         session.explain_step, session.logs_calls = True, False
-        session.tell = session.inform = lambda text: self._write(f" {name.upper()}: {text}")
+        session.tell = lambda text: self.warn(name, text)
+        session.inform = lambda text: self._write(f" {name.upper()}: {text}")
         try:
             return getattr(self.model, name)(*call.positional, **named)
         finally:
             session.tell, session.inform, session.explain_step, session.logs_calls = before
+
+    def warn(self, command: str, text: str) -> None:
+        """Write a warning of a command."""
+        self._write(f" {command.upper()}: {text}")
 
     def place(self, command: str, name: str | None) -> Path | None:
         """Where the file is that a command names: in the folder for files. None if it names none."""

@@ -23,7 +23,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
 
 GROUPS_ALONG = InterpretWhenSmall(groups_along, 1e7)  # words
-LOST = -1  # the number of a group that matches none, and of what is no group
+LOST = -1  # the number of a group that matches none, and of an address without a group
 
 
 class Side:
@@ -208,7 +208,7 @@ def _keys(one: Blocks, two: Blocks) -> Iterator[tuple[Any, Any]]:
 
 
 def _whole(values: Any) -> Any:
-    """Reals as whole numbers; what is none, or far away, as one that is far away."""
+    """Reals as whole numbers; NaN and far ones as one that is far away."""
     return np.floor(np.clip(np.nan_to_num(values, nan=FAR), -FAR, FAR)).astype(np.int64)
 
 

@@ -34,9 +34,9 @@ def diff(
 ) -> Tables:
     """What differs between two states by meaning; status 1 if anything does.
 
-    only: contact, contact.KCFN, common.FRAC ...: what is compared, all if there is none. tolerance: m=1e-6,
+    only: contact, contact.KCFN, common.FRAC ...: what is compared (default: all). tolerance: m=1e-6,
     relative=1e-9, ulp=4 ...: what does not count. limit: rows of a table. called: how the states are called.
-    ValueError for what is none of these.
+    ValueError for anything else.
     """
     if limit < 0:
         raise ValueError(f"{limit} rows: give 0 or more")
@@ -196,8 +196,8 @@ def raw(one: MainArray, two: MainArray, limit: int = LIMIT, called: Sequence[str
         said.append(f"the first {limit} of {count}:")
     for address in at[: max(limit - len(rows), 0)].tolist():
         what = [_what(atlas, address) for atlas in atlases]
-        told = " / ".join(dict.fromkeys(what))
-        rows.append((address, told, *(int(array.h.ia[address - 1]) for array in (one, two))))
+        what_it_is = " / ".join(dict.fromkeys(what))
+        rows.append((address, what_it_is, *(int(array.h.ia[address - 1]) for array in (one, two))))
     return Listing(said, COLUMNS, rows[:limit], int(count > 0 or atlases[0].free != atlases[1].free))
 
 

@@ -148,7 +148,7 @@ def translate(state: Words, table: Table, scheme: Scheme) -> Words:
 class Translation:
     """One state on its way into other words.
 
-    faults: what has found no place so far, but for numbers that do not fit, which `fit` tells. places: where
+    faults: what has found no place so far, but for numbers that do not fit, which `fit` counts. places: where
     groups go; None while every word stays as it is.
     """
 
@@ -225,8 +225,8 @@ class Translation:
         """The common block."""
         before = {field.name: field for field in self.state.table.common}
         held = {name: np.reshape(self.state.common[name], (1, -1)) for name in before}
-        told = self._translated(Rows(COMMON, ()), before, self.table.common, held)
-        found = {field.name: row[0] for field, row in told}
+        translated = self._translated(Rows(COMMON, ()), before, self.table.common, held)
+        found = {field.name: row[0] for field, row in translated}
         if self.places is not None:
             found |= {FREE: np.array([self.used + 1]), TOP: np.array([self.room])}
             if not self.places.stays:

@@ -143,14 +143,14 @@ def _junk_links(atlas: Atlas, span: Span, radix: int) -> Iterator[Row]:
         if span.first + offset <= span.last:
             word = atlas.h.ia[span.first + offset - 1 : span.first + offset]
             value = int(word[0])
-            told = text if name == "JSIZE" else f"{text}: {value or 'none'}"
+            says = text if name == "JSIZE" else f"{text}: {value or 'none'}"
             if name == "JSIZES" and span.first not in heads:
-                told = "has a meaning only in the first group of each size"
-            yield span.first + offset, digits(word, radix)[0], name, value, "", told
+                says = "has a meaning only in the first group of each size"
+            yield span.first + offset, digits(word, radix)[0], name, value, "", says
 
 
 def _plain_rows(atlas: Atlas, first: int, last: int, radix: int) -> Iterator[Row]:
-    """Words in no group, several to a line; a word that comes over and over is told once."""
+    """Words in no group, several to a line; a word that comes over and over is shown once."""
     words = atlas.h.ia
     step = max(ROOM // (word_width(words, radix) + 1), 1)
     for start, stop in [*_repeats(words, first, last, step), (last + 1, last)]:
@@ -179,13 +179,15 @@ def _repeats(words: Any, first: int, last: int, longer: int) -> Iterator[tuple[i
 
 
 def _common_rows(atlas: Atlas) -> Iterator[Row]:
-    """Rows of the common block; elements of an array that are the same are told together."""
+    """Rows of the common block; elements of an array that are the same are shown together."""
     for field in TABLE.common:
         values = variable(atlas.h, field)
-        told = leads_to(atlas, field.target, values) if field.target else list(data_meanings(field, values))
+        meanings = (
+            leads_to(atlas, field.target, values) if field.target else list(data_meanings(field, values))
+        )
         bits = values.view(f"i{values.itemsize}")
         edges = [0, *(np.flatnonzero(bits[1:] != bits[:-1]) + 1).tolist(), len(values)]
         for k, after in pairwise(edges):
             name = field.name + (f"({k + 1})" if field.count > 1 else "")
             more = f"; the same to {field.name}({after})" if after > k + 1 else ""
-            yield COMMON, "", "", name, values[k].item(), field.unit.strip("-"), told[k] + more
+            yield COMMON, "", "", name, values[k].item(), field.unit.strip("-"), meanings[k] + more

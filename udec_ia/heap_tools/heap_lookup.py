@@ -90,8 +90,8 @@ def what(atlas: Atlas, place: int | str) -> Listing:
     if word is None:
         said.append("no field: it fills the group up to a whole number of reals")
     else:
-        told = meaning(atlas, span, word)
-        more = f", {told}" if told != word.field.text else ""
+        text = meaning(atlas, span, word)
+        more = f", {text}" if text != word.field.text else ""
         said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}{more}")
     return Listing(said + places(atlas, span), COLUMNS, span_rows(atlas, span))
 
@@ -197,12 +197,12 @@ def _having(atlas: Atlas, name: str) -> dict[str, Word]:
     if not found:
         known = {one.name: one.field.name for shape in atlas.shapes.values() for one in shape}
         several = [one for one, field in known.items() if field == name]
-        meant = get_close_matches(name, known, 1)
+        close = get_close_matches(name, known, 1)
         advice = (
             f": it is {several[0]} to {several[-1]}"
             if several
-            else f": did you mean {meant[0]}?"
-            if meant
+            else f": did you mean {close[0]}?"
+            if close
             else ""
         )
         raise ValueError(f"no group has a field {name}{advice}")

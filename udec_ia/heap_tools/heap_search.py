@@ -34,7 +34,7 @@ def find(atlas: Atlas, condition: str, limit: int = LIMIT) -> Listing:
     """The groups of a kind that a condition is true for, with the fields that it names.
 
     condition: "block where KXD > 0.1 and KMAT == 2", or a kind alone; see condition.py. limit: rows. Raises
-    ValueError for what is no condition, with a caret below the place.
+    ValueError for an invalid condition, with a caret below the place.
     """
     kind, at, columns = satisfying(atlas, condition)
     said = f"{len(at)} of {len(atlas.groups[kind])} groups of the kind {kind}{_first(len(at), limit)}"

@@ -96,7 +96,7 @@ def _at(marked: Any, to: Any) -> Any:
 
 
 def _edges(atlas: Atlas, every: list[Pointers], nodes: dict[int, int]) -> Iterator[Edge]:
-    """All pointers from one of the groups to one of them, or to what is no group, or of the common block."""
+    """Pointers of the groups to one another or to no group, and of the common block to the groups."""
     marked = _marks(atlas, [*nodes])
     for one in every:
         to = one.to.astype(np.int64)
@@ -106,8 +106,8 @@ def _edges(atlas: Atlas, every: list[Pointers], nodes: dict[int, int]) -> Iterat
             chosen = np.flatnonzero(known)
         else:
             chosen = np.flatnonzero(marked[one.at] & (to != 0) & (known | ~atlas.holding("any", to)))
-        told = leads_to(atlas, one.target, to[chosen])
-        for k, text in zip(chosen.tolist(), told, strict=True):
+        meanings = leads_to(atlas, one.target, to[chosen])
+        for k, text in zip(chosen.tolist(), meanings, strict=True):
             yield Edge(int(one.at[k]), one.name, int(to[k]), text, bool(sound[k]))
 
 

@@ -57,7 +57,7 @@ NONE = Tolerance({})
 
 
 def tolerance(texts: Iterable[str]) -> Tolerance:
-    """Of texts such as m=1e-6, N/m=10, relative=1e-9, ulp=4. ValueError for what is none."""
+    """Of texts such as m=1e-6, N/m=10, relative=1e-9, ulp=4. ValueError for anything else."""
     units: dict[str, float] = {}
     for text in texts:
         name, sign, number = text.partition("=")

@@ -61,12 +61,12 @@ def may_be_0(field: Field) -> bool:
 
 
 def news(theirs: Table, ours: Table) -> list[str]:
-    """What of a state had to be told in another way, in phrases: fields that are new, that have gone, ..."""
+    """What another table has changed for a state, in phrases: fields that are new, that have gone, ..."""
     mine, other = _all_fields(ours), _all_fields(theirs)
     kinds, known_kinds = ([group.name for group in table.groups] for table in (theirs, ours))
     gone = [name for name, at in other.items() if name not in mine and at[0] in ("", *known_kinds)]
     known, named = _all_codes(ours), _all_codes(theirs)
-    told = {
+    changes = {
         "field {} new and 0": [n for n, at in mine.items() if n not in other and at[0] in ("", *kinds)],
         "field {} not known here, and 0": gone,
         "field {} elsewhere in the group": [n for n, at in mine.items() if other.get(n, at) != at],
@@ -76,7 +76,7 @@ def news(theirs: Table, ours: Table) -> list[str]:
             name for name, value in named.items() if known.get(name, value) != value
         ],
     }
-    return [_counted(names, what) for what, names in told.items() if names]
+    return [_counted(names, what) for what, names in changes.items() if names]
 
 
 def _all_codes(table: Table) -> dict[str, int]:

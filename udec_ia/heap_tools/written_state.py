@@ -43,7 +43,7 @@ def words_of(array: MainArray) -> Words:
 
 
 class TranslationError(ValueError):
-    """What of a state cannot be told by another table: `faults`, each a phrase."""
+    """What of a state has no place in another table: `faults`, each a phrase."""
 
     def __init__(self, faults: list[str]) -> None:
         self.faults = faults
@@ -65,7 +65,7 @@ class Rows(NamedTuple):
 
 
 class Faults:
-    """Phrases; of those that differ in the group alone the first is told, and how many there are."""
+    """Phrases; of those that differ in the group alone the first is kept, and how many there are."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, ...], tuple[str, int]] = {}

@@ -141,7 +141,7 @@ class Session:
 
     @property
     def h(self) -> Memory:
-        """The memory of the array, lent: what is written to it is noticed."""
+        """The memory of the array as tracked arrays: assignments to them are recorded."""
         if self._tracked is None or self._tracked[0] is not self.array.h:
             self._tracked = self.array.h, track(self.array.h, self.writes)
         return self._tracked[1]
@@ -190,7 +190,7 @@ class Session:
             self.plots.count = max(self.plots.count, self._last_picture("-plot"))
 
     def note_writes(self) -> None:
-        """Something was written to the words that `h` lends: what follows them proves them first."""
+        """Words were written through `h`: commands that follow them prove them first."""
         self.array.h.ci[g.LREADY] = 0
         self.forget_boxes()
         self.undo.array = None  # commands obeyed once more would not give these words
@@ -351,7 +351,7 @@ class Session:
 
 
 def _words(mtop: SupportsIndex) -> int:
-    """`mtop` as an integer; TypeError that says so if it is none."""
+    """`mtop` as an integer; TypeError if it is not one."""
     try:
         return operator.index(mtop)
     except TypeError:

@@ -131,13 +131,13 @@ class UndoSession(Protocol):
         """The objects that hold what is not in the main array."""
 
     def note_writes(self) -> None:
-        """Words that were lent have been written to."""
+        """Words were written through tracked arrays."""
 
     def forget_boxes(self) -> None:
         """Blocks are not where they were."""
 
 
-class Before:
+class FormerState:
     """Everything but the words of IA(): what a session holds in Python, and the common block.
 
     A list of the session is put in place of another, or grows at its end: its length says how it was.
@@ -205,7 +205,7 @@ class Undo:
         self.since: list[Step] = []
         self.seconds = self.cost = 0.0
         self.busy = self.covered = self.settled = False
-        self.before: Before | None = None
+        self.before: FormerState | None = None
         self.doing: list[Step | None] = []
 
     def run_whole(self, model: Any, action: Callable[[], R]) -> R:
@@ -245,14 +245,14 @@ class Undo:
         self.before = None
         if mode.python or CHECKED:
             self._copy(session.array)
-            self.covered, self.settled, self.before = True, True, Before(session)
+            self.covered, self.settled, self.before = True, True, FormerState(session)
         else:
             self.release()
 
     def confirm_run(self, session: UndoSession) -> None:
         """What was done until now stays, and what follows is taken back to here: a run has ended."""
         self.release()
-        self.covered, self.settled, self.doing, self.before = False, False, [], Before(session)
+        self.covered, self.settled, self.doing, self.before = False, False, [], FormerState(session)
 
     def release(self) -> None:
         """Let go of the copy, and of its memory."""
@@ -263,13 +263,13 @@ class Undo:
             session.note_writes()
             session.writes.pending = False
         self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
-        self.before = Before(session)
+        self.before = FormerState(session)
         self.busy = True
 
     def _end(self, session: UndoSession) -> None:
-        """Note what was done, or that the copy is of no use any more.
+        """Record what was done, or that the copy is of no use any more.
 
-        What was done is to stay before it is noted: an end in between costs the copy and no more.
+        It is confirmed before it is recorded: an end in between costs the copy and no more.
         """
         array, self.array = self.array, None
         self.before = None
@@ -313,7 +313,7 @@ class Undo:
             )
             self.array = None
 
-    def _repeat(self, model: Any, before: Before) -> bool:
+    def _repeat(self, model: Any, before: FormerState) -> bool:
         """Put the copy back and obey the commands since then once more; False if that gives another state."""
         session = model.session
         self._put_words(before.h)

@@ -100,7 +100,7 @@ class GrowingFile:
 
 
 def _stamp(path: Path) -> Stamp:
-    """What tells a file from others, and whether it has been written to; None if there is none."""
+    """Identity of a file and whether it has been written to; None if there is no file."""
     try:
         found = path.stat()
     except OSError:
@@ -178,11 +178,11 @@ def _extend_csv(path: Path, series: Sequence[Series], before: Counts) -> None:
 def _hdf5(series: Sequence[Series]) -> bytes:
     import h5py
 
-    from udec_ia.restart.stored_histories import store
+    from udec_ia.restart.stored_histories import write_histories
 
     image = io.BytesIO()
     with h5py.File(image, "w", libver=("v108", "v108")) as file:
-        store(file, series, growing=True)
+        write_histories(file, series, growing=True)
     return image.getvalue()
 
 

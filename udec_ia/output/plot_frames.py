@@ -135,7 +135,7 @@ class Plots:
         return self._write(self.frame) if self.frame.due else []
 
     def remarks(self, h: Memory, what: What) -> list[str]:
-        """What is to be said of the last PLOT, which asked for `what`: why something is not to be seen."""
+        """Why something that the last PLOT asked for (`what`) cannot be seen."""
         said = []
         if self.frame is not None and self.frame.written < len(self.frame.states):
             many = counted(len(self.frame.states), "state")

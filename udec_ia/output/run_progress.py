@@ -108,7 +108,7 @@ def summary(
     """The line that ends every run.
 
     cycles: all of the run; time: in s; force: largest normal force of a contact in N/m; wall: wall time in s,
-    `compiling` of it spent on compiling; solutions: what there is to be said of the SOLVEs.
+    `compiling` of it spent on compiling; solutions: sentences on the SOLVEs.
     """
     names = ", ".join(printable(path.name) for path in files[:NAMED_FILES])
     more = f" and {len(files) - NAMED_FILES} more" if len(files) > NAMED_FILES else ""

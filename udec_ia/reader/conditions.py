@@ -62,7 +62,7 @@ class Found(NamedTuple):
 def satisfying(atlas: Atlas, text: str) -> Found:
     """The groups that a condition such as "block where KXD > 0.1" is true for; a kind alone is all of them.
 
-    Raises Wrong, a ValueError, for what is no condition.
+    Raises Wrong, a ValueError, for an invalid condition.
     """
     if len(text) > LONGEST:
         raise ValueError(f"the condition is longer than {LONGEST} characters: shorten it")
@@ -88,8 +88,8 @@ def satisfying(atlas: Atlas, text: str) -> Found:
 def _no_kind(word: str) -> str:
     """What to say of a word that is not a kind of group; often it is a field of one."""
     has = next((kind.name for kind in TABLE.groups for field in kind.fields if field.name == word), None)
-    meant = get_close_matches(word, KINDS, 1)
-    advice = f"say {has} where {word} ..." if has else f"did you mean {meant[0]}?" if meant else ""
+    close = get_close_matches(word, KINDS, 1)
+    advice = f"say {has} where {word} ..." if has else f"did you mean {close[0]}?" if close else ""
     return f"{word!r} is not a kind of group: {advice or 'there are ' + ', '.join(KINDS)}"
 
 
@@ -188,6 +188,6 @@ class _Judge:
         if several:
             return f"there is no {name}, but {several[0]} to {several[-1]}"
         known = [*self.words, *CONSTANTS]
-        meant = get_close_matches(name, known, 1) or get_close_matches(name.upper(), known, 1)
-        advice = f"did you mean {meant[0]}?" if meant else f"it has {', '.join(self.words)}"
+        close = get_close_matches(name, known, 1) or get_close_matches(name.upper(), known, 1)
+        advice = f"did you mean {close[0]}?" if close else f"it has {', '.join(self.words)}"
         return f"a {self.kind} has no field {name}: {advice}"

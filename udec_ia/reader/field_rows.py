@@ -21,7 +21,7 @@ Row = tuple[Any, ...]
 HEADS = {(head.group, head.value): f"{head.name}: {head.text}" for head in TABLE.heads}
 COMMON = "common block"  # what its variables stand under
 RADICES = (8, 10, 16)
-NOT_ALLOWED = "not allowed"  # begins what is said of a value that the table does not allow
+NOT_ALLOWED = "not allowed"  # begins the meaning of a value that the table does not allow
 
 
 def group_rows(atlas: Atlas, kind: str, at: Any, radix: int = 10) -> list[tuple[Row, ...]]:
@@ -31,11 +31,11 @@ def group_rows(atlas: Atlas, kind: str, at: Any, radix: int = 10) -> list[tuple[
         values = atlas.gather(word, at)
         wide = range(word.first - 1, word.last)
         words = _joined([digits(atlas.h.ia[at + offset], radix) for offset in wide])
-        told = _meanings(atlas, kind, word.field, values)
+        meanings = _meanings(atlas, kind, word.field, values)
         addresses = (at + word.first).tolist()
         unit = word.field.unit.strip("-")
         fields.append(
-            zip(addresses, words, repeat(word.name), values.tolist(), repeat(unit), told, strict=False)
+            zip(addresses, words, repeat(word.name), values.tolist(), repeat(unit), meanings, strict=False)
         )
     return list(zip(*fields, strict=True))
 
@@ -90,8 +90,8 @@ def _joined(parts: list[list[str]]) -> Iterable[str]:
 
 def meaning(atlas: Atlas, span: Span, word: Word) -> str:
     """What the value of one field of a group says."""
-    (told,) = _meanings(atlas, span.kind, word.field, atlas.gather(word, np.zeros(1, np.int64)))
-    return told
+    (meanings,) = _meanings(atlas, span.kind, word.field, atlas.gather(word, np.zeros(1, np.int64)))
+    return meanings
 
 
 def _meanings(atlas: Atlas, kind: str, field: Field, values: Any) -> Iterable[str]:
@@ -105,12 +105,12 @@ def _meanings(atlas: Atlas, kind: str, field: Field, values: Any) -> Iterable[st
 
 def data_meanings(field: Field, values: Any) -> Iterable[str]:
     """The same for a field that is no pointer."""
-    good, told = np.isfinite(values) & allowed(field, values), TABLE.codes_of(field.name)
-    if good.all() and not told:
+    good, meanings = np.isfinite(values) & allowed(field, values), TABLE.codes_of(field.name)
+    if good.all() and not meanings:
         return repeat(field.text, len(values))
     wrong = f"{NOT_ALLOWED}, {in_words(field) if field.allowed else 'finite'}: {field.text}"
     return [
-        _coded(told, value, field.text) if is_good else wrong
+        _coded(meanings, value, field.text) if is_good else wrong
         for value, is_good in zip(values.tolist(), good.tolist(), strict=True)
     ]
 

@@ -169,7 +169,7 @@ class Lists(Reading):
     def _hung_with_care(
         self, kind: str, link: str | None, pointers: list[Pointers]
     ) -> tuple[Numbers, Numbers]:
-        """The same, and what breaks is told."""
+        """The same, and what breaks is reported."""
         last, ratio, words, known = self.last(kind), self.ratio, self.words, self.kind_at
         codes, step = HEADS.get(kind, ()), self.offset[link] - 1 if link else 0
         found: dict[int, int] = {}

@@ -34,7 +34,7 @@ class Selected(NamedTuple):
 
 
 def select_groups(array: MainArray, kind: str, field: str, address: int | None, at: Any) -> list[Selected]:
-    """The groups of `kind` meant by an address or by points, one pair or several; none for the kind "".
+    """The groups of `kind` selected by an address or by points, one pair or several; none for the kind "".
 
     field: what is wanted of them, for the messages. Errors 7, 8 and 10 for what is given wrongly, 26 and 30
     if there is no such group.

@@ -1,4 +1,4 @@
-"""How kinds of groups are told apart at a glance: a letter and a colour each, the same in every picture."""
+"""A letter and a colour for each kind of group, the same in every picture."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """What is in a restart file: each object is judged by its header before a byte of it is read.
 
-A checksum tells an accident, not an intent: whoever makes a file can seal it. An HDF5 file can point to other
-files and to itself, and can hold numbers that take no room until they are read. A restart file needs none
-of that. Only what a restart file is known to have is ever opened, by the name that it is known by, and it
-must stand there itself, not a link; what is read must have the type and shape that are expected and lie in
+A checksum detects accidents, not intent: anybody who makes a file can seal it. An HDF5 file can point to
+other files and to itself, and can hold numbers that take no room until they are read. A restart file needs
+none of that. Only what a restart file is known to have is ever opened, by the name that it is known by, and
+it must stand there itself, not a link; what is read must have the type and shape that are expected and lie in
 the file as it is, unpacked; and all of it together is no more than the file. So reading takes memory and
 time in proportion to the size of the file, whatever is in it, and opens no other.
 """
@@ -26,7 +26,7 @@ CHUNK = 65536  # words of the heap in one piece
 CHECKSUM = 4  # bytes of Fletcher-32 behind each piece; a SHA-256 covers all of them
 MAX_TEXT = 4096  # bytes of an attribute
 # How the HDF5 part begins: version 2, addresses and lengths of 8 bytes, written to its end, byte SIZE is its
-# first, and no extension, in which ways of storage could be told that are not ours.
+# first, and no extension, which could describe other ways of storage.
 SUPERBLOCK = HDF5_SIGNATURE + bytes((2, 8, 8, 0)) + SIZE.to_bytes(8, "little") + b"\xff" * 8
 
 

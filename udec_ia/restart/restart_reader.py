@@ -29,7 +29,7 @@ from udec_ia.printable import printable
 from udec_ia.restart.file_seal import OTHER_FILE, OTHER_TABLE, RefusedError, read_sealed, refusing
 from udec_ia.restart.file_tables import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.hdf5_contents import Contents, contents
-from udec_ia.restart.stored_histories import are_told, recall
+from udec_ia.restart.stored_histories import has_readable_histories, read_histories
 from udec_ia.running.history_series import Series
 
 FORCE = "udec check FILE lists all faults; RESTART FILE FORCE reads it for inspection and repair"
@@ -37,7 +37,7 @@ MAX_TABLE = 2**18  # bytes of another field table, which is read like a program
 
 
 class StoredState(NamedTuple):
-    """The array in a restart file, and what is to be said of it.
+    """The array in a restart file, and notes on it.
 
     news: in phrases, what its field table says in another way than that of this program; [] if nothing.
     mark: what SAVE ... FORCE has found wrong with the state; [] if nothing.
@@ -60,8 +60,8 @@ class StoredState(NamedTuple):
 class Restored(NamedTuple):
     """What a restart file holds.
 
-    deck: the command lines that led to the state. laws: file and SHA-256 of each constitutive law of the
-    user's that it was calculated with. notes: sentences on how it was read. unsound: what is wrong with its
+    deck: the command lines that led to the state. laws: file and SHA-256 of each of the user's constitutive
+    laws that it was calculated with. notes: sentences on how it was read. unsound: what is wrong with its
     links and codes, which must not be followed then.
     """
 
@@ -83,7 +83,8 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
     with refusing(path):
         with opened(path) as file:
             seen = read_state(file, read_header(file))
-            series = recall(file, seen.array, bool(seen.mark)) if are_told(seen.array) else []
+            known = has_readable_histories(seen.array)
+            series = read_histories(file, seen.array, bool(seen.mark)) if known else []
             deck, laws = read_deck(file), read_laws(file)
         faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
         if not force:
@@ -138,7 +139,7 @@ def read_deck(file: Contents) -> list[str]:
 
 
 def read_laws(file: Contents) -> dict[str, tuple[str, str]]:
-    """The constitutive laws of the user's: name, and name of its file and SHA-256 of that file's text."""
+    """The user's constitutive laws: name, and name of its file and SHA-256 of that file's text."""
     if not file.has("laws"):  # format 1.0
         return {}
     found = {}

@@ -30,7 +30,13 @@ from udec_ia.restart.file_seal import SIZE, VERSION, RefusedError, read_front, r
 from udec_ia.restart.file_tables import MARK, MARKED, common_places, field_rows, shorten, text
 from udec_ia.restart.hdf5_contents import CHUNK
 from udec_ia.restart.restart_reader import Restored, opened, read_deck, read_header, read_laws, read_state
-from udec_ia.restart.stored_histories import RECORDED, are_told, of_all, recall, store
+from udec_ia.restart.stored_histories import (
+    RECORDED,
+    complete_series,
+    has_readable_histories,
+    read_histories,
+    write_histories,
+)
 from udec_ia.running.history_series import Series
 from udec_ia.version import __version__
 
@@ -52,7 +58,7 @@ def save(
 ) -> Path:
     """Write `array`, the command lines that led to it and what was recorded to the restart file `path`.
 
-    laws: file and SHA-256 of each constitutive law of the user's that the state was calculated with.
+    laws: file and SHA-256 of each of the user's constitutive laws that the state was calculated with.
     unsound: what is wrong with the state, if anything is known to be: the file is marked with that.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
     checksum of the seal. Raises UdecError 31 if the file cannot be written, or if something stands there that
@@ -90,8 +96,8 @@ def _image(
         file[COMMON].attrs.modify("sha256", text(hashlib.sha256(b"".join(common.values())).hexdigest()))
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
         _write_laws(file, laws)
-        if series := of_all(array, series):
-            store(file.create_group(RECORDED), series)
+        if series := complete_series(array, series):
+            write_histories(file.create_group(RECORDED), series)
         _write_volatile(file)
         file.attrs["complete"] = np.int8(1)
     with buffer.getbuffer() as image, image[SIZE:] as body:
@@ -181,7 +187,7 @@ def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:
 
 
 def _write_laws(file: h5py.File, laws: Mapping[str, tuple[str, str]]) -> None:
-    """/laws: one group for each constitutive law of the user's."""
+    """/laws: one group for each of the user's constitutive laws."""
     group = file.create_group("laws")
     for name, (origin, digest) in laws.items():
         attrs = group.create_group(name).attrs
@@ -214,14 +220,14 @@ def _now() -> str:
 def load_to_change(path: str | Path) -> Restored:
     """All that the restart file `path` holds, its heap in whatever state it is.
 
-    Raises UdecError 29 if the file is not what `save` wrote, or if its histories cannot be told.
+    Raises UdecError 29 if the file is not what `save` wrote, or if its histories cannot be read.
     """
     path = Path(path)
     with refusing(path), opened(path) as file:
         seen = read_state(file, read_header(file))
-        if not are_told(seen.array):
+        if not has_readable_histories(seen.array):
             raise RefusedError("does not say what its histories have recorded: the list of them is broken")
-        series = recall(file, seen.array, bool(seen.mark))
+        series = read_histories(file, seen.array, bool(seen.mark))
         return Restored(seen.array, read_deck(file), read_laws(file), series, seen.notes, seen.mark)
 
 
@@ -233,7 +239,7 @@ def save_changed(
     line: what the deck is to say of it, a command or a comment. unsound: what is wrong with it, with which
     the file is marked. Raises UdecError 31 as `save` does.
     """
-    if are_told(array):
+    if has_readable_histories(array):
         for series, definition in zip(state.series, definitions(array), strict=False):
             series.follow(definition)
     return save(array, path, [*state.deck, line], state.laws, state.series, unsound)

@@ -30,7 +30,7 @@ ADDRESS = re.compile(r"[0-9]{1,19}")
 PLACE = re.compile(r"|\([-+.0-9a-z]{1,12}, [-+.0-9a-z]{1,12}\)")
 
 
-def are_told(array: MainArray) -> bool:
+def has_readable_histories(array: MainArray) -> bool:
     """True if `array`, which may be unsound, says what its histories are of."""
     h = array.h
     try:
@@ -39,15 +39,15 @@ def are_told(array: MainArray) -> bool:
         return False
 
 
-def of_all(array: MainArray, series: Sequence[Series]) -> Sequence[Series]:
+def complete_series(array: MainArray, series: Sequence[Series]) -> Sequence[Series]:
     """`series`, and an empty one for each other history of `array`."""
-    if not are_told(array):
+    if not has_readable_histories(array):
         return series
     found = {one.number: one for one in series}
     return [found.get(n, Series(n, one)) for n, one in enumerate(definitions(array), 1)]
 
 
-def store(parent: h5py.Group, series: Sequence[Series], growing: bool = False) -> None:
+def write_histories(parent: h5py.Group, series: Sequence[Series], growing: bool = False) -> None:
     """Write one group for each of `series` into `parent`; growing: so that `extend` can add to them."""
     layout = {"maxshape": (None,), "chunks": (CHUNK,)} if growing else {}
     for one in series:
@@ -69,17 +69,17 @@ def extend(parent: h5py.Group, series: Sequence[Series], before: Sequence[int]) 
             dataset[n:] = column.astype(kind)
 
 
-def recall(file: Contents, array: MainArray, forced: bool) -> list[Series]:
+def read_histories(file: Contents, array: MainArray, forced: bool) -> list[Series]:
     """What a restart file, which holds `array`, has recorded. RefusedError if it contradicts itself.
 
     forced: the file was saved by force, which leaves out what a broken list of histories has recorded.
     """
     _, minor = file.attribute_numbers("", "format_version", "<i4", (2,))
     may_lack = forced or minor == 0  # format 1.0 had none
-    return [_recall(file, number, one, may_lack) for number, one in enumerate(definitions(array), 1)]
+    return [_read_history(file, number, one, may_lack) for number, one in enumerate(definitions(array), 1)]
 
 
-def _recall(file: Contents, number: int, definition: Definition, may_lack: bool) -> Series:
+def _read_history(file: Contents, number: int, definition: Definition, may_lack: bool) -> Series:
     where = f"{RECORDED}/{number}"
     series = Series(number, definition)
     if not (file.has(RECORDED) and file.has(where)):

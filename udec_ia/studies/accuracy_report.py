@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,14 +17,12 @@ from udec_ia.studies.study_table import StudyTable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
 
 SLIPPED = "joints slipped"  # how SOLVE reports that its result depends on the loading path
-COLUMNS = ("setting", "error", "seconds", "predicted", "measured", "MB", "cycles", "what")
+COLUMNS = ("setting", "error", "seconds", "MB", "cycles", "what")
 SIZE = (7.5, 6.5)  # inches of the picture
 COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
 FRONT = "#33302b"
-SHORT, LONG = 8, 1e3  # axes, by the greatest over the smallest number on them
 SMALLEST = 1e-16  # error that is drawn for none
 
 
@@ -51,19 +50,20 @@ def _change(study: AccuracyStudy) -> str:
     if row is not None:
         changes = "; ".join(list_changes(study.deck, row.setting, row.numbers, study.fraction))
         return f"{row.setting.name} for {study.tolerance:g}: {changes}"
-    if study.obstacle:
-        return f"no recommendation: {study.obstacle}"
     if len(study.levels) < 2:
-        return "no recommendation: no run with half the time-step has ended; give a greater --budget"
-    if study.tells:
+        why = next((row.why for row in study.rows if row.ran and row.why), "")
+        return (
+            f"no recommendation: {why or 'no run with half the time-step has ended; give a greater --budget'}"
+        )
+    if study.can_recommend:
         nearest = min(study.rows, key=lambda row: row.error)
         return (
             f"no setting that was run keeps to {study.tolerance:g}: the least error is {nearest.error:.2e}, "
             f"of {nearest.setting.name}; give a greater --budget or --tolerance"
         )
     if study.known and len(study.known) == len(study.references):
-        same = "is the same at all these steps, which says nothing about the step"
-        return f"no recommendation: {_all(study.known)} {same}; ask for another --quantity"
+        names = " and ".join(study.known)
+        return f"no recommendation: the time-step does not change {names}; ask for another --quantity"
     cure = "ask for another --quantity, give a greater --tolerance or --budget, or see --digits"
     return f"no recommendation: {_without_reference(study)}; {cure}"
 
@@ -85,6 +85,8 @@ def _cost(study: AccuracyStudy) -> str:
 
 def _accuracy(study: AccuracyStudy) -> str:
     """What each quantity tends to, and what its error depends on."""
+    if len(study.levels) < 2:
+        return "not known, as no run with half the time-step can be compared"
     found = []
     for name, one in study.references.items():
         if one is None:
@@ -98,8 +100,7 @@ def _accuracy(study: AccuracyStudy) -> str:
             found.append(
                 f"{name} {one.value:.7g} is known to within {one.share:.1e}; the time-step limits it{by}"
             )
-    found += _other_end_times(study)
-    return "; ".join(found) if found else "nothing was compared"
+    return "; ".join(found)
 
 
 def _why_unknown(study: AccuracyStudy, name: str, one: Extrapolation) -> str:
@@ -111,84 +112,62 @@ def _why_unknown(study: AccuracyStudy, name: str, one: Extrapolation) -> str:
         why = f"converges to {one.value:.7g}, known to within {one.share:.1e} only"
     else:
         why = f"does not converge at these steps, {one.value:.5g} is known to within {one.share:.1e} only"
-    every = study.sampled.get(name)
-    samples = f"; its samples are {every} cycles apart: take HISTORY 1" if every else ""
     spread = f"{min(values):.5g} to {max(values):.5g}, mean {sum(values) / len(values):.5g}"
-    return f"{why}{samples} ({len(values)} runs: {spread})"
-
-
-def _other_end_times(study: AccuracyStudy) -> list[str]:
-    """Settings that do not end when the deck does, as cycles are whole and time-steps come out so."""
-    ends = [row.result.time for row in study.levels if row.result]
-    if not ends or study.deck.has("solve"):
-        return []
-    least = 0.1 * study.tolerance * abs(ends[0])
-    compared = [
-        (row.setting.name, row.result.time - ends[0]) for row in study.rows if row.result and row.compared
-    ]
-    off = [f"{name} by {time:.2g} s" for name, time in compared if abs(time) > least]
-    return [f"these end earlier or later than the deck: {', '.join(off)}"] if off else []
+    return f"{why} ({len(values)} runs: {spread})"
 
 
 def _loading_path(study: AccuracyStudy) -> str:
     """Whether the result depends on the loading path, and by how much."""
-    parting = study.parting
+    split = study.separation
     if not study.deck.has("solve"):
         scatters = any(one and one.error and math.isnan(one.order) for one in study.references.values())
-        if parting is None or not scatters:
+        if split is None or not scatters:
             return "not asked: the deck follows a motion, without SOLVE"
         one, two = (row.setting.name for row in study.levels[-2:])
         return (
-            f"the motion depends on small differences: {one} and {two} part at {parting.time:.4g} s, at the "
-            f"block that was at ({parting.x:.4g}, {parting.y:.4g}); at the end it is {parting.apart:.3g} m "
-            f"elsewhere, and the greatest displacement is {parting.moved:.3g} m"
+            f"the motion depends on small differences: {one} and {two} part at {split.time:.4g} s, at the "
+            f"block that was at ({split.x:.4g}, {split.y:.4g}); at the end it is {split.apart:.3g} m "
+            f"elsewhere, and the greatest displacement is {split.moved:.3g} m"
         )
     found = path_differences(study)
-    much = ", ".join(f"{name} by {value:.2g}" for name, value in found.items())
-    if SLIPPED in study.solved:
-        how = f"SOLVE ... STATIC, another path, differs: {much}" if found else "by how much is unknown"
-        return f"depends on it ({study.solved}); {how}; load in steps, and compare"
-    if found and max(found.values()) > study.tolerance:
-        return f"depends on it, although no joint slip is reported: SOLVE ... STATIC differs: {much}"
-    return "does not depend on it: no joint slip is reported" + (
-        f"; SOLVE ... STATIC differs: {much}" if found else ""
+    slips = SLIPPED in study.solved
+    depends = slips or max(found.values(), default=0.0) > study.tolerance
+    return "; ".join(
+        [
+            "depends on it" if depends else "does not depend on it",
+            study.solved if slips else "no joint slip is reported",
+            *[f"SOLVE ... STATIC, another path, changes {name} by {off:.2g}" for name, off in found.items()],
+            *["by how much is unknown: load in steps, and compare"] * (depends and not found),
+        ]
     )
 
 
 def _unknown(study: AccuracyStudy) -> str:
-    found = []
-    if any(name not in study.known for name in study.references):
-        found.append(_without_reference(study))
+    found = [_without_reference(study)] if len(study.known) < len(study.references) else []
     found += study.notes
-    not_compared = [row for row in study.rows if row.ran and row.why and row.why != study.obstacle]
+    not_compared = [row.setting.name for row in study.rows if row.ran and row.why]
     if not_compared:
-        found.append(f"not compared: {', '.join(row.setting.name for row in not_compared)} (see --table)")
+        found.append(f"not compared: {', '.join(not_compared)} (see --table)")
     return "; ".join([*found, "other decks and quantities may need other settings"])
 
 
 def _without_reference(study: AccuracyStudy) -> str:
-    names = [name for name in study.references if name not in study.known]
-    return f"{_all(names)} {'has' if len(names) == 1 else 'have'} no reference that is known well enough"
-
-
-def _all(names: list[str]) -> str:
-    return " and ".join(part for part in (", ".join(names[:-1]), *names[-1:]) if part)
+    names = " and ".join(name for name in study.references if name not in study.known)
+    return f"without a reference that is known well enough: {names}"
 
 
 # ---- the table
 
 
-def table_rows(study: AccuracyStudy) -> list[tuple[object, ...]]:
-    """A line for each setting, the cheapest first; those without a cost last: the COLUMNS."""
-    front = {id(row) for row in pareto_set(study.rows)}
+def table_rows(study: AccuracyStudy) -> list[tuple[Any, ...]]:
+    """A line for each setting, the cheapest first: the COLUMNS, blank where there is no number."""
+    front = [id(row) for row in pareto_set(study.rows)]
     return [
         (
             row.setting.name,
-            row.error,
-            row.cost,
-            row.predicted,
-            row.result.seconds if row.result else math.nan,
-            row.memory / 1e6 if row.result else math.nan,
+            _cell(row.error),
+            _cell(row.cost),
+            row.memory / 1e6 if row.result else "",
             row.result.cycles if row.result else 0,
             _what(study, row, id(row) in front),
         )
@@ -196,29 +175,22 @@ def table_rows(study: AccuracyStudy) -> list[tuple[object, ...]]:
     ]
 
 
-def shown_rows(study: AccuracyStudy) -> list[tuple[object, ...]]:
-    """The same to be read: blank where there is no number."""
-    return [
-        tuple("" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row)
-        for row in table_rows(study)
-    ]
-
-
 def study_table(study: AccuracyStudy) -> StudyTable:
     """The same with the value and the error of every quantity at every setting."""
-    columns: dict[str, Sequence[Any]] = dict(
-        zip(("run", *COLUMNS[1:]), zip(*table_rows(study), strict=True), strict=True)
-    )
-    rows = _sorted(study)
+    table = zip(("run", *COLUMNS[1:]), zip(*table_rows(study), strict=True), strict=True)
+    columns: dict[str, Sequence[Any]] = dict(table)
     for name, one in study.references.items():
-        values = [row.result.quantities[name] if row.result else math.nan for row in rows]
-        compared = one is not None and not one.is_zero
-        errors = [
-            one.error_of(value) if one and compared and row.compared else math.nan
-            for row, value in zip(rows, values, strict=True)
-        ]
-        columns |= {f"value of {name}": values, f"error of {name}": errors}
+        values, errors = list[float](), list[float]()
+        for row in _sorted(study):
+            values.append(row.result.quantities[name] if row.result else math.nan)
+            known = row.compared and one is not None and not one.is_zero
+            errors.append(one.error_of(values[-1]) if one and known else math.nan)
+        columns |= {f"value of {name}": [*map(_cell, values)], f"error of {name}": [*map(_cell, errors)]}
     return StudyTable(columns)
+
+
+def _cell(number: float) -> float | str:
+    return number if math.isfinite(number) else ""
 
 
 def _sorted(study: AccuracyStudy) -> list[Row]:
@@ -248,20 +220,12 @@ def half_step(study: AccuracyStudy) -> list[str]:
     if len(study.levels) < 2:
         rows = [row for row in study.rows if not row.compared]
         return [*study.notes, *(f"{row.setting.name}: {why_not_compared(row)}" for row in rows)]
-    one, half = (row.result.quantities for row in study.levels[:2] if row.result)
+    one, half = (row.result.quantities for row in study.levels if row.result)
     found = []
     for name in study.references:
-        a, b = one[name], half[name]
-        off = share(abs(a - b), b)
-        every = study.sampled.get(name)
-        fault = (
-            f"ITS SAMPLES, every {every} cycles, or the time-step are too far apart: take HISTORY 1 before a "
-            "smaller FRACTION"
-            if every
-            else "THE TIME-STEP IS TOO LARGE, take a smaller FRACTION"
-        )
-        differs = f" of it: {fault}" if off > study.tolerance else ""
-        found.append(f"{name}: {a:.7g}, with half the step {b:.7g}, off by {off:.1e}{differs}")
+        off = share(abs(one[name] - half[name]), half[name])
+        fault = " of it: THE TIME-STEP IS TOO LARGE, take a smaller FRACTION" * (off > study.tolerance)
+        found.append(f"{name}: {one[name]:.7g}, with half the step {half[name]:.7g}, off by {off:.1e}{fault}")
     return found
 
 
@@ -299,9 +263,10 @@ def _panel(panel: Axes, study: AccuracyStudy, rows: list[Row], x: list[float], l
         some = [k for k, row in enumerate(rows) if row.setting.build == build]
         at = [x[k] for k in some], [error[k] for k in some]
         panel.plot(*at, "o", color=colour, markersize=4, label=build)
-    front = [k for k in sorted(range(len(rows)), key=lambda k: (x[k], error[k])) if _best_until(k, x, error)]
-    at = [x[k] for k in front], [error[k] for k in front]
-    panel.plot(*at, color=FRONT, linewidth=0.8, label="Pareto set")
+    points = sorted(zip(x, error, strict=True))
+    smallest = accumulate((one for _, one in points), min)
+    front = [point for point, one in zip(points, smallest, strict=True) if point[1] == one]
+    panel.plot(*zip(*front, strict=True), color=FRONT, linewidth=0.8, label="Pareto set")
     panel.axhline(study.tolerance, color=COLOURS[1], linewidth=0.8, linestyle="--", label="tolerance")
     if study.best in rows:
         k = rows.index(study.best)
@@ -309,25 +274,5 @@ def _panel(panel: Axes, study: AccuracyStudy, rows: list[Row], x: list[float], l
     panel.set(xscale="log", yscale="log")
     panel.set_xlabel(label, fontsize=9, color=INK)
     panel.set_ylabel("greatest error", fontsize=9, color=INK)
-    _number_axis(panel.xaxis, x)
-    _number_axis(panel.yaxis, error)
-    panel.tick_params(labelsize=8, colors=INK)
+    panel.tick_params(which="both", labelsize=8, colors=INK)
     panel.grid(color="#e4e0d8", linewidth=0.6)
-
-
-def _number_axis(axis: Axis, values: list[float]) -> None:
-    """Plain numbers along a logarithmic axis, several even where all `values` are of one size."""
-    from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
-
-    times = max(values) / min(values)
-    marks = LogLocator(subs=(1,) if times > LONG else (1, 2, 5))
-    axis.set_major_locator(marks if times > SHORT else AutoLocator())
-    axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter(lambda value, _: f"{value:g}")
-
-
-def _best_until(k: int, x: list[float], error: list[float]) -> bool:
-    """True if nothing that costs no more than row `k` has a smaller error, or as small a one for less."""
-    return not any(
-        a <= x[k] and e <= error[k] and (a, e) != (x[k], error[k]) for a, e in zip(x, error, strict=True)
-    )

@@ -6,9 +6,8 @@ show or save something become comments: they take as long at any setting.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,20 +18,16 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import Call, command_of, parse
 from udec_ia.running.history_series import SOLVE_LIMIT
 from udec_ia.studies.settings import Fraction, Numbers, Setting
-from udec_ia.studies.study_run import RunResult
-from udec_ia.studies.survey_run import SurveyRun
 
 SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # become comments
 FILLED = "default"  # its values are in the lines
 RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
-WRITES = {one.name for one in COMMANDS if one.writes_words or one.begins}  # may set what makes a time-step
 ENDS = {one.name for one in COMMANDS if one.ends}
-EVERYWHERE = "-1E30 1E30 -1E30 1E30"
 OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
 
 
 class Piece(NamedTuple):
-    """Some lines as they are written. one: their statement, None for added lines.
+    """Lines of a rewritten deck. one: their statement, None for added lines.
 
     number: of the first line with a word of it, or of the line that added lines follow.
     """
@@ -42,19 +37,16 @@ class Piece(NamedTuple):
     lines: list[str]
 
 
-@dataclass(frozen=True)
-class _Change:
+class _Change(NamedTuple):
     """What a setting changes in a statement.
 
-    longer: time-step of the deck over the new one there. cycles: of a CYCLE, last: limit of a SOLVE; None for
-    both: as they are.
+    longer: time-step of the deck over the new one there. cycles: of a CYCLE, None as they are.
     """
 
     setting: Setting
     numbers: Numbers
     longer: float
     cycles: int | None
-    last: int | None
 
 
 class Deck:
@@ -88,7 +80,7 @@ class Deck:
 
     @property
     def rests(self) -> bool:
-        """True if it seeks nothing but rest: SOLVE, and no CYCLE of more than 0."""
+        """True if it only seeks rest: SOLVE, and no CYCLE of more than 0."""
         return self.has("solve") and all(call.positional[0] == 0 for call in self.calls("cycle"))
 
     @property
@@ -101,45 +93,30 @@ class Deck:
         """True if the time-step that FRACTION gives matters to a CYCLE or SOLVE."""
         return not all(self.statics)
 
-    @property
-    def intervals(self) -> list[int]:
-        """Cycles from one sample to the next, of each HISTORY in order."""
-        return [int(call.positional[0]) for call in self.calls("history")]
-
     def _named(self) -> Iterator[tuple[Statement, str]]:
         yield from zip(self.statements[: self.obeyed], self.commands[: self.obeyed], strict=True)
-
-    # ---- rewritten
 
     def pieces(
         self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
     ) -> list[Piece]:
-        """The deck for `setting`, as many pieces for all settings of the same types, in the order of lines.
+        """The deck for `setting`, as many pieces for all settings, in the order of lines.
 
         fraction: that of the deck, where no line states it; None: it stays so.
         """
         numbers = numbers or Numbers()
         stated = "fraction" in self._until_run() or not self.is_stepped
         found: list[Piece] = []
-        run = last = 0  # CYCLEs and SOLVEs, and number of the last line, until here
+        counts = dict(enumerate(zip_longest(numbers.longer, numbers.cycles)))
+        run = 0  # CYCLEs and SOLVEs until here
         for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
             is_obeyed = k < self.obeyed
-            if is_obeyed and name in RUNS and run == 0:
-                soft = [f"CHANGE {EVERYWHERE} SDEF"] if setting.types == "sdef" else []
-                found.append(Piece(None, last, soft))
-            change = _Change(
-                setting,
-                numbers,
-                numbers.longer[run] if run < len(numbers.longer) else 1.0,
-                numbers.cycles[run] if run < len(numbers.cycles) else None,
-                numbers.limits[run] if run < len(numbers.limits) else None,
-            )
+            longer, cycles = counts.get(run, (None, None))
+            change = _Change(setting, numbers, longer or 1.0, cycles)
             lines = self._lines(one, name, change) if is_obeyed else _unchanged(one)
             first = one.tokens[0].line if one.tokens else one.lines[0]
             found.append(Piece(one, first.number, lines))
-            last = one.lines[-1].number
             if is_obeyed and name in ("start", "restart") and not stated and fraction is not None:
-                found.append(Piece(None, last, [_fraction(setting, numbers, fraction)]))
+                found.append(Piece(None, one.lines[-1].number, [_fraction(setting, numbers, fraction)]))
             run += name in RUNS
         return found
 
@@ -147,22 +124,8 @@ class Deck:
         self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
     ) -> str:
         """The same as a text."""
-        return text_of(self.pieces(setting, numbers, fraction))
-
-    def setter(self, run: int) -> str:
-        """What may have set the time-step of a CYCLE or SOLVE past FRACTION; "" for nothing.
-
-        The last PATCH of FRAC before it, or else the last line that writes words or begins anew. run: number
-        of CYCLEs and SOLVEs before it.
-        """
-        ends = [k for k, name in enumerate(self.commands[: self.obeyed]) if name in RUNS]
-        before = [*zip(self.statements, self.commands, strict=True)][: ends[run]]
-        writes = [one for one, name in before if name in WRITES]
-        patches = [one for one in writes if any("FRAC" in word.text.upper() for word in one.tokens)]
-        if not writes:
-            return ""
-        one = (patches or writes)[-1]
-        return f"line {one.tokens[0].line.number}: {' '.join(line.text.strip() for line in one.lines)}"
+        pieces = self.pieces(setting, numbers, fraction)
+        return "".join(f"{line}\n" for piece in pieces for line in piece.lines)
 
     def _until_run(self) -> list[str]:
         found = self.commands[: self.obeyed]
@@ -177,11 +140,6 @@ class Deck:
             path = (self.folder / str(parse(one).named.get("path", "restart.h5"))).absolute()
             return _replaced(one, f'RESTART "{path}"') if path.is_file() else _unchanged(one)
         return _changed(one, name, change)
-
-
-def text_of(pieces: Iterable[Piece]) -> str:
-    """The text of a deck in pieces."""
-    return "".join(f"{line}\n" for piece in pieces for line in piece.lines)
 
 
 def _command(statement: Statement) -> str:
@@ -218,8 +176,7 @@ def _changed(one: Statement, name: str, change: _Change) -> list[str]:
         return _multiplied(one, _numbers_after(one, "KN", "KS"), setting.stiffness)
     if name == "generate" and setting.edge != 1:
         return _multiplied(one, _numbers_after(one, "Edge"), setting.edge)
-    makes_soft = name == "generate" or (name == "change" and parse(one).named.get("type") is not None)
-    return _as_comment(one) if setting.types and makes_soft else _unchanged(one)
+    return _unchanged(one)
 
 
 def _fraction(setting: Setting, numbers: Numbers, own: Fraction) -> str:
@@ -232,7 +189,6 @@ def _fraction(setting: Setting, numbers: Numbers, own: Fraction) -> str:
 def _solve(one: Statement, change: _Change) -> str:
     call, setting = parse(one), change.setting
     limit = round(call.named.get("limit", SOLVE_LIMIT) * max(change.longer, 1.0) / min(setting.ratio, 1.0))
-    limit = min(limit, change.last or limit)
     static = " STATIC" if setting.static or call.named.get("static") else ""
     mean = " MEAN" if call.named.get("criterion") == "mean" else ""
     return f"SOLVE {call.positional[0] * setting.ratio:.10g} LIMIT {limit}{static}{mean}"
@@ -284,13 +240,9 @@ def _numbers_after(one: Statement, *keywords: str) -> list[Token]:
     return found
 
 
-# ---- in terms of the user's deck
-
-
 def list_changes(deck: Deck, setting: Setting, numbers: Numbers, fraction: Fraction | None) -> list[str]:
     """--build and the lines of the user's deck to change for a setting."""
     before = deck.pieces(Setting(setting.build), None, fraction)
-    numbers = replace(numbers, limits=())  # a SOLVE may take as long as it does
     after = deck.pieces(setting, numbers, fraction)
     found = [f"--build {setting.build}"]
     own = deck.text.splitlines()
@@ -313,22 +265,3 @@ def _change_of(one: Statement, own: list[str], new: list[str]) -> str:
     begin = first - one.lines[0].number
     texts = (obeyed(text).strip() for text in new[begin : begin + last - first + 1])
     return f"{lines}: {old} -> {' '.join(text.removeprefix(CONTINUATION).strip() for text in texts if text)}"
-
-
-def own_lines(pieces: Sequence[Piece]) -> tuple[int, ...]:
-    """The number in the user's deck of each line of these pieces, or of the line before added ones."""
-    found: list[int] = []
-    for one, number, lines in pieces:
-        found += [line.number for line in one.lines] if one else [number] * len(lines)
-    return tuple(found)
-
-
-def at_own_line(result: RunResult, run: SurveyRun) -> RunResult:
-    """The same with the line of the user's deck in its message: the run had a rewritten one."""
-
-    def own(found: re.Match[str]) -> str:
-        k = int(found[2])
-        return f"{found[1]}{run.lines[k - 1] if 0 < k <= len(run.lines) else k}"
-
-    place = re.compile(rf"^({re.escape(run.file)}:)(\d+)")
-    return replace(result, message=place.sub(own, result.message))

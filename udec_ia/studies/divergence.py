@@ -1,20 +1,17 @@
 """Runs two decks, word schemes or states side by side: the first cycle, pass and number in which they differ.
 
-Both go on in steps of at most EVERY cycles and are compared after each; of each run only the state before the
-last step is kept. Where they differ the step is repeated and halved until one cycle is left: that is executed
-as Python and compared after each pass. How a run is cut into CYCLEs changes no digit of it.
+Both go on in steps of at most EVERY cycles and are compared after each. Where they differ the step is
+repeated and halved until one cycle is left: that is executed as Python and compared after each pass.
 
-A velocity that is rounding noise beside the others has no digit in common with that of another word scheme.
-So a real differs if it is off by more than a share of the greatest number with its unit in either state:
-1e-6, or TIMES last digits of the narrower reals if that is more, which is 1e-5 for 32 bits. Angles and
-moments count with the size of the greatest block. Groups that only one has, codes and pointers differ always.
-The common block does not count: it holds what commands have set, and sums over the whole run.
+A real differs if it is off by more than a share of the greatest number with its unit in either state: 1e-6,
+or TIMES last digits of the narrower reals if that is more. Angles and moments count with the size of the
+greatest block. Groups that only one has, codes and pointers differ always. The common block does not count.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
 from pathlib import Path
@@ -37,6 +34,7 @@ from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
+from udec_ia.layout.table import Field
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.law_book import LawBook
@@ -70,66 +68,56 @@ class Difference(NamedTuple):
     share: float
 
 
-class StateComparison:
-    """Compares two states. share: of the greatest number of a unit, by which a real may be off."""
+def find_difference(one: MainArray, two: MainArray, share: float | None) -> Difference | None:
+    """The worst difference that counts between two states, None if there is none.
 
-    def __init__(self, share: float | None = None) -> None:
-        self.share = share
+    share: of the greatest number of a unit, by which a real may be off; None for that of the real types.
+    """
+    found = compare(one.h, two.h, KINDS)
+    for k, what in enumerate(("deleted", "made")):
+        for kind, alone in found.alone.items():
+            if len(alone[k]):
+                return Difference(f"{kind}@{alone[k][0]}", what, "", "", np.inf)
+    if share is None:
+        digits = [float(np.finfo(state.scheme.real_type).eps) for state in (one, two)]
+        share = max(SHARE, TIMES * max(digits))
+    differing = (_worst(found, field) for field in found.fields)
+    worst = max(differing, key=lambda off: off.share, default=None)
+    return worst if worst is not None and worst.share > share else None
 
-    def difference(self, one: MainArray, two: MainArray) -> Difference | None:
-        """The worst difference that counts, None if there is none."""
-        found = compare(one.h, two.h, KINDS)
-        for k, what in enumerate(("deleted", "made")):
-            for kind, alone in found.alone.items():
-                if len(alone[k]):
-                    return Difference(f"{kind}@{alone[k][0]}", what, "", "", np.inf)
-        bits = min(one.scheme.real_bits, two.scheme.real_bits)
-        limit = self.share
-        if limit is None:
-            limit = max(SHARE, TIMES * float(np.finfo(np.float32 if bits == 32 else np.float64).eps))
-        worst = max(
-            (self._worst(found, field) for field in found.fields), key=lambda off: off.share, default=None
-        )
-        return worst if worst is not None and worst.share > limit else None
 
-    def _worst(self, found: Compared, field: Differing) -> Difference:
-        """The greatest difference of a field."""
-        if field.field.real:
-            greatest = _greatest(found.matching.sides, field.field.unit)
-            with np.errstate(all="ignore"):
-                shares = np.nan_to_num(field.distances.absolute / greatest, nan=np.inf)
-        else:
-            shares = np.full(len(field.one), np.inf)
-        row = int(np.argmax(shares))
-        one, two = (column[row].item() for column in field.values)
-        return Difference(f"{field.kind}@{field.one[row]}", field.name, one, two, float(shares[row]))
+def _worst(found: Compared, field: Differing) -> Difference:
+    """The greatest difference of a field."""
+    shares = np.full(len(field.one), np.inf)
+    if field.field.real:
+        with np.errstate(all="ignore"):
+            off = field.distances.absolute / _greatest(found.matching.sides, field.field.unit)
+        shares = np.nan_to_num(off, nan=np.inf)
+    row = int(np.argmax(shares))
+    one, two = (column[row].item() for column in field.values)
+    return Difference(f"{field.kind}@{field.one[row]}", field.name, one, two, float(shares[row]))
 
 
 def _greatest(sides: tuple[Side, Side], unit: str) -> float:
     """The greatest number with a unit in two states."""
-    found = max(_in_state(side, unit) for side in sides)
+    found = _in_states(sides, lambda field: field.unit == unit)
     if unit in ARMS:
         other, power = ARMS[unit]
-        size = max(
-            float(np.max(_finite(side.column("block", "KBRO", side.atlas.groups["block"])), initial=0))
-            for side in sides
-        )
-        found = max(found, max(_in_state(side, other) for side in sides) * (size or 1.0) ** power)
+        size = _in_states(sides, lambda field: field.name == "KBRO") or 1.0
+        found = max(found, _in_states(sides, lambda field: field.unit == other) * size**power)
     return found
 
 
-def _in_state(side: Side, unit: str) -> float:
-    greatest = 0.0
-    for kind, words in side.atlas.shapes.items():
-        for word in words:
-            if word.field.real and word.field.unit == unit:
-                values = _finite(side.atlas.gather(word, side.atlas.groups[kind]))
-                greatest = max(greatest, float(np.max(np.abs(values), initial=0.0)))
-    return greatest
-
-
-def _finite(values: Any) -> Any:
-    return values[np.isfinite(values)]
+def _in_states(sides: tuple[Side, Side], is_meant: Callable[[Field], bool]) -> float:
+    """The greatest finite number in certain real fields of two states, without its sign."""
+    found = 0.0
+    for atlas in (side.atlas for side in sides):
+        for kind, words in atlas.shapes.items():
+            for word in words:
+                if word.field.real and is_meant(word.field):
+                    values = np.abs(atlas.gather(word, atlas.groups[kind]))
+                    found = max(found, float(np.max(values[np.isfinite(values)], initial=0.0)))
+    return found
 
 
 # ---- runs in steps
@@ -144,14 +132,14 @@ class Step(NamedTuple):
 
 
 class SteppedRun(NamedTuple):
-    """model: what runs. steps: gives the states, as they are asked for."""
+    """model: the model of the run. steps: gives its states, as they are asked for."""
 
     model: Any
     steps: Iterator[Step]
 
 
 def of_state(model: Any, cycles: int) -> SteppedRun:
-    """So many cycles from where a model is."""
+    """So many cycles from the state of a model."""
     return SteppedRun(model, _cycles(model, cycles))
 
 
@@ -243,9 +231,6 @@ def _step(model: Any, line: str = "") -> Step:
     return Step(copy_state(model.array), int(model.array.h.ci[g.MCTOT]), line)
 
 
-Pair = tuple[SteppedRun, SteppedRun]
-
-
 # ---- the passes of one cycle
 
 
@@ -260,13 +245,13 @@ class _PassStates:
             given = soft(array), bound.blocks, bound.joints
             cycle = int(array.h.ci[g.MCTOT])
             for _ in range(STOPS):
-                run_unwatched(observe(array.h, self._tell), 1, given)
+                run_unwatched(observe(array.h, self._observe), 1, given)
                 raise_error(array, bound.book)
                 if array.h.ci[g.MCTOT] > cycle:
                     break
         self._end()
 
-    def _tell(self, part: str, where: Any, value: Any, written: bool) -> None:
+    def _observe(self, part: str, where: Any, value: Any, written: bool) -> None:
         name = _pass_of(sys._getframe(2))
         if name != self._name:
             self._end()
@@ -304,39 +289,34 @@ class Divergence(NamedTuple):
     states: States
 
 
-def find_divergence(one: SteppedRun, two: SteppedRun, compared: StateComparison) -> Divergence | int:
+def find_divergence(one: SteppedRun, two: SteppedRun, share: float | None) -> Divergence | int:
     """Where two runs differ first, or how many cycles they agree. Raises the UdecError that ends one."""
     before: tuple[Step, Step] | None = None
     agreed = 0
     for now in zip(one.steps, two.steps, strict=False):
         if now[0].cycle != now[1].cycle:
+            places = [f"{counted(one.cycle, 'cycle')} {one.line and 'after '}{one.line}" for one in now]
             raise UdecError(
                 26,
-                f"{_at(now[0].line)} the first run has {counted(now[0].cycle, 'cycle')}, "
-                f"{_at(now[1].line)} the second has {now[1].cycle}",
+                f"the first run has {places[0]}, the second {places[1]}",
                 "only runs with the same CYCLEs, and SOLVEs that end after as many cycles, can be compared",
             )
         cycle = now[0].cycle
         agreed += max(cycle - before[0].cycle, 0) if before else 0  # START begins at 0 again
-        off = compared.difference(now[0].copy.array(), now[1].copy.array())
+        off = find_difference(now[0].copy.array(), now[1].copy.array(), share)
         if off is not None:
             if before is None or before[0].cycle == cycle:
                 return Divergence(cycle, "", off, now[0].line, (now[0].copy, now[1].copy))
-            return _within((one, two), before, now, compared)
+            return _within((one, two), before, now, share)
         before = now
     return agreed
 
 
-def _at(line: str) -> str:
-    """When a step was, in words."""
-    return f"after {line}" if line else "at its beginning"
-
-
 def _within(
-    runs: Pair,
+    runs: tuple[SteppedRun, SteppedRun],
     before: tuple[Step, Step],
     now: tuple[Step, Step],
-    compared: StateComparison,
+    share: float | None,
 ) -> Divergence:
     """The same, where the runs differ within a step."""
     low, high = before[0].cycle, now[0].cycle
@@ -344,13 +324,13 @@ def _within(
     while high - low > 1:
         middle = (low + high) // 2
         states = _on(runs, start, middle - low)
-        if compared.difference(states[0].array(), states[1].array()) is None:
+        if find_difference(states[0].array(), states[1].array(), share) is None:
             low, start = middle, states
         else:
             high = middle
-    in_pass, off = _first_pass(runs, start, compared)
+    in_pass, off = _first_pass(runs, start, share)
     states = _on(runs, start, 1)
-    off = off or compared.difference(states[0].array(), states[1].array())
+    off = off or find_difference(states[0].array(), states[1].array(), share)
     if off is None:
         raise UdecError(
             26,
@@ -360,7 +340,7 @@ def _within(
     return Divergence(high, in_pass, off, now[0].line, states)
 
 
-def _on(runs: Pair, start: States, cycles: int) -> States:
+def _on(runs: tuple[SteppedRun, SteppedRun], start: States, cycles: int) -> States:
     """The states so many cycles later."""
     arrays = [_ready(copy) for copy in start]
     for run, array in zip(runs, arrays, strict=True):
@@ -377,13 +357,15 @@ def _ready(copy: StateCopy) -> MainArray:
     return array
 
 
-def _first_pass(runs: Pair, start: States, compared: StateComparison) -> tuple[str, Difference | None]:
+def _first_pass(
+    runs: tuple[SteppedRun, SteppedRun], start: States, share: float | None
+) -> tuple[str, Difference | None]:
     """The first pass of the next cycle after which the runs differ, and by what; "" if it is none alone."""
     passes = [
         _PassStates(_ready(copy), run.model.session.laws) for copy, run in zip(start, runs, strict=True)
     ]
     for (name, a), (other, b) in zip(passes[0].after, passes[1].after, strict=False):
-        off = compared.difference(a.array(), b.array())
+        off = find_difference(a.array(), b.array(), share)
         if off is not None:
             return (name if name == other else f"{name} and {other}"), off
     return "", None

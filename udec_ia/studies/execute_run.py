@@ -1,6 +1,7 @@
-"""Executes one run of a study, on a new model and in a folder of its own; measures its time and memory.
+"""Executes one run of a study, on a new model and in a folder of its own; measures its processor time.
 
-Nothing that it writes names the place where it was executed.
+Nothing that it writes names the place where it was executed. Observing a run changes no digit of it: how a
+CYCLE is cut into pieces has no influence on its result.
 """
 
 from __future__ import annotations
@@ -13,67 +14,72 @@ import threading
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
-from time import monotonic, perf_counter, thread_time
+from time import monotonic, thread_time
 from typing import TextIO
 
 from udec_ia.compiling.compile_time import compile_seconds
-from udec_ia.deck.deck_statements import statements
+from udec_ia.deck.command_monitor import Monitor
+from udec_ia.deck.deck_statements import Statement, statements
 from udec_ia.deck.deck_variables import Variables
+from udec_ia.deck.lines_and_calls import command_of
 from udec_ia.errors import UdecError
+from udec_ia.heap.main_array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.model import Model
+from udec_ia.running.observer import Observer, between_cycles
 from udec_ia.running.solve_result import in_short, worth_reporting
-from udec_ia.studies.observer import ModelWithWarnings, StudyObserver
-from udec_ia.studies.quantity_syntax import read_quantities
+from udec_ia.studies.quantities import InitialState, NoValue, State, read_quantities, read_rule
 from udec_ia.studies.run_folder import BEGUN, incomplete, new_folder, publish
-from udec_ia.studies.study_run import DECK, DIED, ENDED, ERROR, RunResult, StudyRun, write_result
+from udec_ia.studies.study_run import (
+    DECK,
+    DIED,
+    ENDED,
+    ERROR,
+    LATE,
+    STOPPED,
+    RunResult,
+    StudyRun,
+    write_result,
+)
 
 LOG = "log.txt"
 NOT_OF_DECK = (23, 31)  # a package is missing, a file cannot be written
-STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
-PEAK = "5"  # written to CLEAR to measure the peak memory anew (Linux, proc(5))
 log = logging.getLogger("udec_ia")
-
-
-class _Process:
-    """State of this process. run: held during a run, whatever threads there are. warm: it has done one."""
-
-    def __init__(self) -> None:
-        self.run = threading.Lock()
-        self.warm = False
-
-
-_process = _Process()
+_run_lock = threading.Lock()  # held during a run, however many threads the process has
+_warm: set[str] = set()  # word schemes of the runs that this process has done
 
 
 def execute(run: StudyRun, folder: Path, timed: bool = False) -> RunResult:
     """Execute `run` in its folder in `folder`; an earlier folder of the program is replaced.
 
-    timed: in a process that has executed no run yet it is rehearsed first, so that its seconds are those of
-    the run and not of loading the program. Errors of the run are part of its result. OSError if nothing can
-    be written, error 31 if something that is not of the program is in the place.
+    timed: a run that is the first of its word scheme in this process is rehearsed before, so that its seconds
+    are those of the run and not of loading the program. Errors of the run are part of its result. OSError if
+    nothing can be written, error 31 if something that is not of the program is in the place.
     """
-    if timed and not _process.warm:
+    if timed and run.build not in _warm:
         rehearse(run)
-    with _process.run:
+    with _run_lock:
         here = new_folder(folder, run.name)
         try:
             (here / BEGUN).touch()
             result = _result(run, here)
             write_result(result, here)
             publish(here, folder / run.name)
-            _process.warm = True
         except BaseException:
             shutil.rmtree(here, ignore_errors=True)
             raise
+    _warm.add(run.build)
     return result
 
 
 def rehearse(run: StudyRun) -> None:
-    """Execute `run` with one cycle for each CYCLE or SOLVE, to compile its kernels; the result is dropped."""
-    with _process.run, tempfile.TemporaryDirectory() as folder:
-        _result(run, Path(folder), rehearsal=True)
-    _process.warm = True
+    """Execute one cycle of each CYCLE and SOLVE, to compile the kernels; the result is dropped."""
+    with _run_lock, tempfile.TemporaryDirectory() as folder:
+        _result(replace(run, rehearsal=True), Path(folder))
+    _warm.add(run.build)
 
 
 def record_death(run: StudyRun, folder: Path) -> RunResult:
@@ -100,22 +106,18 @@ def _no_values(run: StudyRun) -> dict[str, float]:
     return dict.fromkeys((one.name for one in read_quantities(run.quantities)), float("nan"))
 
 
-def _result(run: StudyRun, here: Path, rehearsal: bool = False) -> RunResult:
+def _result(run: StudyRun, here: Path) -> RunResult:
     """The result of `run`, whose files go to the folder `here`."""
-    clock, observer, at_rest = perf_counter(), None, True
+    observer, at_rest = None, True
     status, error, message, of_system = ENDED, 0, "", False
-    warnings: list[str] = []
     found, remarks = _no_values(run), list[str]()
-    _restart_peak_memory()
     with _Log(here) as out, _logging_to(out):
         (here / DECK).write_text(_deck_with_values(run), encoding="utf-8")
         try:
-            name = Path(run.file or DECK).stem
-            laws = run.constitutive or None
-            model = ModelWithWarnings(warnings.append, run.build, out=here, constitutive=laws, name=name)
-            observer = StudyObserver(run, model, CpuTime(), rehearsal)
+            name, laws = Path(run.file or DECK).stem, run.constitutive or None
+            observer = StudyObserver(run, Model(run.build, out=here, constitutive=laws, name=name))
             observer.obey(out)
-            solutions = model.solutions()
+            solutions = observer.model.solutions()
             status, message = observer.over or ENDED, observer.why or "; ".join(in_short(solutions))
             at_rest = all(one.reached for one in worth_reporting(solutions))
             found, remarks = observer.quantities()
@@ -128,6 +130,7 @@ def _result(run: StudyRun, here: Path, rehearsal: bool = False) -> RunResult:
             status, message, of_system = ERROR, f"{type(failure).__name__}: {failure}", True
         print(*(f"{remark}\n" for remark in remarks), sep="", end="", file=out)
     cycles, time, words = observer.size if observer else (0, 0.0, 0)
+    warnings = observer.warnings if observer else []
     return RunResult(
         run.name,
         dict(run.values),
@@ -139,9 +142,7 @@ def _result(run: StudyRun, here: Path, rehearsal: bool = False) -> RunResult:
         cycles,
         time,
         words,
-        seconds=observer.seconds if observer else 0.0,
-        wall_seconds=perf_counter() - clock,
-        peak_memory=_peak_memory(),
+        seconds=observer.clock.seconds if observer else 0.0,
         made_of=run.made_of,
         limit=run.limit,
         warnings=tuple(dict.fromkeys(map(out.without_folder, warnings))),
@@ -187,9 +188,6 @@ def _logging_to(out: TextIO) -> Iterator[None]:
         log.propagate = propagated
 
 
-# ---- time and memory
-
-
 class CpuTime:
     """Processor time of a thread since now, without the time that compiling kernels takes.
 
@@ -214,20 +212,132 @@ class CpuTime:
         return thread_time(), monotonic(), compile_seconds()
 
 
-def _restart_peak_memory() -> None:
-    """Measure the peak memory anew, where the system can do that."""
-    with suppress(OSError):
-        CLEAR.write_text(PEAK)
+# ---- observers
 
 
-def _peak_memory() -> int:
-    """The greatest memory of the process since then, or since it began (bytes); 0 if unknown."""
-    with suppress(OSError, ValueError, IndexError):
-        for line in STATUS.read_text().splitlines():
-            if line.startswith("VmHWM:"):
-                return int(line.split()[1]) * 1024
-    try:
-        import resource
-    except ImportError:
-        return 0
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+class RunObserver(Observer):
+    """An observer of cycles that is called between commands as well."""
+
+    def command_obeyed(self, array: MainArray) -> None:
+        """A command was obeyed."""
+
+
+class StudyObserver(RunObserver):
+    """Observes `run`, which is executed on `model`: initial places, rules to stop, quantities.
+
+    over: status with which the run is to end, "" to go on; why: in words. clock: its processor time.
+    """
+
+    def __init__(self, run: StudyRun, model: Model) -> None:
+        self.run, self.model, self.clock = run, model, CpuTime()
+        self.over = self.why = ""
+        self.warnings: list[str] = []
+        self._named, self._rules = read_quantities(run.quantities), [read_rule(text) for text in run.stop]
+        asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
+        self._start = InitialState(frozenset(one.place for one in asked if one.place is not None))
+        self._done = 0  # cycles of this CYCLE or SOLVE
+        self._others: list[RunObserver] = run.observers(model)
+        self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
+
+    def obey(self, out: TextIO) -> None:
+        """Obey the deck of the run, whose output goes to `out`."""
+        name, text = self.run.file or DECK, self.run.deck
+        monitor = _Monitor(self, out)
+        monitor.variables.check(text.splitlines(), name)
+        self.model.session.observers = (*self._others, self)
+        monitor.run(text.splitlines(), name)
+        monitor.stop()
+
+    @property
+    def size(self) -> tuple[int, float, int]:
+        """Cycles and time of the model, and words in use."""
+        h = self.model.array.h
+        return int(h.ci[g.MCTOT]), float(h.cd[g.TIME]), int(h.ci[g.MFREE]) - 1
+
+    def quantities(self) -> tuple[dict[str, float], list[str]]:
+        """The quantities of the run, by name, with NaN for those without a value; and why they have none."""
+        found, remarks, state = dict[str, float](), list[str](), self._state()
+        for name, quantity in self._named:
+            try:
+                found[name] = quantity.value(state)
+            except (NoValue, UdecError) as reason:
+                found[name] = float("nan")
+                remarks.append(f"{name} has no value: {_reason(reason)}")
+        never = (f"{rule} has never had a value: {why}" for rule, why in self._unknown.items() if why)
+        return found, [*remarks, *never]
+
+    def command_obeyed(self, array: MainArray) -> None:
+        """See RunObserver."""
+        self._start.look(array)
+        for one in self._others:
+            one.command_obeyed(array)
+
+    def is_ended(self) -> bool:
+        """True if the run is to end: a rule holds, or the time is up."""
+        if self.run.limit is not None and self.clock.seconds > self.run.limit and not self.over:
+            self.over, self.why = LATE, f"after {self.run.limit:g} s"
+        return bool(self.over)
+
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See RunObserver."""
+        self._done = 0
+        self._start.begin(array)
+
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See RunObserver: until the next check of the rules."""
+        if self.run.rehearsal:
+            return min(n, 1)
+        every = self.run.every
+        return min(n, every - int(array.h.ci[g.MCTOT]) % every) if self._rules else n
+
+    def look(self, array: MainArray, cycles: int) -> None:
+        """See RunObserver."""
+        self._done += cycles
+        if not (self._rules and between_cycles(array.h) and array.h.ci[g.MCTOT] % self.run.every == 0):
+            return
+        state = self._state()
+        for rule in self._rules:
+            try:
+                holds = rule.holds(state)
+            except (NoValue, UdecError) as reason:
+                self._unknown.setdefault(rule.text, _reason(reason))
+                continue
+            self._unknown[rule.text] = ""
+            if holds and not self.over:
+                self.over, self.why = STOPPED, rule.text
+
+    def is_over(self) -> bool:
+        """True if the run is to end: a rule holds, or the time is up; or if the rehearsed cycle is done."""
+        return self.is_ended() or (self.run.rehearsal and self._done > 0)
+
+    def _state(self) -> State:
+        return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
+
+
+def _reason(error: Exception) -> str:
+    return error.detail if isinstance(error, UdecError) else str(error)
+
+
+class _Monitor(Monitor):
+    """Reports every command and warning to the observer, and ends when the observer does."""
+
+    def __init__(self, observer: StudyObserver, out: TextIO) -> None:
+        super().__init__(observer.model, out, values=observer.run.values)
+        self._observer = observer
+
+    def warn(self, command: str, text: str) -> None:
+        """As Monitor.warn."""
+        self._observer.warnings.append(text)
+        super().warn(command, text)
+
+    def obey(self, statement: Statement) -> None:
+        """As Monitor.obey, but nothing that takes long is begun when the time is up."""
+        command = command_of(statement)
+        if statement.tokens and (command is None or command.is_work):
+            self.ended = self._observer.is_ended()
+        if self.ended:
+            return
+        super().obey(statement)
+        self._observer.command_obeyed(self._observer.model.array)
+        if self._observer.over:
+            self.ended = True

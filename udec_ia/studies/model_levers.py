@@ -1,11 +1,11 @@
-"""Levers of the model: rounding length, size of zones, joint stiffness, types of blocks.
+"""Levers of the model: rounding length, size of zones, joint stiffness.
 
 Another value is another model, so its only reference is its own refinement: half and a quarter of the
 rounding length and of the zones' edge, twice and four times the stiffness. Where the three converge, the
-table shows how far the deck is from what they tend to. Types of blocks are set side by side. Time-steps
-follow from the model: a rehearsal of a few cycles measures them, and CYCLEs get the cycles of the same time.
-Smaller zones have more contacts on their joints, each with KN and KS; these are reduced by as much, so that
-the joints stay as stiff as they are.
+table shows how far the deck is from what they tend to. Time-steps
+follow from the model: a run of one cycle for each CYCLE measures them, and CYCLEs get the cycles of the same
+time. Smaller zones have more contacts on their joints, each with KN and KS; these are reduced by as much, so
+that the joints stay as stiff as they are.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from udec_ia.layout.offsets import VIRTUAL
 from udec_ia.studies.deck_rewriting import Deck
-from udec_ia.studies.extrapolation import extrapolate, share
+from udec_ia.studies.extrapolation import extrapolate
 from udec_ia.studies.setting_runner import SettingRunner
 from udec_ia.studies.settings import Numbers, Setting, cycles_for
 from udec_ia.studies.study_run import ENDED, RunResult
@@ -24,29 +24,36 @@ from udec_ia.studies.survey_run import Segment
 
 FACTORS = {"round": (1.0, 0.5, 0.25), "zones": (1.0, 0.5, 0.25), "stiffness": (1.0, 2.0, 4.0)}
 PARTS = {"round": "rounding", "zones": "edge", "stiffness": "stiffness"}
-TYPES = ("", "rigid", "sdef")
-LEVERS = (*FACTORS, "types")
 ALL, CLOSED = "all contacts", "closed contacts"
 CONTACTS = (f"{ALL} = count contact where KCCOD != {VIRTUAL}", f"{CLOSED} = count contact where KCFN > 0")
 COLUMNS = ("lever", "times", "quantity", "value", "off its limit", "contacts", "closed", "seconds", "what")
-A_FEW = 1e-9  # seconds after which a rehearsal ends each CYCLE, at its second check
 
 
 def vary_lever(runner: SettingRunner, lever: str) -> tuple[list[str], list[tuple[object, ...]]]:
-    """Notes, and a line for each value of a lever and each quantity. runner: with its survey."""
+    """Notes, and a line for each value of a lever and each quantity. runner: it has run its own deck."""
     if not _applies(runner.deck, lever):
         why = "the deck has no line that this lever changes"
         return [], [(lever, math.nan, "", *(math.nan,) * 5, why)]
-    own, notes = _settings(lever, Setting(runner.wide)), list[str]()
+    notes = list[str]()
+    own = [Setting(runner.wide, **{PARTS[lever]: factor}) for factor in FACTORS[lever]]  # type: ignore[arg-type]
     if lever == "zones":
-        own, notes = _keep_stiffness(runner, own)
-    steps = [runner.rehearsal(one, A_FEW, CONTACTS)[1] for one in own]
-    numbers = [_same_time(runner.survey, found) for found in steps]
+        own, notes = _keep_stiffness(own, [result.quantities[ALL] for result in _rehearse(runner, own)])
+    _rehearse(runner, own)
+    numbers = [_same_time(runner.survey, runner.segments(f"rehearsal,{one.name}")) for one in own]
     results = runner.results(
-        [runner.run(one, put, f"model,{one.name}", CONTACTS) for one, put in zip(own, numbers, strict=True)]
+        [
+            runner.run(one, put, CONTACTS, name=f"model,{one.name}")
+            for one, put in zip(own, numbers, strict=True)
+        ]
     )
     names = [*results[0].quantities][1 : -len(CONTACTS)]
     return notes, [row for name in names for row in _rows(lever, own, results, name)]
+
+
+def _rehearse(runner: SettingRunner, settings: Sequence[Setting]) -> list[RunResult]:
+    """Runs with one cycle for each CYCLE and SOLVE."""
+    runs = [runner.run(one, None, CONTACTS, name=f"rehearsal,{one.name}", rehearsal=True) for one in settings]
+    return runner.results(runs)
 
 
 def _applies(deck: Deck, lever: str) -> bool:
@@ -55,24 +62,14 @@ def _applies(deck: Deck, lever: str) -> bool:
         return deck.has("round")
     if lever == "zones":
         return any(call.named.get("edge") is not None for call in deck.calls("generate"))
-    if lever == "types":
-        return any(call.named.get("bulk") or call.named.get("g") for call in deck.calls("property"))
     return deck.has("property")
 
 
-def _settings(lever: str, own: Setting) -> list[Setting]:
-    """The values of a lever, that of the deck first."""
-    if lever == "types":
-        return [replace(own, types=types) for types in TYPES]
-    return [replace(own, **{PARTS[lever]: factor}) for factor in FACTORS[lever]]  # type: ignore[arg-type]
-
-
-def _keep_stiffness(runner: SettingRunner, own: Sequence[Setting]) -> tuple[list[Setting], list[str]]:
+def _keep_stiffness(own: Sequence[Setting], counts: Sequence[float]) -> tuple[list[Setting], list[str]]:
     """The same with KN, KS and the cohesions divided by the growth of the number of contacts; and a note.
 
     There is a contact at each grid-point of an edge, and these are properties of one contact.
     """
-    counts = [runner.rehearsal(one, A_FEW, CONTACTS)[0].quantities[ALL] for one in own]
     if not all(count > 0 for count in counts):  # one of them has failed, as its line shows
         return [*own], []
     found = [
@@ -83,10 +80,7 @@ def _keep_stiffness(runner: SettingRunner, own: Sequence[Setting]) -> tuple[list
         f"EDGE times {one.edge:g} has {count:.0f} contacts, and KN, KS and COHESION times {one.contact:g}"
         for one, count in zip(found, counts, strict=True)
     )
-    return found, [
-        "zones: a joint has a contact at each grid-point, and would be the stiffer the more there are "
-        f"(docs/deformable.md); so that joints stay as they are in the mean, {times}"
-    ]
+    return found, [f"zones: joints stay as stiff as they are in the mean: {times}"]
 
 
 def _same_time(survey: Sequence[Segment], rehearsed: Sequence[Segment]) -> Numbers:
@@ -102,12 +96,11 @@ def _rows(
     """The lines of one quantity. A run that did not come to rest counts for nothing."""
     usable = [one.status == ENDED and one.at_rest for one in results]
     values = [one.quantities[name] for one in results]
-    found = extrapolate(values) if lever != "types" and all(usable) else None
+    found = extrapolate(values) if all(usable) else None
     greatest = max(map(abs, values))
     rows: list[tuple[object, ...]] = []
     for k, (setting, result, value) in enumerate(zip(own, results, values, strict=True)):
-        factor = math.nan if lever == "types" else getattr(setting, PARTS[lever])
-        off, what = math.nan, setting.types or "as it is" if lever == "types" else "no limit"
+        off, what = math.nan, "no limit"
         if not usable[k]:
             what = result.message or result.status
         elif found and found.is_zero:
@@ -116,8 +109,8 @@ def _rows(
         elif found:
             order = f"order {found.order:.2f}" if math.isfinite(found.order) else "no order"
             off, what = found.error_of(value), f"limit known to within {found.share:.1e}, {order}"
-        elif lever == "types" and usable[0] and (values[0] or not value):
-            off = share(abs(value - values[0]), values[0])
         contacts = [result.quantities[one] for one in (ALL, CLOSED)]
-        rows.append((lever, factor, name, value, off, *contacts, result.seconds, what))
+        rows.append(
+            (lever, getattr(setting, PARTS[lever]), name, value, off, *contacts, result.seconds, what)
+        )
     return rows

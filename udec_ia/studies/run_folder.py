@@ -77,24 +77,16 @@ def publish(here: Path, there: Path) -> None:
 def check_replaceable(there: Path) -> None:
     """Error 31 unless a run may get the folder `there`: nothing is there, or what the program has made."""
     try:
-        what = _foreign(there)
+        is_folder = there.is_dir() and not there.is_symlink()
+        ours = is_folder and ((there / RESULT).is_file() or not any(there.iterdir()))
+        if ours or not os.path.lexists(there):
+            return
+        what = f"was not made by this program: it is no folder with {RESULT} in it"
     except OSError as error:
-        what = f"cannot be looked into: {error.strerror or error}"
-    if what:
-        place = printable(str(there), MESSAGE)
-        raise UdecError(31, f"{place}, the place of a run, {what}", f"move it away, or {OTHER}")
-
-
-def _foreign(there: Path) -> str:
-    """What the program has not made in the place of a run, "" for nothing."""
-    if there.is_symlink():
-        return "is a link"
-    if not there.exists():
-        return ""
-    if not there.is_dir():
-        return "is no folder"
-    ours = (there / RESULT).is_file() or not any(there.iterdir())
-    return "" if ours else f"is a folder that this program has not made: there is no {RESULT} in it"
+        what = f"cannot be read: {error.strerror or error}"
+    raise UdecError(
+        31, f"{printable(str(there), MESSAGE)}, the place of a run, {what}", f"move it away, or {OTHER}"
+    )
 
 
 def incomplete(name: str, folder: Path) -> list[Path]:

@@ -1,9 +1,9 @@
-"""Runs settings of one deck within a budget of time, predicts what they cost, and learns it from the runs.
+"""Runs settings of one deck within a budget of time, and learns what they cost.
 
-A run costs seconds of preparing, and for each CYCLE its cycles times seconds a cycle: at first those of a
-rehearsal of a few hundredths of a second, then those of all runs of a word scheme until now. Settings run in
-the order of their predicted costs, SOLVE ... STATIC first. The budget is time by the clock from the creation
-of the runner: creating and starting runs count. What does not come within it is not run.
+A run costs seconds of preparing and seconds a cycle: at first those of the deck as it is, then those of all
+runs of a word scheme until now. Settings run in the order of their predicted costs, SOLVE ... STATIC first.
+The budget is time by the clock from the creation of the runner: creating and starting runs count. What does
+not come within it is not run.
 """
 
 from __future__ import annotations
@@ -16,23 +16,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 from time import monotonic
-from typing import TextIO
+from typing import NamedTuple, TextIO
 
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.ops.laws.law_file import read_laws
-from udec_ia.running.history_series import SOLVE_LIMIT
-from udec_ia.studies.deck_rewriting import Deck, at_own_line, own_lines, text_of
+from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.settings import (
     Fraction,
     Numbers,
     Setting,
-    check_time_step,
     count_cycles,
     cycled_time,
     expected_cycles,
-    is_other_time,
+    has_its_fraction,
 )
-from udec_ia.studies.study_run import ENDED, ERROR, RunResult, StudyRun
+from udec_ia.studies.study_run import ENDED, LATE, RunResult, StudyRun
 from udec_ia.studies.survey_run import Segment, SurveyRun, read_segments
 from udec_ia.studies.worker_pool import StudyProgress, WorkerPool, check_saves
 
@@ -45,9 +43,8 @@ END_TIME = "end of time = time"  # the first quantity of every run
 TOLERANCE, BUDGET = 1e-3, 300.0
 NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes with half the reals
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
-SURVEY, REHEARSAL = "survey", "rehearsal"
-REHEARSED = 0.03  # seconds of each CYCLE in a rehearsal
-LATE, SHORT = 5.0, 5.0  # a run ends after so many times the predicted seconds, and so many seconds at least
+LONGEST = 5.0  # a run ends after so many times the predicted seconds, and so many seconds at least
+TIME_OFF = 0.05  # share of the time of all CYCLEs by which a run may be off, as cycles are whole
 NOT_AT_REST = "its SOLVE did not reach the force ratio"
 
 
@@ -112,37 +109,23 @@ class Row:
         return self.result.words * bits // 8 if self.result else 0
 
 
-@dataclass(frozen=True)
-class Rates:
-    """Costs of a word scheme. preparing: seconds beside cycles. each: seconds a cycle, of each CYCLE."""
+class Rates(NamedTuple):
+    """Costs of a word scheme: seconds of preparing a run, and of a cycle."""
 
     preparing: float
-    each: tuple[float, ...]
+    cycle: float
 
-    @classmethod
-    def of(cls, result: RunResult, survey: Sequence[Segment]) -> Rates:
-        """Those of one run."""
-        each = tuple(one.seconds / max(one.done, 1) for one in survey)
-        return cls(max(result.seconds - sum(one.seconds for one in survey), 0.0), each)
-
-    def seconds(self, cycles: Sequence[float]) -> float:
-        """Of a run with so many cycles in each CYCLE and SOLVE."""
-        return self.preparing + sum(n * rate for n, rate in zip(cycles, self.each, strict=False))
-
-    def times(self, factor: float) -> Rates:
-        """The same with all cycles `factor` times as expensive."""
-        return Rates(self.preparing, tuple(rate * factor for rate in self.each))
-
-    def over(self, other: Rates) -> float:
-        """Seconds a cycle over those of another word scheme, as a mean over all CYCLEs."""
-        both = [(a, b) for a, b in zip(self.each, other.each, strict=False) if a > 0 and b > 0]
-        return sum(a for a, _ in both) / sum(b for _, b in both) if both else 1.0
+    def seconds(self, cycles: float) -> float:
+        """Seconds of a run with so many cycles."""
+        return self.preparing + cycles * self.cycle
 
 
 class SettingRunner:
     """Runs settings of one deck in `folder`, which it keeps until the end of `with`. notes: sentences.
 
-    Raises UdecError 34 for a law that cannot be used, 31 for a deck whose runs would save to one file.
+    own, survey: the deck as it is, and its CYCLEs and SOLVEs. fraction: of the deck at first, None if it does
+    not matter. Raises UdecError 34 for a law that cannot be used, 31 for a deck whose runs would save to one
+    file.
     """
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
@@ -151,14 +134,15 @@ class SettingRunner:
         read_laws(options.constitutive)
         self.wide = WIDE.get(options.build, options.build)
         self.builds = [*dict.fromkeys((self.wide, *(options.builds or (NARROW[self.wide],))))]
-        self.surveyed: RunResult | None = None
+        self.own = Row(Setting(self.wide), Numbers(), 0.0)
         self.survey: list[Segment] = []
-        self.fraction: Fraction | None = None  # that of the deck at first, if it matters
+        self.fraction: Fraction | None = None
         self.rates: dict[str, Rates] = {}
         self.notes: list[str] = []
-        self._done: dict[str, list[Row]] = {}
+        self._done: dict[str, list[Row]] = {build: [] for build in self.builds}
         self._open = ExitStack()
         self._pool = WorkerPool(folder, jobs=options.jobs, timed=True)
+        self.processes = max(self._pool.jobs, 1)  # runs that go on at a time
         check_saves([self.run(Setting(self.wide), name=name) for name in ("one", "other")])
 
     def __enter__(self) -> SettingRunner:
@@ -173,84 +157,65 @@ class SettingRunner:
         """Seconds of the budget that are left."""
         return self._end - monotonic()
 
-    @property
-    def processes(self) -> int:
-        """Runs that go on at a time."""
-        return max(self._pool.jobs, 1)
-
     def run(
         self,
         setting: Setting,
         numbers: Numbers | None = None,
-        name: str = "",
-        beside: tuple[str, ...] = (),
+        more: tuple[str, ...] = (),
         **named: object,
     ) -> SurveyRun:
-        """The run of a setting. beside: quantities beside those that are asked for."""
-        pieces = self.deck.pieces(setting, numbers, self.fraction)
-        return SurveyRun(
-            name or setting.name,
-            text_of(pieces),
-            self.deck.name,
-            quantities=(END_TIME, *self.options.quantities, *beside),
-            build=setting.build,
-            constitutive=self.options.constitutive,
-            lines=own_lines(pieces),
-            **named,  # type: ignore[arg-type]
+        """The run of a setting. more: quantities beside those that are asked for.
+
+        Errors name the user's deck, or deck.dat in the folder of the run if that has more lines.
+        """
+        text = self.deck.written(setting, numbers, self.fraction)
+        same = len(text.splitlines()) == len(self.deck.text.splitlines())
+        run: dict[str, object] = {
+            "name": setting.name,
+            "deck": text,
+            "file": self.deck.name if same else "",
+            "quantities": (END_TIME, *self.options.quantities, *more),
+            "build": setting.build,
+            "constitutive": self.options.constitutive,
+        }
+        return SurveyRun(**run | named)  # type: ignore[arg-type]
+
+    def run_own_deck(self) -> str:
+        """Run the deck as it is. Returns why there is nothing to compare with, "" if there is."""
+        (self.own.result,) = (result,) = self.results(
+            [self.run(self.own.setting, bounds=True, limit=max(self.left, 1.0))]
         )
+        self.survey = self.segments(self.own.setting.name)
+        if result.status == LATE:
+            budget = f"the budget of {self.options.budget:g} s: give a greater --budget"
+            return f"the deck as it is takes more than {budget}"
+        if result.status != ENDED or not self.survey:
+            reason = result.message or "it has no CYCLE and no SOLVE"
+            return f"the deck as it is gives nothing to compare: {reason}"
+        one = next((one for one in self.survey if not one.static), None)
+        if one is not None:
+            words = " SCALED" if one.scaled else " SAFE" if one.safe else ""
+            self.fraction = Fraction(one.fraction, words)
+        self.own.numbers = count_cycles(self.survey, self.own.setting)
+        self._enter(self.own, result)
+        self.rates = dict.fromkeys(self.builds, self.rates[self.wide])
+        return f"{self.own.why}: {result.message}" if self.own.why == NOT_AT_REST else ""
 
-    def rehearse(self) -> None:
-        """Learn what a cycle costs in each word scheme. One that has no first cycle is left out."""
-        for build in [*self.builds]:
-            if self.rates and self.left <= 0:
-                self.builds.remove(build)
-                continue
-            result, segments = self.rehearsal(Setting(build), REHEARSED)
-            if result.status == ERROR and result.cycles == 0 and build != self.wide:
-                self.builds.remove(build)
-                self.notes.append(f"{build} is left out, as it cannot run the deck: {result.message}")
-            self.rates[build] = Rates.of(result, segments)
-
-    def rehearsal(
-        self, setting: Setting, seconds: float, beside: tuple[str, ...] = ()
-    ) -> tuple[RunResult, list[Segment]]:
-        """A rehearsal, each CYCLE and SOLVE of which ends after some seconds, and these."""
-        run = self.run(setting, None, f"{REHEARSAL},{setting.name}", beside, rehearsed=seconds)
-        (result,) = self.results([run])
-        return result, self.segments(run.name)
-
-    def predicted_range(self) -> tuple[float, float]:
-        """Seconds of the deck as it is, by the rehearsal: at least, and with all cycles of SOLVEs."""
-        found = self.segments(f"{REHEARSAL},{Setting(self.wide).name}")
-        calls = self.deck.calls("cycle", "solve")
-        limits = [
-            call.named.get("limit", SOLVE_LIMIT) if call.command.name == "solve" else 0 for call in calls
-        ]
-        least = [one.done if one.solve else one.asked for one in found]
-        most = [max(n, limit) for n, limit in zip(least, limits, strict=False)]
-        rates = self.rates[self.wide]
-        return rates.seconds(least), rates.seconds(most)
-
-    def survey_deck(self) -> RunResult:
-        """The run of the deck as it is, with estimates and bounds of the time-step."""
-        run = self.run(Setting(self.wide), name=SURVEY, bounds=True, limit=max(self.left, 1.0))
-        self.surveyed = result = self.results([run])[0]
-        self.survey = self.segments(SURVEY)
-        if self.survey:
-            one = next((one for one in self.survey if not one.static), None)
-            if one is not None:
-                words = " SCALED" if one.scaled else " SAFE" if one.safe else ""
-                self.fraction = Fraction(one.fraction, words)
-            found, rehearsed = Rates.of(result, self.survey), dict(self.rates)
-            preparing = rehearsed[self.wide].preparing if self.wide in rehearsed else found.preparing
-            found = Rates(preparing, found.each)  # without what bounds need
-            for build in rehearsed:
-                times = rehearsed[build].over(rehearsed[self.wide])
-                self.rates[build] = found if build == self.wide else found.times(times)
-        return result
+    def drop_unable_builds(self) -> None:
+        """Run the deck in the other word schemes; those that cannot run it are left out, with a note."""
+        rows = [self.row(Setting(build)) for build in self.builds[1:]]
+        self.run_rows(rows)
+        for row in rows:
+            if row.result is not None and not row.ran:
+                self.builds.remove(row.setting.build)
+                reason = row.result.message
+                self.notes.append(f"{row.setting.build} is left out, as it cannot run the deck: {reason}")
 
     def row(self, setting: Setting) -> Row:
         """A setting, with its predicted cost."""
+        for row in (self.own, *self._done[setting.build]):
+            if row.setting == setting:
+                return row
         row = Row(setting, count_cycles(self.survey, setting), 0.0)
         row.predicted = self._predicted(row)
         return row
@@ -261,75 +226,63 @@ class SettingRunner:
 
     def predicted_seconds(self, rows: Sequence[Row]) -> float:
         """Seconds by the clock that rows take."""
-        return sum(row.predicted for row in rows) / self.processes
+        return sum(row.predicted for row in rows if row.result is None) / self.processes
 
     def run_rows(self, rows: Sequence[Row]) -> list[Row]:
         """Run rows as long as the budget lasts, STATIC first and then the cheapest. Returns the others."""
-        waiting = sorted(rows, key=lambda row: (not row.setting.static, row.predicted))
-        while waiting and waiting[0].predicted < self.left:
-            some, waiting = waiting[: self.processes], waiting[self.processes :]
-            self._run(some)
+        waiting = [row for row in rows if row.result is None]
+        while waiting:
             for row in waiting:
                 row.predicted = self._predicted(row)
             waiting.sort(key=lambda row: (not row.setting.static, row.predicted))
+            if waiting[0].predicted > self.left:
+                break
+            some, waiting = waiting[: self.processes], waiting[self.processes :]
+            runs = [
+                self.run(row.setting, row.numbers, limit=min(self._longest(row), max(self.left, 1.0)))
+                for row in some
+            ]
+            for row, result in zip(some, self.results(runs), strict=True):
+                self._enter(row, result)
         return waiting
 
-    def _run(self, rows: Sequence[Row]) -> None:
-        allowed = max(self.left, 1.0)
-        limits = [min(max(SHORT, LATE * row.predicted), allowed) for row in rows]
-        runs = [
-            self.run(row.setting, row.numbers, limit=last) for row, last in zip(rows, limits, strict=True)
-        ]
-        for row, result in zip(rows, self.results(runs), strict=True):
-            row.result = result
-            row.why = self._why_not_compared(row)
-            if row.ran:
-                self._done.setdefault(row.setting.build, []).append(row)
-        for build in {row.setting.build for row in rows}:
-            self._learn(build)
+    def _longest(self, row: Row) -> float:
+        return LONGEST * max(1.0, row.predicted)
 
-    def _why_not_compared(self, row: Row) -> str:
-        """Why a row that has run is not compared, "" if it is."""
-        if row.result is None or self.surveyed is None or not row.ran:
-            return ""
-        found = self.segments(row.setting.name)
-        k = check_time_step(self.survey, found, row.setting, row.numbers)
-        if k >= 0:
-            by = f" ({setter})" if (setter := self.deck.setter(k)) else ""
-            return f"the deck sets its time-step itself{by}, which cannot be varied; write FRACTION instead"
-        time, own = cycled_time(found, row.result.time), cycled_time(self.survey, self.surveyed.time)
-        if is_other_time(time, own):
-            return f"the CYCLEs of {row.setting.name} last {time:.4g} s, those of the deck {own:.4g} s"
-        return "" if row.result.at_rest else f"{NOT_AT_REST}: {row.result.message}"
-
-    def _learn(self, build: str) -> None:
-        """Rates of a word scheme from all its runs until now, and so what each of them has cost.
+    def _enter(self, row: Row, result: RunResult) -> None:
+        """Enter the result of a row, and learn the costs of its word scheme from all its runs until now.
 
         The times of a single run of a small model differ by a quarter from one time to the next.
         """
-        done = [(row, self.segments(row.setting.name)) for row in self._done.get(build, [])]
-        if not done:
+        row.result = result
+        if not row.ran:
             return
-        rates = self.rates[build]
-        spare = [row.result.seconds - sum(one.seconds for one in found) for row, found in done if row.result]
-        rates = Rates(max(median(spare), 0.0), rates.each)
-        spent = sum(one.seconds for _, found in done for one in found)
-        thought = sum(rates.seconds([one.done for one in found]) - rates.preparing for _, found in done)
-        self.rates[build] = rates.times(spent / thought) if spent > 0 and thought > 0 else rates
-        for row, found in done:
-            row.cost = self.rates[build].seconds([one.done for one in found])
+        row.why = self._why_not_compared(row, result)
+        done = self._done[row.setting.build]
+        done.append(row)
+        found = [self.segments(one.setting.name) for one in done]
+        spent = [sum(one.seconds for one in some) for some in found]
+        cycles = sum(one.done for some in found for one in some)
+        spare = [one.result.seconds - own for one, own in zip(done, spent, strict=True) if one.result]
+        rates = Rates(max(median(spare), 0.0), sum(spent) / max(cycles, 1))
+        self.rates[row.setting.build] = rates
+        for one, some in zip(done, found, strict=True):
+            one.cost = rates.seconds(sum(segment.done for segment in some))
+
+    def _why_not_compared(self, row: Row, result: RunResult) -> str:
+        """Why a row that has run is not compared, "" if it is."""
+        found = self.segments(row.setting.name)
+        if not has_its_fraction(self.survey, found, row.setting, row.numbers):
+            return "the deck sets its time-step itself, which cannot be varied; write FRACTION instead"
+        own = self.own.result or result
+        time, wanted = cycled_time(found, result.time), cycled_time(self.survey, own.time)
+        if abs(time - wanted) > TIME_OFF * abs(wanted):
+            return f"the CYCLEs of {row.setting.name} last {time:.4g} s, those of the deck {wanted:.4g} s"
+        return "" if result.at_rest else NOT_AT_REST
 
     def results(self, runs: Sequence[StudyRun]) -> list[RunResult]:
-        """The results of runs; errors name the lines of the user's deck."""
-        of = {run.name: run for run in runs}
-
-        def own(result: RunResult) -> RunResult:
-            run = of[result.name]
-            return at_own_line(result, run) if isinstance(run, SurveyRun) else result
-
-        with StudyProgress(self.options.stream, len(runs)) as progress:
-            found = self._pool.results(runs, lambda result, why: progress.show(own(result), why))
-        return [own(result) for result in found]
+        """The results of runs."""
+        return self._pool.results(runs, StudyProgress(self.options.stream, len(runs)).show)
 
     def segments(self, name: str) -> list[Segment]:
         """The CYCLEs and SOLVEs of the run of that name."""

@@ -17,11 +17,8 @@ from udec_ia.studies.survey_run import Segment
 
 FIT = 0.06  # the greatest share by which a time-step may be smaller than asked for
 TRIED = 60  # fractions that are tried at most
-ALLOWED = 3  # times the expected cycles of a SOLVE, after which it ends
 SAME_FRACTION = 1e-5  # share: what reals of 32 bits and ten digits of a deck leave
-TIME_OFF = 0.05  # share of the time of all CYCLEs by which a run may be off, as cycles are whole
 SAME = 1e-9  # of the time: a difference that does not count
-STATIC_GAIN = {False: 3.5, True: 2.1}  # medians over the best damping, without and with SAFE (docs/rest.md)
 RUNG = 2**0.5  # of the ladder of time-steps: the cheapest on it is so to within that factor
 LONGEST = 16.0  # times the step of the deck
 BEYOND = 1.4  # of the safe bound, which is 0.7 of the true one or more: nothing is stable above
@@ -36,7 +33,7 @@ class Setting:
     build: word scheme. step: times the time-step of the deck. safe: fraction of the safe bound instead, 0 for
     none. ratio: times the ratio of SOLVE. static: SOLVE ... STATIC. rounding, edge, stiffness: times the
     lengths of ROUND and of GENERATE ... EDGE, and KN and KS. contact: times KN, KS and the cohesions, which
-    are properties of one contact, instead. types: "" as they are, "rigid" or "sdef".
+    are properties of one contact, instead.
     """
 
     build: str = DEFAULT_SCHEME
@@ -48,7 +45,6 @@ class Setting:
     edge: float = 1.0
     stiffness: float = 1.0
     contact: float = 1.0
-    types: str = ""
 
     @property
     def name(self) -> str:
@@ -58,17 +54,9 @@ class Setting:
             parts.append(f"safe={self.safe:.3g}")
         elif not self.static:
             parts.append(f"step={self.step:.4g}")
-        times = {
-            "ratio": self.ratio,
-            "round": self.rounding,
-            "edge": self.edge,
-            "stiffness": self.stiffness,
-            "contact": self.contact,
-        }
-        parts += [f"{what}={factor:.3g}" for what, factor in times.items() if factor != 1]
-        parts += ["static"] if self.static else []
-        parts += [self.types] if self.types else []
-        return ",".join(parts)
+        times = ("ratio", "rounding", "edge", "stiffness", "contact")
+        parts += [f"{name}={getattr(self, name):.3g}" for name in times if getattr(self, name) != 1]
+        return ",".join([*parts, *["static"] * self.static])
 
     def step_of(self, one: Segment) -> float:
         """The time-step (s) that it makes for a CYCLE or SOLVE of the deck."""
@@ -77,19 +65,16 @@ class Setting:
         return self.safe * one.bound if self.safe else self.step * one.step
 
 
-@dataclass(frozen=True)
-class Numbers:
+class Numbers(NamedTuple):
     """What a setting puts into the lines that count cycles.
 
     fit: times the fraction that is asked for, a little below 1. cycles: of each CYCLE and SOLVE, in order;
-    None as they are. longer: of each of these, time-step of the deck over the new one. limits: cycles after
-    which each SOLVE ends; None as it is.
+    None as they are. longer: of each of these, time-step of the deck over the new one.
     """
 
     fit: float = 1.0
     cycles: tuple[int | None, ...] = ()
     longer: tuple[float, ...] = ()
-    limits: tuple[int | None, ...] = ()
 
 
 class Fraction(NamedTuple):
@@ -105,22 +90,20 @@ class Fraction(NamedTuple):
 def count_cycles(survey: Sequence[Segment], setting: Setting) -> Numbers:
     """What `setting` puts into the lines that count cycles. survey: of the deck as it is, with bounds."""
     if setting.static:
-        same = tuple(1.0 for _ in survey)
-        return Numbers(1.0, tuple(None for _ in survey), same, _limits(survey, same, setting))
+        return Numbers(1.0, (None,) * len(survey), (1.0,) * len(survey))
     timed = [one for one in survey if not one.solve and one.asked > 0]
     fits, total = [1.0], sum(one.asked * one.step for one in timed)
     if timed:
         longest = max(timed, key=lambda one: one.asked * one.step)
         ideal = longest.asked * longest.step / setting.step_of(longest)
-        first = -int(-ideal * (1 - SAME) // 1)  # cycles, at least
-        counts = range(max(first, 1), max(int(ideal / (1 - FIT)), first) + 1)
-        fits = [min(1.0, ideal / count) for count in counts[:TRIED]] or fits
+        first = max(math.ceil(ideal * (1 - SAME)), 1)
+        counts = range(first, max(int(ideal / (1 - FIT)), first) + 1)
+        fits = [min(1.0, ideal / count) for count in counts[:TRIED]]
     steps = [[setting.step_of(one) * fit for one in survey] for fit in fits]
     left = [max(map(abs, cycles_for(survey, some)[1]), default=0.0) for some in steps]
     best = next(k for k, one in enumerate(left) if one <= min(left) + SAME * total)
     longer = tuple(one.step / step for one, step in zip(survey, steps[best], strict=True))
-    cycles = cycles_for(survey, steps[best])[0]
-    return Numbers(fits[best], cycles, longer, _limits(survey, longer, setting))
+    return Numbers(fits[best], cycles_for(survey, steps[best])[0], longer)
 
 
 def cycles_for(
@@ -143,56 +126,33 @@ def cycles_for(
     return tuple(cycles), rests
 
 
-def expected_cycles(survey: Sequence[Segment], numbers: Numbers, setting: Setting) -> list[float]:
-    """Cycles of each CYCLE and SOLVE, the latter as far as can be known."""
-    found: list[float] = []
-    for one, n, longer in zip(survey, numbers.cycles, numbers.longer, strict=True):
-        cycles = _to_rest(one, longer, setting) if n is None else float(n)
-        gains = setting.static and one.solve and not one.static
-        found.append(cycles / STATIC_GAIN[one.safe] if gains else cycles)
-    return found
+def expected_cycles(survey: Sequence[Segment], numbers: Numbers, setting: Setting) -> float:
+    """Cycles of all CYCLEs and SOLVEs; a SOLVE takes about a third more for each decade of its ratio."""
+    closer = 1 + max(-math.log10(setting.ratio), 0.0) / 3
+    counts = zip(survey, numbers.cycles, numbers.longer, strict=True)
+    return sum(one.done * longer * closer if n is None else n for one, n, longer in counts)
 
 
-def _to_rest(one: Segment, longer: float, setting: Setting) -> float:
-    """Cycles that a SOLVE is expected to take, a third more for each decade of the ratio."""
-    return one.done * longer * (1 + max(-math.log10(setting.ratio), 0.0) / 3)
-
-
-def _limits(survey: Sequence[Segment], longer: Sequence[float], setting: Setting) -> tuple[int | None, ...]:
-    """Cycles after which each SOLVE is not expected to end any more."""
-    return tuple(
-        int(ALLOWED * _to_rest(one, max(by, 1.0), setting)) + 1000 if one.solve else None
-        for one, by in zip(survey, longer, strict=True)
-    )
-
-
-def check_time_step(
+def has_its_fraction(
     survey: Sequence[Segment], found: Sequence[Segment], setting: Setting, numbers: Numbers
-) -> int:
-    """The first CYCLE or SOLVE of a run whose fraction is not that of its setting, from 0; -1 for none.
+) -> bool:
+    """True if all CYCLEs and SOLVEs of a run have the fraction of its setting.
 
     A deck can set its time-step past FRACTION, by PATCH or RSET of the word FRAC or by a second START. Then a
     setting that changes FRACTION has no effect, and its run cannot be compared.
     """
-    for k, (own, one) in enumerate(zip(survey, found, strict=False)):
-        if own.static or setting.static:
-            continue
+    for own, one in zip(survey, found, strict=False):
         wanted = (setting.safe or own.fraction * setting.step) * numbers.fit
-        safe = own.safe or bool(setting.safe)
-        if one.safe != safe or not math.isclose(one.fraction, wanted, rel_tol=SAME_FRACTION):
-            return k
-    return -1
+        same = math.isclose(one.fraction, wanted, rel_tol=SAME_FRACTION)
+        if not (own.static or setting.static) and not (same and one.safe == (own.safe or setting.safe > 0)):
+            return False
+    return True
 
 
 def cycled_time(found: Sequence[Segment], end: float) -> float:
     """Time of the model in all CYCLEs of a run that ended at `end` (s); that in SOLVEs has no meaning."""
     ends = [*(one.began for one in found[1:]), end]
     return sum(stop - one.began for one, stop in zip(found, ends, strict=False) if not one.solve)
-
-
-def is_other_time(time: float, own: float) -> bool:
-    """True if the time in CYCLEs is not that of the deck."""
-    return abs(time - own) > TIME_OFF * abs(own)
 
 
 # ---- settings to be tried
@@ -209,19 +169,16 @@ def longer_steps(
 ) -> list[Setting]:
     """Steps of the deck and above, as far as they can be stable, and what else is cheaper.
 
-    rests: the deck seeks nothing but rest, so SOLVE ... STATIC is one of them.
+    rests: the deck only seeks rest, so SOLVE ... STATIC is one of them.
     """
     if not stepped:
         return _with_tighter([Setting(build) for build in builds], solves)
-    found: list[Setting] = []
     largest = min((1 / one.fraction for one in survey if one.safe and not one.static), default=math.inf)
+    steps = [RUNG**k for k in range(9) if RUNG**k <= min(LONGEST * 1.01, largest)]
+    found: list[Setting] = []
     for build in builds:
-        step = 1.0
-        while step <= min(LONGEST * 1.01, largest):
-            one = Setting(build, rounded(step))
-            if step == 1 or share_of_bound(survey, one) <= BEYOND:
-                found.append(one)
-            step *= RUNG
+        ladder = [Setting(build, rounded(step)) for step in steps]
+        found += [one for one in ladder if one.step == 1 or share_of_bound(survey, one) <= BEYOND]
         if any(0 < one.bound < math.inf for one in survey):
             found += [Setting(build, safe=safe) for safe in SAFE]
         if rests:
@@ -251,5 +208,5 @@ def rounded(step: float) -> float:
 
 def share_of_bound(survey: Sequence[Segment], setting: Setting) -> float:
     """The greatest share of the safe bound that a time-step of `setting` has; 0 if nothing bounds it."""
-    own = [one for one in survey if one.bound > 0 and not one.static]
-    return max((setting.step_of(one) / one.bound for one in own), default=0.0)
+    shares = [setting.step_of(one) / one.bound for one in survey if one.bound > 0 and not one.static]
+    return max(shares, default=0.0)

@@ -1,9 +1,13 @@
 """How many digits of each quantity a deck determines, what limits them, and which fields lose the others.
 
-Noise of the last place is passed on. As long as it is small it grows in proportion: it costs as many digits
-in words of any length. That is rounding. If 64-bit reals have less than half of the digits more that they
-should have, the motion itself loses them: that is chaos. What half the step changes by more than the spread
-is the error of the step.
+Small noise in the last place grows in proportion: rounding costs as many digits in words of any length. If
+64-bit reals have less than half of the digits more that they should have, the motion itself loses them: that
+is chaos. What half the step changes by more than the spread is the error of the step.
+
+Between two cycles of a perturbed run each real that has changed since the last kick is moved by xi units in
+the last place, xi uniform in [-1, 1], and rounded to the nearest: as if the last rounding of each number were
+done once more, up or down at random (Verrou and CADNA do that to every operation). There are KICKS at most.
+If a kick stands for k cycles it is sqrt(k) units high: random steps, each as likely up as down, add up so.
 
 Digits that a sample of perturbed results shares, with confidence: D. Sohier, P. de Oliveira Castro,
 F. Fevotte, B. Lathuiliere, E. Petit, O. Jamond, Confidence intervals for stochastic arithmetic, ACM Trans.
@@ -15,10 +19,10 @@ of a result are significant with the probability p if
 sigma, mu: of the n results; chi2: the a/2 quantile of the chi-squared distribution with n - 1 degrees of
 freedom; F: quantile of the normal distribution.
 
-Fields. Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of
-that with noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying
-and isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002): first among passes, then among
-their fields. Where two sets without a common field each explain all of it, as in chaos, that is reported.
+Noise in a few fields explains the loss if the spread with noise in them alone is at least SHARE of that with
+noise in all. A least such set is found by delta debugging (A. Zeller, R. Hildebrandt, Simplifying and
+isolating failure-inducing input, IEEE Trans. Software Eng. 28, 2002), first among kinds of groups, then among
+their fields.
 """
 
 from __future__ import annotations
@@ -26,21 +30,30 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from statistics import NormalDist, fmean, stdev
+from typing import Any
 
 import numpy as np
 
+from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
+from udec_ia.kernels.links.linked_lists import addresses
+from udec_ia.layout import offsets as g
+from udec_ia.layout.table import layouts, read_table
 from udec_ia.printable import counted
-from udec_ia.studies.perturbed_run import KICKS, PerturbedRun
+from udec_ia.reader.group_tables import addresses as listed
+from udec_ia.running.observer import between_cycles
+from udec_ia.studies.execute_run import RunObserver
 from udec_ia.studies.setting_runner import END_TIME, SettingRunner
 from udec_ia.studies.settings import Setting
-from udec_ia.studies.study_run import ENDED, RunResult
+from udec_ia.studies.study_run import ENDED, RunResult, StudyRun
 
+KICKS = 1000
+STAYING = ("block", "corner", "gridpoint", "zone", "sdef")  # groups that come and go by commands only
+PASSING = {"contact": (g.ICPNT, g.KC), "domain": (g.IDPNT, g.KD)}  # those of cycles: head and link
+KINDS = (*STAYING, *PASSING)
 PROBABILITY = CONFIDENCE = 0.95
 FEWEST = 3  # results of a sample
-HALVINGS = 200
 ENSEMBLE, OF_FIELDS = 16, 6  # runs of an ensemble, and of one with noise in some fields
 KICK = 4e-4  # seconds, about
 SHARE = 0.5  # of the digits that longer words have more; and of a spread, as four equal sources have
@@ -48,22 +61,7 @@ COLUMNS = (
     *("quantity", "value", "digits", "at least", "32-bit digits", "32-bit at least", "step"),
     "what limits it",
 )
-FIELD_COLUMNS = ("pass", "field", "spread", "share")
-PASSES = {
-    "motion": ("block.KXD", "block.KYD", "block.KTD", "gridpoint.KXDG", "gridpoint.KYDG"),
-    "places": ("block.KX", "block.KY", "gridpoint.KXG", "gridpoint.KYG"),
-    "corners": ("corner.KXP", "corner.KYP", "corner.KXDP", "corner.KYDP"),
-    "outlines": ("corner.KXCP", "corner.KYCP", "corner.KRAD"),
-    "overlaps": ("contact.KCN", "contact.KCS"),
-    "contact forces": ("contact.KCFN", "contact.KCFS"),
-    "contact places": ("contact.KXC", "contact.KYC", "contact.KXDC", "contact.KYDC"),
-    "domains": ("domain.KUMAX",),
-    "stresses": ("zone.KZS11", "zone.KZS12", "zone.KZS22"),
-    "block strains": (
-        *(f"sdef.{name}" for name in ("KED11", "KED12", "KED21", "KED22")),
-        *(f"sdef.{name}" for name in ("KS111", "KS112", "KS121", "KS122")),
-    ),
-}
+FIELD_COLUMNS = ("field", "spread", "share")
 
 
 # ---- digits of a sample
@@ -105,30 +103,88 @@ def doubt(runs: int) -> float:
     return bits * math.log10(2)
 
 
-@cache
 def chi_squared(p: float, degrees: int) -> float:
-    """The p quantile of the chi-squared distribution, by bisection."""
-    low, high = 0.0, degrees + 20 * math.sqrt(2 * degrees) + 50
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _gamma(degrees / 2, middle / 2) < p else (low, middle)
-    return (low + high) / 2
+    """The p quantile of the chi-squared distribution (E. B. Wilson and M. M. Hilferty, PNAS 17, 1931).
+
+    For the 0.025 quantile it is too small: by half for 2 degrees, by 2 % for 7, which leaves more doubt.
+    """
+    part = 2 / (9 * degrees)
+    return float(degrees * (1 - part + NormalDist().inv_cdf(p) * math.sqrt(part)) ** 3)
 
 
-def _gamma(a: float, x: float) -> float:
-    """The regularised lower incomplete gamma function (Abramowitz and Stegun 6.5.29)."""
-    if x <= 0:
-        return 0.0
-    term = total = 1 / a
-    n = a
-    while term > total * 1e-17:
-        n += 1
-        term *= x / n
-        total += term
-    return total * math.exp(a * math.log(x) - x - math.lgamma(a))
+# ---- perturbed runs
 
 
-# ---- ensembles of perturbed runs
+@dataclass(frozen=True)
+class PerturbedRun(StudyRun):
+    """A perturbed run. seed: of the noise, 0 for none. fields: "block.KX" ..., all if there are none.
+
+    cycles: of the whole run, about.
+    """
+
+    seed: int = 1
+    fields: tuple[str, ...] = ()
+    cycles: int = 0
+
+    @property
+    def made_of(self) -> dict[str, str]:
+        return super().made_of | {"noise": f"{self.seed} {self.fields} {self.cycles}"}
+
+    def observers(self, model: Any) -> list[RunObserver]:
+        return [_Noise(model.array, self)] if self.seed else []
+
+
+class _Noise(RunObserver):
+    """Kicks the reals of a model, as `run` asks for."""
+
+    def __init__(self, array: MainArray, run: PerturbedRun) -> None:
+        self.every = max(1, run.cycles // KICKS)
+        self._random = np.random.default_rng(run.seed)
+        ratio = array.scheme.ratio
+        shapes = {
+            kind: [layouts(ratio)[kind].offset[field.partition(".")[2]] - 1 for field in fields]
+            for kind, every in noisy_fields().items()
+            if (fields := [field for field in every if not run.fields or field in run.fields])
+        }
+        self._fields = {kind: np.array(found, np.int64) for kind, found in shapes.items()}
+        self._staying = np.zeros(0, np.int64)
+        self._before: Any = None
+
+    def begin(self, array: MainArray, solves: bool) -> None:
+        """See RunObserver: groups are where they will stay."""
+        parts = [self._cells(array, kind, listed(array, kind)) for kind in self._fields if kind in STAYING]
+        self._staying = np.concatenate([np.zeros(0, np.int64), *parts])
+
+    def cycles_ahead(self, array: MainArray, n: int) -> int:
+        """See RunObserver: until the next kick."""
+        h = array.h
+        self._before = h.ra[: int(h.ci[g.MFREE]) // array.scheme.ratio + 1].copy()
+        return min(n, self.every - int(h.ci[g.MCTOT]) % self.every)
+
+    def look(self, array: MainArray, cycles: int) -> None:
+        if between_cycles(array.h) and array.h.ci[g.MCTOT] % self.every == 0:
+            self._kick(array)
+
+    def _kick(self, array: MainArray) -> None:
+        """Move what has changed."""
+        h = array.h
+        parts = [
+            self._cells(array, kind, addresses(h, int(h.ci[head]), link))
+            for kind, (head, link) in PASSING.items()
+            if kind in self._fields
+        ]
+        cells = np.concatenate([self._staying, *parts])
+        cells = cells[cells < len(self._before)]
+        now = h.ra[cells]
+        moved = np.isfinite(now) & (now != self._before[cells]) & (now != 0)
+        cells, now = cells[moved], now[moved]
+        xi = self._random.uniform(-1, 1, len(now)) * self.every**0.5
+        h.ra[cells] = now + (xi * np.spacing(np.abs(now))).astype(now.dtype)
+
+    def _cells(self, array: MainArray, kind: str, at: Any) -> Any:
+        """Where the reals of groups are, as numbers of reals."""
+        first = (np.asarray(at, np.int64) - 1) // array.scheme.ratio
+        return (first[:, None] + self._fields[kind]).ravel()
 
 
 @dataclass
@@ -141,11 +197,6 @@ class Ensemble:
     half: RunResult | None = None
     results: dict[str, list[RunResult]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-
-    @property
-    def narrow(self) -> str:
-        """The word scheme with shorter reals, "" if it cannot run the deck."""
-        return next(iter([*self.results][1:]), "")
 
     def digits(self, build: str, name: str) -> Digits | None:
         """Of one quantity."""
@@ -163,12 +214,12 @@ class Ensemble:
         """A line for each quantity: the COLUMNS."""
         found: list[tuple[object, ...]] = []
         for name in self.names:
-            one = self.digits(next(iter(self.results)), name)
-            two = self.digits(self.narrow, name) if self.narrow else None
+            one, *others = (self.digits(build, name) for build in self.results)
+            two = others[0] if others else None
             parts = [getattr(a, part) if a else math.nan for a in (one, two) for part in ("digits", "lower")]
             step = min(self.step_digits(name), one.full) if one else math.nan  # equal numbers share all
             cells = ["" if math.isnan(number) else round(number, 1) for number in (*parts, step)]
-            found.append((name, one.mean if one else "", *cells, verdict(one, two, step, self.narrow)))
+            found.append((name, one.mean if one else "", *cells, verdict(one, two, step)))
         return found
 
 
@@ -177,52 +228,46 @@ def _values(results: Sequence[RunResult], name: str) -> list[float]:
     return [one.quantities[name] for one in results if one.status == ENDED and one.at_rest]
 
 
-def verdict(wide: Digits | None, narrow: Digits | None, step: float, short: str) -> str:
-    """What limits a quantity. short: the word scheme with shorter reals, "" if there is none."""
+def verdict(wide: Digits | None, narrow: Digits | None, step: float) -> str:
+    """What limits a quantity."""
     if wide is None:
         return "too few runs have ended: see log.txt in their folders"
+    by_step = "the time-step; " if step < wide.lower else ""
+    lost = max(wide.full - wide.digits, 0)
     if narrow is None:
-        runs = f"too few runs of {short} have ended" if short else "no run has shorter reals"
-        sooner = "the time-step; " if step < wide.lower else ""
-        lost = f"noise takes {max(wide.full - wide.digits, 0):.1f} digits"
-        return f"{sooner}{lost}; whether that is rounding or chaos is not known, as {runs}"
+        return f"{by_step}rounding or chaos takes {lost:.1f} digits: too few runs have shorter reals"
     more, gained = wide.full - narrow.full, max(wide.digits - narrow.digits, 0.0)
     if gained < SHARE * more:
-        sooner = "; the time-step takes more" if step < wide.lower else ""
-        return f"chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left{sooner}"
-    lost = f"rounding takes {max(wide.full - wide.digits, 0):.1f} digits"
-    return f"the time-step; {lost}" if step < wide.lower else lost
+        return f"{by_step}chaos: of the {more:.1f} digits more in longer words {gained:.1f} are left"
+    return f"{by_step}rounding takes {lost:.1f} digits"
 
 
 def measure_digits(runner: SettingRunner, runs: int) -> Ensemble:
     """Run the ensembles of a deck, `runs` of each word scheme."""
     options, deck, found = runner.options, runner.deck, Ensemble(runner)
-    runner.rehearse()
-    found.plain = runner.survey_deck()
-    if found.plain.status != ENDED or not runner.survey:
-        found.notes.append(f"the deck as it is gives no digits: {found.plain.message or 'it has no CYCLE'}")
+    why = runner.run_own_deck()
+    if why or runner.own.result is None:
+        found.notes.append(why)
         return found
+    found.plain = runner.own.result
     found.names = [*found.plain.quantities][1:]
     row = runner.row(Setting(runner.wide, 0.5))
     runner.run_rows([row])
-    if row.why:
-        found.notes.append(f"no digits of the step: {row.why}")
-    elif not deck.is_stepped:
-        found.notes.append("no digits of the step: SOLVE ... STATIC has its own, not that of FRACTION")
-    elif row.ran:
+    if row.compared and deck.is_stepped:
         found.half = row.result
+    else:
+        found.notes.append(f"no digits of the step: {row.why or 'FRACTION does not change it'}")
+    runner.drop_unable_builds()
     cycles = sum(one.done for one in runner.survey)
     seconds = found.plain.seconds + KICK * min(cycles, KICKS)
     runs = max(FEWEST, min(runs, int(max(runner.left, 0) * runner.processes / (2 * seconds))))
     options.show(f"{runs} runs of {seconds:.3g} s in each of {' and '.join(runner.builds[:2])}")
     for build in runner.builds[:2]:
         found.results[build] = perturbed(runner, build, cycles, range(1, runs + 1))
-    every = max(1, cycles // KICKS)
-    kicks = "noise every " + ("cycle" if every == 1 else f"{every} cycles")
     found.notes += runner.notes
     found.notes.append(
-        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, {kicks}; "
-        "confidence and probability 95 %"
+        f"{runs} runs in each word scheme, {counted(cycles, 'cycle')}, noise every "
+        f"{counted(max(1, cycles // KICKS), 'cycle')}; confidence and probability 95 %"
     )
     return found
 
@@ -297,43 +342,40 @@ class FieldBlame:
         """The result as a sentence, and a line for each field to blame: the FIELD_COLUMNS."""
         if not self.quantity or self.whole == 0:
             return "no digit is lost, so no field is to blame", []
+        every = noisy_fields()
+
+        def fields_of(kinds: Sequence[str]) -> list[str]:
+            return [field for kind in kinds for field in every[kind]]
+
         try:
-            return self._search()
+            kinds = smallest_part([*every], lambda some: self.explains(fields_of(some)))
+            fields = fields_of(kinds)
+            if self.explains(fields_of([kind for kind in every if kind not in kinds])):
+                why = (
+                    f"noise in each {' and '.join(kinds)} explains the loss, and so does noise in all other "
+                    "groups: the digits are lost in the motion itself, whatever is perturbed"
+                )
+            else:
+                fields = smallest_part(fields, self.explains)
+                why = "noise in these fields alone explains the loss; noise in other groups does not"
+            spreads = [(field, self.spread([field])) for field in fields]
+            return f"{self.quantity}: {why}", [(field, one, one / self.whole) for field, one in spreads]
         except OutOfBudgetError:
-            return (
-                f"{self.quantity}: the budget has ended before the fields were found; give a greater one",
-                [],
-            )
-
-    def _search(self) -> tuple[str, list[tuple[object, ...]]]:
-        passes = least_part([*PASSES], lambda names: self.explains(_fields(names)))
-        others = [name for name in PASSES if name not in passes]
-        if self.explains(_fields(others)):
-            return (
-                f"{self.quantity}: noise in {' and '.join(passes)} explains the loss, and so does noise in "
-                "all other passes: the digits are lost in the motion itself, whatever is perturbed"
-            ), self._rows(passes, _fields(passes))
-        fields = least_part([*_fields(passes)], self.explains)
-        return (
-            f"{self.quantity}: noise in these fields alone explains the loss; noise in other passes does not"
-        ), self._rows(passes, fields)
-
-    def _rows(self, passes: Sequence[str], fields: Sequence[str]) -> list[tuple[object, ...]]:
-        rows: list[tuple[object, ...]] = []
-        for name in passes:
-            for one in PASSES[name]:
-                if one in fields:
-                    spread = self.spread([one]) if len(fields) <= len(PASSES) else float("nan")
-                    rows.append((name, one, spread, spread / self.whole))
-        return rows
+            why = "the budget has ended before the fields were found; give a greater one"
+            return f"{self.quantity}: {why}", []
 
 
-def _fields(passes: Sequence[str]) -> list[str]:
-    return [one for name in passes for one in PASSES[name]]
+def noisy_fields() -> dict[str, list[str]]:
+    """The fields that noise can be in, by kind of group."""
+    return {
+        group.name: [f"{group.name}.{field.name}" for field in group.fields if field.real]
+        for group in read_table().groups
+        if group.name in KINDS
+    }
 
 
-def least_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:
-    """A least part of `items` that is enough: none of the parts that were tried within it is (ddmin).
+def smallest_part(items: list[str], is_enough: Callable[[list[str]], bool]) -> list[str]:
+    """A smallest part of `items` that is enough: none of the parts that were tried within it is (ddmin).
 
     All of them are assumed to be enough.
     """

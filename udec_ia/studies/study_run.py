@@ -1,8 +1,8 @@
 """One run of a study: its input, its result, and the file that keeps the result.
 
-A result depends on nothing but the input and the program. So a result that was kept stands for the run, if
-it states that it was made of the same input (`StudyRun.made_of`). Each field of the file is checked: a file
-that the program does not write so is damaged, and its run is repeated.
+A result depends on nothing but the input and the program. So a kept result stands for the run if it was made
+of the same input (`StudyRun.made_of`). The file ends with a digest of its content: a damaged one is not used,
+and its run is repeated.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
@@ -25,18 +25,15 @@ from udec_ia.deck.lines_and_calls import Call, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.printable import MESSAGE, printable
-from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities, read_rule
+from udec_ia.studies.quantities import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.run_folder import RESULT
 from udec_ia.version import __version__
 
 DECK = "deck.dat"  # in the folder of a run
 EVERY = 100  # cycles from one check of the rules to the next
 ENDED, ERROR, STOPPED, LATE, DIED = "ended", "error", "stopped", "timed out", "died"
-STATUSES = (ENDED, ERROR, STOPPED, LATE, DIED)
 PACKAGE = Path(__file__).parent.parent
-LATER = {"warnings", "of_system", "at_rest"}  # fields that results of earlier versions do not have
-UNREADABLE = "the result cannot be read"
-GREATEST = 2**63  # one more than a column of integers can hold
+SEAL = "seal"  # field of the file: SHA-256 of the others
 
 
 @dataclass(frozen=True)
@@ -44,10 +41,10 @@ class StudyRun:
     """The input of a run. It can be sent to another process.
 
     name: of its folder, unique in its study. deck: the text. file: how errors name the deck; without it they
-    name deck.dat in the folder of the run. values: of variables. quantities: see quantity_syntax. build,
+    name deck.dat in the folder of the run. values: of variables. quantities: see quantities.py. build,
     constitutive: as for Model; laws are files or names. stop: rules, checked every `every` cycles: the run
     ends with the first that holds. limit: processor seconds without compiling after which the run is ended.
-    Raises ValueError for wrong quantities, rules, word schemes, intervals and limits.
+    rehearsal: each CYCLE and SOLVE has one cycle. Raises ValueError for what is wrong with any of these.
     """
 
     name: str
@@ -60,6 +57,7 @@ class StudyRun:
     stop: tuple[str, ...] = ()
     every: int = EVERY
     limit: float | None = None
+    rehearsal: bool = False
 
     def __post_init__(self) -> None:
         scheme(self.build)
@@ -74,7 +72,7 @@ class StudyRun:
         object.__setattr__(self, "constitutive", laws)
 
     def observers(self, model: Any) -> list[Any]:
-        """What observes each CYCLE and SOLVE of `model` besides (observer.RunObserver)."""
+        """More observers of each CYCLE and SOLVE of `model` (execute_run.RunObserver)."""
         return []
 
     @property
@@ -89,6 +87,7 @@ class StudyRun:
             "laws": json.dumps([_law(law) for law in self.constitutive]),
             "quantities": json.dumps(self.quantities),
             "rule to stop": json.dumps(self.stop) + every,
+            "rehearsal": str(self.rehearsal),
             "program": f"{__version__} {_program()}",
         }
 
@@ -112,10 +111,9 @@ class RunResult:
     error: number of the error, 0 for none or one without a number. message: of the error, or the rule; of a
     run that ended, what its SOLVEs report, or "". quantities: in the order of the run's, NaN without a
     value. remarks: why they have none. cycles, time (s): reached. words: of IA() in use. seconds: processor
-    time without compiling; wall_seconds: by the clock, with it. peak_memory: bytes of the process, 0 where
-    unknown. made_of: see StudyRun. limit: of the run. warnings: of the program, in order. of_system: it was
-    ended by something else than its deck: a file that cannot be written, no memory, a missing package, a
-    process that died. at_rest: False if a SOLVE ended without reaching its ratio.
+    time without compiling. made_of: see StudyRun. limit: of the run. warnings: of the program, in order.
+    of_system: it was ended by something else than its deck: a file that cannot be written, no memory, a
+    missing package, a process that died. at_rest: False if a SOLVE ended without reaching its ratio.
     """
 
     name: str
@@ -129,8 +127,6 @@ class RunResult:
     time: float = 0.0
     words: int = 0
     seconds: float = 0.0
-    wall_seconds: float = 0.0
-    peak_memory: int = 0
     made_of: dict[str, str] = field(default_factory=dict)
     limit: float | None = None
     warnings: tuple[str, ...] = ()
@@ -140,8 +136,9 @@ class RunResult:
     @property
     def outcome(self) -> dict[str, Any]:
         """All of it that does not depend on the machine, with numbers as they are written."""
-        machine = ("seconds", "wall_seconds", "peak_memory", "limit")
-        return {name: value for name, value in _plain(asdict(self)).items() if name not in machine}
+        return {
+            name: value for name, value in _plain(asdict(self)).items() if name not in ("seconds", "limit")
+        }
 
 
 def read_deck(path: Path) -> str:
@@ -161,7 +158,8 @@ def check_deck_text(text: str, name: str) -> None:
 
 def write_result(result: RunResult, folder: Path) -> None:
     """Write the result into the folder of its run, which exists."""
-    text = json.dumps(_plain(asdict(result)), indent=1)
+    fields = _plain(asdict(result))
+    text = json.dumps(fields | {SEAL: _sealed(fields)}, indent=1)
     (folder / RESULT).write_text(text + "\n", encoding="utf-8")
 
 
@@ -171,35 +169,30 @@ def kept_result(run: StudyRun, folder: Path) -> tuple[RunResult | None, str]:
         result = _read_result(folder / run.name / RESULT)
     except FileNotFoundError:
         return None, ""
-    except (OSError, ValueError, OverflowError, RecursionError):
-        return None, UNREADABLE
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
+        return None, "the result cannot be read"
     made_of = run.made_of
     changed = [name for name in made_of if result.made_of.get(name) != made_of[name]]
     if result.status == LATE and (run.limit is None or run.limit > (result.limit or 0)):
         changed.append("limit")
     if changed:
         return None, f"{' and '.join(changed)} changed"
-    names = [one.name for one in read_quantities(run.quantities)]
-    values = [{name: str(one) for name, one in values.items()} for values in (run.values, result.values)]
-    if result.name != run.name or [*result.quantities] != names or values[0] != values[1]:
-        return None, UNREADABLE
-    if result.of_system and result.status == DIED:
-        return None, "the process had died"
     if result.of_system:
-        return None, f"error {result.error} was not of the deck" if result.error else "the system had failed"
-    return replace(result, values=dict(run.values)), ""
+        return None, "the system had failed"
+    return replace(result, name=run.name, values=dict(run.values)), ""
 
 
 def _read_result(path: Path) -> RunResult:
-    """The result in a file. ValueError, OverflowError or RecursionError if it is damaged, OSError."""
+    """The result in a file. Raises OSError, or one of several other errors if it is damaged."""
     found = json.loads(path.read_text(encoding="utf-8"))
-    if not isinstance(found, dict) or not {*WRITTEN} - LATER <= {*found} <= {*WRITTEN}:
-        raise ValueError("wrong fields")
-    if not all(WRITTEN[name](value) for name, value in found.items()):
-        raise ValueError("a wrong value")
+    if found.pop(SEAL, "") != _sealed(found):
+        raise ValueError("damaged")
     found["quantities"] = {name: float(value) for name, value in found["quantities"].items()}
-    texts = {name: tuple(found.get(name, ())) for name in ("remarks", "warnings")}
-    return RunResult(**found | texts)
+    return RunResult(**found | {name: tuple(found[name]) for name in ("remarks", "warnings")})
+
+
+def _sealed(fields: dict[str, Any]) -> str:
+    return _digest(json.dumps(fields, sort_keys=True).encode())
 
 
 def _plain(value: Any) -> Any:
@@ -232,60 +225,3 @@ def _program() -> str:
     for path in sorted(PACKAGE.rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
-
-
-# ---- what the fields of a file may hold
-
-
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
-def _is_count(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < GREATEST
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _is_time(value: Any) -> bool:
-    return _is_number(value) and value >= 0
-
-
-def _is_quantity(value: Any) -> bool:
-    return value in ("nan", "inf", "-inf") or (isinstance(value, float) and _is_number(value))
-
-
-def _is_flag(value: Any) -> bool:
-    return isinstance(value, bool)
-
-
-def _list_of_texts(value: Any) -> bool:
-    return isinstance(value, list) and all(map(_is_text, value))
-
-
-def _mapping_of(check: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    return lambda value: isinstance(value, dict) and all(map(check, value.values()))
-
-
-WRITTEN: dict[str, Callable[[Any], bool]] = {
-    "name": _is_text,
-    "values": _mapping_of(lambda one: _is_text(one) or _is_number(one)),
-    "status": lambda value: value in STATUSES,
-    "error": _is_count,
-    "message": _is_text,
-    "quantities": _mapping_of(_is_quantity),
-    "remarks": _list_of_texts,
-    "cycles": _is_count,
-    "time": _is_time,
-    "words": _is_count,
-    "seconds": _is_time,
-    "wall_seconds": _is_time,
-    "peak_memory": _is_count,
-    "made_of": _mapping_of(_is_text),
-    "limit": lambda value: value is None or (_is_time(value) and value > 0),
-    "warnings": _list_of_texts,
-    "of_system": _is_flag,
-    "at_rest": _is_flag,
-}

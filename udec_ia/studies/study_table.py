@@ -1,8 +1,7 @@
 """The table of a study and its picture: where they go, how they are written and drawn.
 
-The table has a line for each run: a CSV file, and an HDF5 file bit for bit, with a field for each column in
-the dataset `table`; the deck and the quantities are in its attributes. The picture shows each quantity
-against the one variable that changes, or as a map over two. A run without a value is a cross.
+The table has a line for each run: a CSV file. The picture shows each quantity against the one variable that
+changes, or as a map over two. A run without a value is a cross.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,15 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 BEFORE = ("run",)
-BEHIND = (
-    *("status", "error", "cycles", "seconds", "wall_seconds", "words", "peak_memory"),
-    *("warnings", "message"),
-)
-GREATEST = 2**63  # in absolute value, beyond which whole numbers are reals
-FIRST = b"run,"  # how a CSV file of the program begins
-FRONTS = {".csv": FIRST, ".h5": b"\x89HDF\r\n", ".png": b"\x89PNG\r\n", ".svg": b"<?xml "}
-DRAWN_BY = b"Matplotlib"  # near the beginning of pictures of the program
-BEGINNING = 1024  # bytes of them
+BEHIND = ("status", "error", "cycles", "seconds", "words", "warnings", "message")
+FRONTS = {".csv": b"run,", ".png": b"\x89PNG\r\n", ".svg": b"<?xml "}
 WIDTH, CURVE, MAP = 6.5, 2.0, 4.5  # inches of a panel, and its height
 TITLE = 0.45  # inches above all panels
 LINE, FAILED = "#1f6f8b", "#c8553d"
@@ -64,89 +55,42 @@ class StudyTable:
         column = self.columns[name]
         return list(column.tolist() if isinstance(column, np.ndarray) else column)
 
-    def rows(self) -> list[tuple[Any, ...]]:
-        """The lines, with Python's numbers."""
-        return [*zip(*map(self.column, self.columns), strict=True)]
-
-    def write(self, base: Path, attributes: Mapping[str, str]) -> list[Path]:
-        """Write base.csv and base.h5, with attributes for the latter. Returns both names. UdecError 31."""
-        files = table_paths(base)
-        put_in_place(files[0], self._csv(), _refusal, force=False)
-        put_in_place(files[1], self._hdf5(attributes), force=False)
-        return files
-
-    def _csv(self) -> bytes:
+    def write(self, base: Path) -> Path:
+        """Write base.csv, and return its name. Error 31 if that cannot be done."""
         text = io.StringIO(newline="")
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
-        writer.writerows(self.rows())
-        return text.getvalue().encode()
-
-    def _hdf5(self, attributes: Mapping[str, str]) -> bytes:
-        import h5py
-
-        types = [
-            (name, column.dtype if isinstance(column, np.ndarray) else h5py.string_dtype())
-            for name, column in self.columns.items()
-        ]
-        image = io.BytesIO()
-        with h5py.File(image, "w", libver=("v108", "v108")) as file:
-            table = file.create_dataset("table", data=np.array(self.rows(), np.dtype(types)))
-            table.attrs.update(attributes)
-        return image.getvalue()
+        writer.writerows(zip(*map(self.column, self.columns), strict=True))
+        file = table_path(base)
+        put_in_place(file, text.getvalue().encode(), _refusal, force=False)
+        return file
 
 
-def table_paths(base: Path) -> list[Path]:
-    """base.csv and base.h5."""
-    return [base.with_name(f"{base.name}.{kind}") for kind in ("csv", "h5")]
+def table_path(base: Path) -> Path:
+    """base.csv."""
+    return base.with_name(f"{base.name}.csv")
 
 
 def _column(values: Sequence[Any]) -> Any:
-    """Integers as int64 if all can be, other numbers as 64-bit reals, anything else as text."""
-    whole = all(isinstance(one, int | np.integer) and not isinstance(one, bool) for one in values)
-    if whole and all(abs(one) < GREATEST for one in values):
-        return np.array(values, np.int64)
-    if all(isinstance(one, int | float | np.number) for one in values):
-        return np.array(values, np.float64)
-    return [str(one) for one in values]
+    """Numbers as an array, anything else as text."""
+    found = np.array(values)
+    if found.dtype.kind == "O":  # integers that are too large
+        found = found.astype(np.float64)
+    return found if found.dtype.kind in "iuf" else [str(one) for one in values]
 
 
 def _refusal(front: bytes, _: int) -> str:
-    return "" if front.startswith(FIRST) else "exists, but is not a table of a study"
-
-
-# ---- where they go
+    return "" if front.startswith(FRONTS[".csv"]) else "exists, but is not a table of a study"
 
 
 def check_paths(paths: Iterable[Path]) -> None:
     """Error 31 unless the files `paths` can be written, as far as that is known beforehand."""
     for path in paths:
-        front = FRONTS[path.suffix]
         try:
-            there = _begins(path)
-            check_name(path, there if there.startswith(front) else front)
+            check_name(path, FRONTS[path.suffix])
         except OSError as error:
             raise UdecError(31, f"{path}: {error.strerror or error}") from error
 
-
-def drawn_before(base: Path) -> list[Path]:
-    """The pictures that an earlier study has drawn beside its table; [] without one."""
-    if not _begins(table_paths(base)[0]).startswith(FIRST):
-        return []
-    return [path for path in picture_paths(base) if DRAWN_BY in _begins(path)]
-
-
-def _begins(path: Path) -> bytes:
-    """The beginning of a file, b"" if there is none that can be read."""
-    with suppress(OSError):
-        if path.is_file():
-            with path.open("rb") as file:
-                return file.read(BEGINNING)
-    return b""
-
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # ---- the picture
 
@@ -166,7 +110,7 @@ def picture_paths(base: Path) -> list[Path]:
 def draw_table(
     table: StudyTable, variables: list[str], quantities: list[str], title: str, base: Path
 ) -> list[Path]:
-    """Write base.png and base.svg; returns their names. variables: see axes_of. Error 31."""
+    """Write base.png and base.svg; returns their names. variables: see picture_axes. Error 31."""
     axes = [table.columns[name] for name in variables]
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg

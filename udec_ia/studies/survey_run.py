@@ -16,15 +16,13 @@ from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.running.critical_step import bound, estimate
+from udec_ia.running.critical_step import bound
 from udec_ia.running.stiffness_bound import damped_step
-from udec_ia.studies.execute_run import CpuTime
-from udec_ia.studies.observer import RunObserver
+from udec_ia.studies.execute_run import CpuTime, RunObserver
 from udec_ia.studies.study_run import StudyRun
 
 SURVEY, TRACKS = "survey.json", "tracks.npz"
 MARKS = 8  # records of where blocks are, in each CYCLE
-REHEARSED = 256  # cycles of a piece of a rehearsal, at most
 
 
 @dataclass
@@ -32,8 +30,8 @@ class Segment:
     """One CYCLE or SOLVE.
 
     asked, done: cycles. began: time of the model before it (s). step: its time-step (s). fraction: of the
-    estimate, or of the bound if `safe`. estimate, bound: critical steps when the time-step was made (s); 0
-    if not asked for. scaled: with scaled masses. seconds: of the processor, without compiling. static: the
+    estimate, or of the bound if `safe`. bound: safe critical step when the time-step was made (s), 0 if it
+    was not asked for. scaled: with scaled masses. seconds: of the processor, without compiling. static: the
     deck says SOLVE ... STATIC.
     """
 
@@ -43,7 +41,6 @@ class Segment:
     step: float
     fraction: float
     safe: bool
-    estimate: float
     bound: float
     scaled: bool = False
     done: int = 0
@@ -53,48 +50,39 @@ class Segment:
 
 @dataclass(frozen=True)
 class SurveyRun(StudyRun):
-    """A run that leaves a record. rehearsed: seconds after which each CYCLE or SOLVE ends, 0 for never.
+    """A run that leaves a record. bounds: record the safe critical steps as well."""
 
-    bounds: record estimate and bound. lines: numbers that the lines of its deck have in the user's.
-    """
-
-    rehearsed: float = 0.0
     bounds: bool = False
-    lines: tuple[int, ...] = ()
 
     @property
     def made_of(self) -> dict[str, str]:
-        """See StudyRun."""
-        return super().made_of | {"survey": f"{self.rehearsed} {self.bounds}"}
+        return super().made_of | {"survey": str(self.bounds)}
 
     def observers(self, model: Any) -> list[RunObserver]:
-        """See StudyRun."""
-        return [_Recorder(self, model.session.out)]
+        return [_Recorder(self.bounds, model.session.out)]
 
 
 class _Recorder(RunObserver):
     """Records the CYCLEs and SOLVEs of one model, with the files in the folder `out`."""
 
-    def __init__(self, run: SurveyRun, out: Path) -> None:
-        self.asked_for, self.out = run, out
+    def __init__(self, bounds: bool, out: Path) -> None:
+        self.bounds, self.out = bounds, out
         self.segments: list[Segment] = []
         self.tracks: list[tuple[float, Any]] = []
         self._cpu = CpuTime()
         self._marks: list[int] = []
         self._before = 0.0
-        self._bounds: tuple[float, float] | None = None  # of the time-step in use
+        self._bound: float | None = None  # of the time-step in use
 
     def command_obeyed(self, array: MainArray) -> None:
         """See RunObserver: after some commands the time-step is made anew."""
         if not array.h.ci[g.LREADY]:
-            self._bounds = None
+            self._bound = None
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See RunObserver."""
         h = array.h
-        if self._bounds is None:
-            wanted = self.asked_for.bounds
-            self._bounds = (estimate(array).step, damped_step(h, bound(array).step)) if wanted else (0.0, 0.0)
+        if self._bound is None:
+            self._bound = damped_step(h, bound(array).step) if self.bounds else 0.0
         one = Segment(
             int(h.ci[g.NCYC]),
             solves,
@@ -102,33 +90,25 @@ class _Recorder(RunObserver):
             float(h.cr[g.TDEL]),
             float(h.cr[g.FRAC]),
             bool(h.ci[g.LSAFE]),
-            *self._bounds,
-            scaled=bool(h.ci[g.LSCALE]),
+            self._bound,
+            bool(h.ci[g.LSCALE]),
         )
         self.segments.append(one)
-        self._marks = [] if solves else sorted({round(one.asked * k / MARKS) for k in range(1, MARKS + 1)})
+        self._marks = [] if solves else [round(one.asked * k / MARKS) for k in range(1, MARKS + 1)]
         self._track(array)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
         """See RunObserver: up to the next mark."""
-        ahead = [mark - self.segments[-1].done for mark in self._marks if mark > self.segments[-1].done]
-        if self.asked_for.rehearsed:
-            n = min(n, REHEARSED)
+        done = self.segments[-1].done
         self._before = self._cpu.seconds
-        return min([n, *ahead[:1]])
+        return min([n, *(mark - done for mark in self._marks if mark > done)])
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See RunObserver."""
         one = self.segments[-1]
         one.seconds += self._cpu.seconds - self._before
         one.done += cycles
         if one.done in self._marks:
             self._track(array)
-
-    def is_over(self) -> bool:
-        """See RunObserver: a rehearsed CYCLE or SOLVE ends after its seconds."""
-        one, limit = self.segments[-1], self.asked_for.rehearsed
-        return one.done > 1 and 0 < limit < one.seconds
 
     def end(self, array: MainArray) -> None:
         """See RunObserver: write the files."""
@@ -159,7 +139,7 @@ def read_segments(folder: Path) -> list[Segment]:
 # ---- where two runs part
 
 
-class Parting(NamedTuple):
+class RunSeparation(NamedTuple):
     """time: from which on a block is elsewhere (s). x, y: where it was at first.
 
     apart: distance at the end (m). moved: the greatest displacement of any block (m).
@@ -172,23 +152,21 @@ class Parting(NamedTuple):
     moved: float
 
 
-def find_parting(one: Path, two: Path, share: float) -> Parting | None:
+def find_separation(one: Path, two: Path, share: float) -> RunSeparation | None:
     """Where the runs in two folders part for good by more than `share` of the greatest displacement."""
     pairs = [*zip(_tracks(one), _tracks(two), strict=False)]
     if not pairs:
         return None
     first = pairs[0][0][1]
     apart = np.array([_distances(first, a, b) for (_, a), (_, b) in pairs])  # marks, blocks
-    moved = max(
-        (float(np.nanmax(_distances(first, first, a), initial=0.0)) for (_, a), _ in pairs), default=0.0
-    )
+    moved = max(float(_distances(first, first, a).max(initial=0.0)) for (_, a), _ in pairs)
     stays = np.flip(np.logical_and.accumulate(np.flip(apart > share * moved, 0), 0), 0)
     if moved == 0 or not stays.any():
         return None
     mark = int(np.argmax(stays.any(axis=1)))
     block = int(np.argmax(np.where(stays[mark], apart[mark], -1.0)))
     x, y = map(float, first[block, 1:])
-    return Parting(pairs[mark][0][0], x, y, float(apart[-1, block]), moved)
+    return RunSeparation(pairs[mark][0][0], x, y, float(apart[-1, block]), moved)
 
 
 def _tracks(folder: Path) -> list[tuple[float, Any]]:
@@ -202,11 +180,8 @@ def _tracks(folder: Path) -> list[tuple[float, Any]]:
 
 def _distances(first: Any, a: Any, b: Any) -> Any:
     """How far each block of `first` is from itself in two states; 0 if one of them does not have it."""
-    there = np.isin(first[:, 0], a[:, 0]) & np.isin(first[:, 0], b[:, 0])
-    return np.where(there, np.hypot(*(_places(a, first) - _places(b, first)).T), 0.0)
-
-
-def _places(rows: Any, first: Any) -> Any:
-    order = np.argsort(rows[:, 0])
-    at = np.clip(np.searchsorted(rows[order, 0], first[:, 0]), 0, len(rows) - 1)
-    return rows[order][at, 1:]
+    found = np.zeros(len(first))
+    blocks, in_a, in_b = np.intersect1d(a[:, 0], b[:, 0], return_indices=True)
+    _, here, there = np.intersect1d(first[:, 0], blocks, return_indices=True)
+    found[here] = np.hypot(*(a[in_a[there], 1:] - b[in_b[there], 1:]).T)
+    return found

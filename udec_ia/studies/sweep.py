@@ -15,6 +15,7 @@ import io
 import os
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -29,7 +30,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.printable import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import LOG
-from udec_ia.studies.quantity_syntax import DEFAULTS, read_quantities
+from udec_ia.studies.quantities import DEFAULTS, read_quantities
 from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck
 from udec_ia.studies.study_table import (
     BEFORE,
@@ -37,10 +38,9 @@ from udec_ia.studies.study_table import (
     StudyTable,
     check_paths,
     draw_table,
-    drawn_before,
     picture_axes,
     picture_paths,
-    table_paths,
+    table_path,
 )
 from udec_ia.studies.worker_pool import StudyProgress, WorkerPool, processes
 
@@ -48,7 +48,7 @@ LONGEST = 120  # characters of the name of a folder
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 SHOWN = 3  # warnings that are shown
 DIGITS = 12  # of the values of a logarithmic range between its ends
-MOST_VALUES = 1_000_000  # values of a range
+VALUE_COUNT = 1_000_000  # values of a range
 FORM = "a range is first:last:number, as in 0.3:0.9:7, or first:last:number:log; a list has commas"
 GREATEST = int(sys.float_info.max)
 Given = Value | Iterable[Value]
@@ -105,39 +105,25 @@ def sweep(
     run = StudyRun(stem, text, file, {}, asked, build, laws, rules, every, limit)
     runs = [replace(run, name=folder_name(point) or stem, values=point) for point in points]
     axes = picture_axes(points, names)
-    check_paths([*table_paths(base), *(picture_paths(base) if axes else ())])
-    earlier = drawn_before(base)
+    check_paths([table_path(base), *picture_paths(base)])
+    progress = StudyProgress(stream or io.StringIO(), len(runs))
 
     def write(results: list[RunResult]) -> Sweep:
         table = StudyTable.of(results, points[0], names)
-        files = table.write(base, {"deck": text, "quantities": "\n".join(asked)})
+        files = [table.write(base)]
+        for path in picture_paths(base):  # an earlier picture would show other runs than the table
+            path.unlink(missing_ok=True)
         files += draw_table(table, axes, names, stem, base) if axes else []
-        summary = [*progress.summary, *summarise_warnings(results, LOG), *_removed(earlier, files)]
-        return Sweep(results, table, files, summary)
+        return Sweep(results, table, files, [*progress.summary, *summarise_warnings(results, LOG)])
 
-    pool = WorkerPool(folder, jobs=processes(jobs, runs), dask=dask)
-    with pool, StudyProgress(stream or io.StringIO(), len(runs)) as progress:
+    with WorkerPool(folder, jobs=processes(jobs, runs), dask=dask) as pool:
         try:
             return write(pool.results(runs, progress.show))
         except KeyboardInterrupt as interrupt:
             with suppress(Exception):
-                write(_completed(runs, pool.folder, progress.results))
+                found = (kept_result(run, pool.folder)[0] for run in runs)
+                write([one for one in found if one is not None])
             raise type(interrupt)(str(folder)) from None
-
-
-def _completed(runs: list[StudyRun], folder: Path, shown: list[RunResult]) -> list[RunResult]:
-    """The results that there are, in the order of the runs; some may not have been shown yet."""
-    known = {one.name: one for one in shown}
-    found = (known.get(run.name) or kept_result(run, folder)[0] for run in runs)
-    return [one for one in found if one is not None]
-
-
-def _removed(earlier: list[Path], files: list[Path]) -> list[str]:
-    """Remove the pictures of an earlier sweep that do not belong to this one, and report it."""
-    old = [path for path in earlier if path not in files]
-    for path in old:
-        path.unlink(missing_ok=True)
-    return [f"removed, as of an earlier sweep: {', '.join(map(str, old))}"] if old else []
 
 
 def folder_name(values: Mapping[str, Value]) -> str:
@@ -154,21 +140,18 @@ def summarise_warnings(results: Iterable[RunResult], log: str) -> list[str]:
     Warnings that differ in their numbers only count as one: the first is shown, with its run.
     """
     runs = [*results]
-    first: dict[str, tuple[str, str]] = {}
-    given: dict[str, int] = {}
+    first: dict[str, str] = {}
+    given = Counter[str]()
     for run in runs:
         kinds = {NUMBER.sub("#", text): text for text in reversed(run.warnings)}
-        for kind, text in kinds.items():
-            first.setdefault(kind, (text, run.name))
-            given[kind] = given.get(kind, 0) + 1
-    often = sorted(given, key=lambda kind: -given[kind])
-    found = []
-    for kind in often[:SHOWN]:
-        text, name = first[kind]
-        many = f"{given[kind]} of {counted(len(runs), 'run')} {'was' if given[kind] == 1 else 'were'} warned"
-        found.append(printable(f"{many}: {text} ({name}, in {log})", MESSAGE))
-    if len(often) > SHOWN:
-        found.append(f"{counted(len(often) - SHOWN, 'other warning')}: see warnings in the table, and {log}")
+        given.update([*kinds])
+        first = {kind: f"{text} ({run.name}, in {log})" for kind, text in kinds.items()} | first
+    found = [
+        printable(f"warning in {many} of {counted(len(runs), 'run')}: {first[kind]}", MESSAGE)
+        for kind, many in given.most_common(SHOWN)
+    ]
+    if len(given) > SHOWN:
+        found.append(f"{counted(len(given) - SHOWN, 'other warning')}: see warnings in the table, and {log}")
     return found
 
 
@@ -238,8 +221,8 @@ def _range(name: str, text: str) -> list[Value]:
         raise ValueError(f"{name}={text}: {FORM}") from None
     if how not in ("", "log"):
         raise ValueError(f"{name}={text}: {how!r} is not a kind of range (log is one); {FORM}")
-    if not 2 <= n <= MOST_VALUES:
-        raise ValueError(f"{name}={text}: a range has 2 to {MOST_VALUES} values, not {n}")
+    if not 2 <= n <= VALUE_COUNT:
+        raise ValueError(f"{name}={text}: a range has 2 to {VALUE_COUNT} values, not {n}")
     if how == "log":
         return _logarithmic(name, text, float(a), float(b), n)
     steps = [a + (b - a) * k / (n - 1) for k in range(n)]

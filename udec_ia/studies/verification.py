@@ -13,7 +13,6 @@ The file of a user is run by its path: `udec verify mine.py`. verification_tools
 
 from __future__ import annotations
 
-import io
 import runpy
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -30,21 +29,17 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.model import Model
-from udec_ia.output.block_drawing import INK, title
-from udec_ia.output.history_graph import COLOURS
 from udec_ia.printable import MESSAGE, printable
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from udec_ia.output.plot_frames import Frame
 
 
 @dataclass(frozen=True)
 class Answer:
-    """what, unit: of the number. within: reasons for an error, and how large it can be, in the unit.
+    """A number with its tolerance. within: reasons for an error, and how large it can be, in the unit.
 
-    The tolerance is the sum of these parts. Each is derived from what the run was given, as its reason says;
+    The tolerance is the sum of these parts. Each is derived from the input of the run, as its reason says;
     none is chosen so that the number holds.
     """
 
@@ -92,11 +87,9 @@ class Case:
     """One run of a problem: `build` is the word scheme, `blocks` the type of the blocks in question."""
 
     def __init__(self, name: str, build: str, blocks: str) -> None:
-        self.name = name
-        self.build = build
-        self.blocks = blocks
-        self._frame: Frame | None = None
-        self._graph: Figure | None = None
+        self.name, self.build, self.blocks = name, build, blocks
+        self.frame: Frame | None = None
+        self.curves: tuple[str, str, Mapping[str, Any], Sequence[Any]] | None = None
 
     @property
     def last_digit(self) -> float:
@@ -116,34 +109,25 @@ class Case:
             m.generate(x1, x2, y1, y2, "manual", points, CROSS)
 
     def draw(self, m: Model, **what: Any) -> None:
-        """Draw the blocks as they stand, over those drawn before; `what` as for Model.plot."""
+        """Draw the blocks as they stand into `frame`, over those drawn before; `what` as for Model.plot."""
         from udec_ia.output.drawn_outlines import snapshot
         from udec_ia.output.plot_frames import Frame, What
 
         asked = What(**what)
-        if self._frame is None:
-            self._frame = Frame(self.name)
-        self._frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
+        if self.frame is None:
+            self.frame = Frame(self.name)
+        self.frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
-        """Draw curves, each x and y: exact ones as lines, by their names, computed ones as points.
+        """Keep curves for a graph, each x and y: exact ones by their names, computed ones in the same order.
 
         x, y: what the axes show.
         """
-        self._graph = draw_graph(self.name, x, y, exact, computed)
-
-    def picture(self) -> bytes | None:
-        """What was drawn, a PNG; None if nothing was."""
-        if self._graph is not None:
-            return png(self._graph)
-        return None if self._frame is None else png(self._frame.figure())
+        self.curves = x, y, exact, computed
 
 
 HERE = Path(__file__).parent
-FOLDERS = (
-    HERE / "verification_problems",
-    HERE.parents[1] / "examples" / "verify",
-)  # of an installation, of a checkout
+FOLDERS = HERE / "verification_problems", HERE.parents[1] / "examples" / "verify"  # installed, in a checkout
 PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify --list names"
 
 
@@ -206,14 +190,12 @@ def load_problem(path: Path) -> Problem:
 
 @dataclass
 class ProblemResult:
-    """What came of one case. failure: what ended it, or "". picture: PNG, if one was drawn."""
+    """The result of one case. failure: what ended it, or ""."""
 
     problem: Problem
-    build: str
-    blocks: str
+    case: Case
     answers: list[Answer] = field(default_factory=list)
     failure: str = ""
-    picture: bytes | None = None
     seconds: float = 0.0
 
     @property
@@ -223,7 +205,7 @@ class ProblemResult:
 
     def line(self) -> str:
         """One line."""
-        case = f"{self.problem.name}, {self.blocks}, {self.build}"
+        case = f"{self.problem.name}, {self.case.blocks}, {self.case.build}"
         if self.failure:
             return f"{case}: {self.failure}"
         good = sum(one.holds for one in self.answers)
@@ -250,14 +232,9 @@ def solve_problems(
 
 def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
     """One case. Whatever it raises, but an interrupt, becomes the `failure`."""
-    case, result, start = (
-        Case(problem.name, build, blocks),
-        ProblemResult(problem, build, blocks),
-        perf_counter(),
-    )
+    result, start = ProblemResult(problem, Case(problem.name, build, blocks)), perf_counter()
     try:
-        result.answers.extend(problem.solve(case))
-        result.picture = case.picture()
+        result.answers.extend(problem.solve(result.case))
         if not result.answers:
             result.failure = "it gives no answer"
     except UdecError as error:
@@ -268,47 +245,3 @@ def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
         result.failure = printable(" ".join(text.split()), MESSAGE)
     result.seconds = perf_counter() - start
     return result
-
-
-# ---- graphs
-
-
-SIZE = (7.2, 3.4)  # inches of a graph
-DPI = 90
-SHADES = 64  # colours of a file
-
-
-def draw_graph(name: str, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> Figure:
-    """Curves over one pair of axes: `exact` as lines, `computed` as points in the same order of colours."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(SIZE, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    title(axes, name)
-    for colour, (label, points) in zip(COLOURS, exact.items(), strict=False):
-        axes.plot(*points, color=colour, linewidth=1.2, label=label)
-    for k, points in enumerate(computed):
-        style: dict[str, Any] = {"markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
-        label = "computed" if k == 0 else "_"  # said once
-        axes.plot(*points, "o", color=COLOURS[k % len(COLOURS)], label=label, **style)
-    axes.set_xlabel(x, fontsize=9, color=INK)
-    axes.set_ylabel(y, fontsize=9, color=INK)
-    axes.grid(color="#e4e0d8", linewidth=0.6)
-    axes.tick_params(labelsize=8, colors=INK, width=0.6)
-    for spine in axes.spines.values():
-        spine.set(linewidth=0.6, color="#8a857c")
-    figure.legend(loc="outside right upper", fontsize=8, frameon=False)
-    return figure
-
-
-def png(figure: Figure) -> bytes:
-    """The picture as a small PNG."""
-    from PIL import Image
-
-    whole, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(whole, format="png", dpi=DPI)
-    with Image.open(whole) as image:
-        image.convert("RGB").quantize(SHADES).save(small, "png", optimize=True)
-    return small.getvalue()

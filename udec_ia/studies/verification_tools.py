@@ -163,16 +163,11 @@ def cycle_for(m: Model, seconds: float) -> None:
     m.cycle(max(1, round(seconds / step(m))))
 
 
-def crossings(t: Any, v: Any) -> Any:
-    """Times at which a vibration passes zero."""
-    t, v = np.asarray(t), np.asarray(v)
-    i = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1]))
-    return t[i] - v[i] * (t[i + 1] - t[i]) / (v[i + 1] - v[i])
-
-
 def period(t: Any, v: Any) -> float:
     """Of a vibration about zero, from all its crossings."""
-    times = crossings(t, v)
+    t, v = np.asarray(t), np.asarray(v)
+    i = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1]))
+    times = t[i] - v[i] * (t[i + 1] - t[i]) / (v[i + 1] - v[i])
     return 2 * float(times[-1] - times[0]) / (len(times) - 1)
 
 

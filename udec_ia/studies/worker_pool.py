@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -19,15 +20,12 @@ from time import sleep
 from typing import Any, TextIO
 from urllib.parse import urlsplit
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
 from udec_ia.deck.deck_statements import at
 from udec_ia.errors import UdecError
 from udec_ia.printable import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import execute, record_death, rehearse
 from udec_ia.studies.run_folder import check_replaceable, clear, incomplete, lock_folder
-from udec_ia.studies.study_run import DIED, ERROR, RunResult, StudyRun, kept_result
+from udec_ia.studies.study_run import RunResult, StudyRun, kept_result
 
 RUNS = "runs"  # folder of the folders of runs
 KEPT = "kept"
@@ -77,10 +75,9 @@ class WorkerPool:
         any run, if two runs save to one file, or if something that is not of the program is in the place of
         a run. Results that are complete are kept, whatever ends the study.
         """
-        names = [run.name for run in runs]
-        if len({*names}) < len(names):
-            twice = next(name for name in names if names.count(name) > 1)
-            raise ValueError(f"two runs are called {twice}: give each a name of its own")
+        for name, count in Counter(run.name for run in runs).most_common(1):
+            if count > 1:
+                raise ValueError(f"two runs are called {name}: give each a name of its own")
         check_saves(runs)
         done: dict[str, RunResult] = {}
         rest, why = list[StudyRun](), dict[str, str]()
@@ -96,7 +93,7 @@ class WorkerPool:
         for result in self._executed(rest) if rest else ():
             done[result.name] = result
             report(result, why[result.name])
-        return [done[name] for name in names]
+        return [done[run.name] for run in runs]
 
     def _executed(self, runs: list[StudyRun]) -> Iterator[RunResult]:
         """The results of `runs` as they come."""
@@ -255,61 +252,30 @@ def _on_dask(runs: list[StudyRun], folder: Path, address: str, timed: bool) -> I
 
 
 class StudyProgress:
-    """Shows results of `total` runs on `stream` as they come: a bar on a terminal, else a line for each."""
+    """Shows results of `total` runs on `stream` as they come, a line for each."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
         self.stream, self.total = stream, total
         self.results: list[RunResult] = []
-        self.kept = 0
-        self.changed: dict[str, int] = {}  # kept results that were not used: why, and how many
-        columns = (
-            BarColumn(None),
-            MofNCompleteColumn(),
-            TextColumn("{task.description}"),
-            TimeRemainingColumn(),
-        )
-        self._bar: Progress | None = None
-        if stream.isatty():
-            console = Console(file=stream, highlight=False)
-            self._bar = Progress(*columns, console=console, transient=True)
-            self._task = self._bar.add_task("", total=total)
-            self._bar.start()
-
-    def __enter__(self) -> StudyProgress:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.stop()
+        self._reasons = Counter[str]()  # where the results come from: see WorkerPool.results
 
     def show(self, result: RunResult, why: str) -> None:
         """A result has come. why: see WorkerPool.results."""
         self.results.append(result)
-        self.kept += why == KEPT
-        if why not in ("", KEPT):
-            self.changed[why] = self.changed.get(why, 0) + 1
-        line = _line(result) + {"": "", KEPT: " (kept)"}.get(why, f" (done again: {why})")
-        if self._bar is not None:
-            self._bar.update(self._task, advance=1, description=printable(line))
-            if result.status in (ERROR, DIED):
-                self._bar.console.print(line, markup=False)
-        else:
-            print(f"{len(self.results)} of {self.total}: {line}", file=self.stream, flush=True)
+        self._reasons[why] += 1
+        again = {"": "", KEPT: " (kept)"}.get(why, f" (done again: {why})")
+        message = f", {result.message}" if result.message else ""
+        line = f"{result.name} {result.status}{message}, {counted(result.cycles, 'cycle')}"
+        line = printable(f"{line}, {result.seconds:.1f} s", MESSAGE) + again
+        print(f"{len(self.results)} of {self.total}: {line}", file=self.stream, flush=True)
 
     @property
     def summary(self) -> list[str]:
         """How many runs there are of each status, and how many were kept or repeated."""
-        states = dict.fromkeys(one.status for one in self.results)
-        counts = (f"{sum(one.status == state for one in self.results)} {state}" for state in states)
-        found = [f"{len(self.results)} of {self.total} runs: {', '.join(counts)}"]
-        if self.kept:
-            found.append(f"{counted(self.kept, 'run')} kept, as the input is the same")
-        return found + [f"{counted(n, 'run')} done again: {why}" for why, n in self.changed.items()]
-
-
-def _line(result: RunResult) -> str:
-    """A result on one line."""
-    text = f"{result.name} {result.status}"
-    if result.message:
-        text += f", {result.message}"
-    return printable(f"{text}, {counted(result.cycles, 'cycle')}, {result.seconds:.1f} s", MESSAGE)
+        states = Counter(one.status for one in self.results)
+        counts = ", ".join(f"{n} {state}" for state, n in states.items())
+        found = [f"{len(self.results)} of {self.total} runs: {counts}"]
+        if kept := self._reasons[KEPT]:
+            found.append(f"{counted(kept, 'run')} kept, as the input is the same")
+        again = ((why, n) for why, n in self._reasons.items() if why not in ("", KEPT))
+        return found + [f"{counted(n, 'run')} done again: {why}" for why, n in again]
