@@ -66,7 +66,7 @@ from udec_ia.layout import offsets as g
 
 
 class Material(NamedTuple):
-    """What a law is told of the material: the numbers of PROPERTY. Frictions are tangents."""
+    """The material that a law is called with: the numbers of PROPERTY. Frictions are tangents."""
 
 {fields}
 

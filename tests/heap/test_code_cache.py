@@ -60,7 +60,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.tolerances import tolset
 tolset(MainArray(scheme("i32r64")).h, 0.1)
 assert tolset.__wrapped__.__code__.co_filename.startswith(sys.argv[1])
-print(sum(tolset.whole.stats.cache_hits.values()))
+print(sum(tolset.dispatcher.stats.cache_hits.values()))
 """
 
 
@@ -86,7 +86,9 @@ def test_a_second_process_does_not_compile_again(tmp_path: Path, monkeypatch: py
         compiled: Any = kernel(thrice)
         for number in (np.int32(2), np.float64(2)):
             assert compiled(number) == 6
-            assert sum(compiled.whole.stats.cache_hits.values()) == hits * (1 + isinstance(number, float))
+            assert sum(compiled.dispatcher.stats.cache_hits.values()) == hits * (
+                1 + isinstance(number, float)
+            )
     assert len([*tmp_path.rglob("*.nbc")]) == 2
 
 

@@ -12,7 +12,7 @@ from naive.relocate import differences, essence
 from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
-from udec_ia.heap.relocation import relocate
+from udec_ia.heap.main_array import relocate
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MFREE
 from udec_ia.output.drawn_outlines import snapshot

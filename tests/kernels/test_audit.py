@@ -17,6 +17,7 @@ from udec_ia import Model
 from udec_ia.checker import check
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
+from udec_ia.checker.memory_words import gaps
 from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
 from udec_ia.heap import untrusted_lists
 from udec_ia.kernels.audit import domain_faces
@@ -98,15 +99,12 @@ def test_pieces_hang_together(joined: list[tuple[int, int]]) -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 5)), max_size=12), st.integers(0, 3))
 def test_gaps_between_groups(laid: list[tuple[int, int]], rest: int) -> None:
-    """Of groups of two kinds, the second one junk, whose size stands in its word 1; they may overlap."""
-    sizes, free = np.array([0, SIZE, 0]), 1 + RATIO * (sum(gap + of // 2 + 2 for gap, of in laid) + rest)
-    kind_at, words = np.zeros((free - 1) // RATIO + 1, np.int8), np.zeros(free + SIZE, WORDS)
+    """Of groups of two sizes, which may overlap."""
+    free = 1 + RATIO * (sum(gap + of // 2 + 2 for gap, of in laid) + rest)
     groups, place = list[tuple[int, int]](), 0
     for gap, of in laid:
         place += gap
         iad = place * RATIO + 1
-        kind_at[place] = 1 if of % 2 else 2
-        words[iad + 1] = 2 * of
         groups.append((iad, SIZE if of % 2 else 2 * of))
         place += of // 2 + 1
     before, end, expected = 0, 1, []
@@ -114,8 +112,8 @@ def test_gaps_between_groups(laid: list[tuple[int, int]], rest: int) -> None:
         if iad != end:
             expected.append([before, end, iad])
         before, end = iad, iad + size
-    n, after = both(untrusted_lists.gaps, words, kind_at, sizes, 1, RATIO, free, np.zeros((20, 3), np.int64))
-    assert after[-1][:n].tolist() == expected
+    starts, sizes = np.array(groups, np.int64).reshape(-1, 2).T
+    assert gaps(starts, sizes, free).tolist() == expected
 
 
 @settings(max_examples=30)

@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from udec_ia import Model
-from udec_ia.checked_build.group_kinds import enter, shadow
+from udec_ia.checked_build.access_checks import find_kinds, shadow
 from udec_ia.compiling.build_choice import CHECKED
 from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import WrongAddress
@@ -65,7 +65,7 @@ def bits(m: Model) -> str:
 
 def same_kinds(m: Model) -> bool:
     """True if what FIND and LOSE have noted is what pointers lead to."""
-    enter(m.array.h)
+    find_kinds(m.array.h)
     noted = shadow(m.array.h.ia).kinds
     return all(
         (np.flatnonzero(noted == number) + 1).tolist() == at.tolist()

@@ -1,7 +1,7 @@
 """What each part of the compilation of kernels gains: the same command with it and without it.
 
     python tools/bench.py gains
-    python tools/bench.py gains "rare garbage collection" --turns 3
+    python tools/bench.py gains linking --turns 1
 
 Each line is a command that runs with one part left out, against the same command with all of them. Cold runs
 begin with nothing compiled. Times are user CPU times of whole processes, as medians. docs/compiling.md
@@ -39,7 +39,7 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
     "linking": (COLD, "", {"UDEC_LINK": "plain"}),
     "signatures found once": (
         COLD,
-        "from udec_ia.compiling import linking\nlinking._Remembering = lambda knows: knows",
+        "from udec_ia.compiling import linking\nlinking._CachedSignatures = lambda context: context",
         {},
     ),
     "no search for closures": (
@@ -54,8 +54,8 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
     ),
     "outlined calls": (
         COLD,
-        "from udec_ia.compiling import outlined_calls as o\nfrom udec_ia.kernels.drive import passes\n"
-        "passes.entry_if = lambda wanted, kernel, *args: o.entry(kernel, *args)",
+        "from udec_ia.compiling import outlined_calls as o\nfrom udec_ia.kernels.drive import cycle\n"
+        "cycle.entry_if = lambda wanted, kernel, *args: o.entry(kernel, *args)",
         {},
     ),
     "code cache": (WARM, "import shutil, os\nshutil.rmtree(os.environ['UDEC_CACHE'])", {}),
@@ -71,7 +71,7 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "InterpretWhenSmall.always_compiled = True",
         {},
     ),
-    "numba loaded when needed": (CHECK, "from udec_ia.compiling.numba_loading import load\nload()", {}),
+    "numba loaded when needed": (CHECK, "from udec_ia.compiling.build_choice import load\nload()", {}),
 }
 
 
@@ -82,29 +82,28 @@ def seconds(command: list[str], change: str, env: dict[str, str], folder: Path) 
         [sys.executable, "-c", START.format(change=change), *command],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT), **env},
-        check=False,
+        check=True,
         capture_output=True,
     )
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
-def measure(part: str, turns: int, folder: Path) -> tuple[float, float]:
-    """Median times without `part` and with it, by turns."""
-    name, change, env = PARTS[part]
-    command = BALL if name in (COLD, WARM) else ["check", "slab.h5"]
+def measure(name: str, parts: list[str], turns: int, folder: Path) -> dict[str, float]:
+    """Median times in s of the command `name`: with all parts (""), and without each of `parts`."""
+    command = ["check", "slab.h5"] if name == CHECK else BALL
     if name == CHECK:
         seconds([], f"exec({SLAB!r})", {}, folder)
-    times: dict[bool, list[float]] = {False: [], True: []}
+    times: dict[str, list[float]] = {part: [] for part in ("", *parts)}
     for turn in range(turns + (name != COLD)):  # the first turn of a warm command compiles
-        for whole in (False, True):
-            cache = folder / f"cache{whole}"
+        for part, of_part in times.items():
+            cache = folder / f"cache {part}"
             if name == COLD:
                 shutil.rmtree(cache, ignore_errors=True)
-            out = {} if whole else env
-            time = seconds(command, "" if whole else change, {"UDEC_CACHE": str(cache), **out}, folder)
+            _, change, env = PARTS[part] if part else ("", "", {})
+            time = seconds(command, change, {"UDEC_CACHE": str(cache), **env}, folder)
             if name == COLD or turn:
-                times[whole].append(time)
-    return median(times[False]), median(times[True])
+                of_part.append(time)
+    return {part: median(of_part) for part, of_part in times.items()}
 
 
 def main() -> None:
@@ -115,10 +114,15 @@ def main() -> None:
     args = parser.parse_args()
     print("| part | command | without it, s | with it, s | gain, s |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
-        for part in args.parts or PARTS:
-            without, whole = measure(part, args.turns, Path(folder))
-            gain = without - whole
-            print(f"| {part} | {PARTS[part][0]} | {without:.2f} | {whole:.2f} | {gain:.2f} |", flush=True)
+        for name in COLD, WARM, CHECK:
+            parts = [part for part in args.parts or PARTS if PARTS[part][0] == name]
+            times = measure(name, parts, args.turns, Path(folder)) if parts else {}
+            for part in parts:
+                without, with_it = times[part], times[""]
+                print(
+                    f"| {part} | {name} | {without:.2f} | {with_it:.2f} | {without - with_it:.2f} |",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ def of_routine(value: Any, number: int) -> Any:
     return tuple(of_routine(one, number) for one in value) if type(value) is tuple else value
 
 
-def named(function: Callable[..., Any]) -> tuple[Any, int]:
+def tag_routine(function: Callable[..., Any]) -> tuple[Any, int]:
     """`function`, with offsets that carry the tag of this routine, and its number."""
     code = function.__code__
     path = Path(code.co_filename)

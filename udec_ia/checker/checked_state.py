@@ -9,13 +9,11 @@ import numpy as np
 
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.untrusted_lists import STRETCH, lay_out_lists, rows_of
+from udec_ia.heap.untrusted_lists import STRETCH, rows_of
 from udec_ia.layout import offsets as g
 from udec_ia.reader.block_rings import Boundaries, one_before
 from udec_ia.reader.field_reading import HOSTS, INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
 from udec_ia.reader.group_lists import Lists
-
-LAY_OUT = InterpretWhenSmall(lay_out_lists, 1e6)  # items
 
 
 @dataclass(frozen=True)
@@ -57,11 +55,18 @@ def lay_out(lists: Lists, boundaries: Boundaries, rows: Callable[[str, Numbers],
     contact = lists.h.ia[item - 1] == g.MCON
     row = rows("contact", item)
     row[~contact] = rows("corner", item[~contact])
-    near, owner = np.empty((3, len(item)), INDEX), np.empty(len(item), INDEX)
-    side, at = np.empty(len(item), np.int8), np.full((2, len(lists.address["contact"])), -1, INDEX)
-    of_lists, to_host = np.column_stack((block, first, count)), lists.offset[HOSTS[0]] - 1
-    LAY_OUT(len(item), lists.h.ia, to_host, of_lists, item, row, near, owner, side, at)
-    before, after, corner = near
+    index, last = np.arange(len(item), dtype=INDEX), first + count - 1
+    owner = np.repeat(np.arange(len(block), dtype=INDEX), count)
+    before, after = index - 1, index + 1
+    before[first], after[last] = last, first
+    corner = np.minimum.accumulate(np.where(contact, len(item), index)[::-1])[::-1]
+    corner = np.where(corner > last[owner], first[owner], corner).astype(INDEX)  # a list begins with one
+    side = np.zeros(len(item), np.int8)
+    side[contact] = lists.read(item[contact], HOSTS[0]) != block[owner[contact]]
+    at = np.full((2, len(lists.address["contact"])), -1, INDEX)
+    backward = (first + last)[owner] - index  # of what stands in a list twice, the first place counts
+    listed = backward[(contact & (row >= 0))[backward]]
+    at[side[listed], row[listed]] = listed
     return Rings(block, first, count, item, owner, contact, row, side, before, after, corner, at)
 
 

@@ -16,18 +16,16 @@ from collections import Counter
 
 import numpy as np
 
-from udec_ia.checker.checked_state import State
+from udec_ia.checker.checked_state import State, corner_before
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
-from udec_ia.heap.untrusted_lists import ill_linked, place_items
 from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
 from udec_ia.printable import counted
-from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, kernel_rows, names
+from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.list_walks import clockwise_link
 
 PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
-ILL_LINKED = InterpretWhenSmall(ill_linked, 5e5)  # items
 PIECES = InterpretWhenSmall(pieces, 6e5)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
@@ -58,24 +56,33 @@ def _check_corners(state: State) -> None:
 
 def _check_items(state: State) -> None:
     """Corners name their block and the one before; links back mirror the list; contacts know their corner."""
-    rings = state.rings
-    of_lists = np.column_stack((rings.block, rings.first, rings.count)), rings.item, rings.side
+    rings, corner = state.rings, ~state.rings.contact
+    one, two = rings.contact & (rings.side == 0), rings.contact & (rings.side == 1)
+    block, back, ahead = rings.block[rings.owner], rings.item[rings.before], rings.item[rings.corner]
+    previous = np.zeros_like(rings.item)
+    previous[corner] = rings.item[corner_before(rings)]
     fields = (KNB, KR, KLB, *AHEAD, *BACK)
-    steps = tuple(state.offset[name] - 1 for name in fields)
-    for k, which, stored, wanted in kernel_rows(
-        ILL_LINKED, len(rings.item), 4, state.h.ia, *of_lists, rings.before, rings.corner, steps
-    ).tolist():
-        item, block, name = rings.item[k], rings.block[rings.owner[k]], fields[which]
-        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {stored}"
+    of_corners = (corner, block), (corner, previous), (corner, back)
+    of_contacts = (one, ahead), (two, ahead), (one, back), (two, back)
+    wrong = []
+    for which, (where, wanted) in enumerate(of_corners + of_contacts):
+        at = np.flatnonzero(where)
+        stored = state.read(rings.item[at], fields[which])
+        for row in np.flatnonzero(stored != wanted[at]).tolist():
+            k = int(at[row])
+            wrong.append((k, which, int(stored[row]), int(wanted[k])))
+    for k, which, value, right in sorted(wrong):
+        item, host, name = rings.item[k], int(block[k]), fields[which]
+        what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {value}"
         if name == KNB:
-            why = f"the corner stands in the list of block@{block}"
+            why = f"the corner stands in the list of block@{host}"
         elif name == KR:
-            why = f"clockwise corner@{wanted} precedes it"
+            why = f"clockwise corner@{right} precedes it"
         elif name in AHEAD:
-            why = f"the first corner after it on block@{block} is {wanted}"
+            why = f"the first corner after it on block@{host} is {right}"
         else:
-            link, _ = clockwise_link(state.h, int(block), wanted)
-            why = f"{link} leads to it, on block@{block}"
+            link, _ = clockwise_link(state.h, host, right)
+            why = f"{link} leads to it, on block@{host}"
         state.report(3, f"{what}, but {why}")
 
 
@@ -213,7 +220,7 @@ def _check_connected(state: State) -> None:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 
-AREAS, PLACE_ITEMS = InterpretWhenSmall(areas, 9e5), InterpretWhenSmall(place_items, 1e6)  # items
+AREAS = InterpretWhenSmall(areas, 9e5)  # items
 
 
 def check_outer(state: State) -> None:
@@ -225,9 +232,10 @@ def check_outer(state: State) -> None:
         return
     if not len(rings.item) or (rings.row < 0).any() or (rings.at < 0).any():  # a block's part is missing
         return
-    places, fields = np.empty((len(rings.item), 2)), ("KXP", "KYP", "KXC", "KYC")
-    reals = tuple(state.offset[name] for name in fields)
-    PLACE_ITEMS(len(places), state.h.ra, rings.item, rings.contact, state.ratio, reals, places)
+    corner, contact = ([state.offset[name] for name in names] for names in (("KXP", "KYP"), ("KXC", "KYC")))
+    base = (rings.item - 1) // state.ratio - 1
+    places = state.h.ra[base[:, None] + np.where(rings.contact[:, None], contact, corner)].astype(float)
+    places -= places[0].copy()  # of the first item, a corner
     virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     named = np.array([state.rows("domain", state.column("contact", side)) for side in SIDES])
     twice = np.zeros(len(domains))

@@ -9,14 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import LOST, State
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.heap.accessors import iget
+from udec_ia.heap.accessors import iget, integers
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
-from udec_ia.heap.untrusted_lists import gaps
-from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers, kernel_rows
+from udec_ia.reader.field_reading import KIND_CODE, TABLE, Numbers
 
 JUNK = len(KIND_CODE) + 1  # code of a junk group among those of the kinds
-GAPS = InterpretWhenSmall(gaps, 9e6)  # places where a group could begin
 
 
 def check_memory(state: State) -> None:
@@ -82,6 +79,15 @@ def _junk_size(state: State, iad: int, sizes: set[int], source: str, junk: dict[
     return size
 
 
+def gaps(starts: Numbers, sizes: Numbers, free: int) -> Numbers:
+    """Where groups, in order of address, do not tile the words below `free`: three columns.
+
+    Address of the group before, 0 for none; the word after it; and where the next group begins, or `free`.
+    """
+    before, end, start = np.append(0, starts), np.append(1, starts + sizes), np.append(starts, free)
+    return np.asarray(np.column_stack((before, end, start))[end != start])
+
+
 def _check_tiling(state: State, junk: dict[int, int]) -> None:
     names = {code: kind for kind, code in KIND_CODE.items()} | {JUNK: "junk"}
     sizes = np.array([0, *(state.layout[kind].size for kind in KIND_CODE), 0])
@@ -96,9 +102,11 @@ def _check_tiling(state: State, junk: dict[int, int]) -> None:
     def name(iad: int) -> str:
         return f"{names[int(state.kind_at[(iad - 1) // state.ratio])]}@{iad}"
 
-    to_size, places = JSIZE[0] - 1, len(state.kind_at)
-    rows = kernel_rows(GAPS, places, 3, state.h.ia, state.kind_at, sizes, to_size, state.ratio, state.free)
-    for before, end, start in rows.tolist():
+    place = np.flatnonzero(state.kind_at)
+    starts, words = place * state.ratio + 1, sizes[state.kind_at[place]]
+    of_junk = state.kind_at[place] == JUNK
+    words[of_junk] = integers(state.h, starts[of_junk], JSIZE)
+    for before, end, start in gaps(starts, words, state.free).tolist():
         left = name(before) if before else "the start of the heap"
         right = name(start) if start != state.free else "MFREE"
         if end < start:

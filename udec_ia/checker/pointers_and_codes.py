@@ -9,11 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
-from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
+from udec_ia.compiling.interpreting import interpreted
 from udec_ia.errors import MESSAGES
 from udec_ia.heap.census import SOFT, one_of
 from udec_ia.heap.main_array import variable
-from udec_ia.heap.untrusted_lists import all_finite
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import KBEX, TABLE, TARGETS, allowed, in_words
@@ -95,7 +94,6 @@ def check_codes(state: State) -> None:
 
 COMMON_REALS = [field for field in TABLE.common if field.type != "int"]
 FORCE_SUMS = ("KBFX", "KBFY", "KBFT")
-ALL_FINITE = InterpretWhenSmall(all_finite, 4e5)  # groups
 
 
 def check_numbers(state: State) -> None:
@@ -123,9 +121,9 @@ def check_numbers(state: State) -> None:
 
 def _all_finite(state: State, kind: str) -> bool:
     """Whether all reals of the groups of `kind` are, as they nearly always are."""
-    reals = [state.offset[field.name] for field in TABLE.group(kind).fields if field.real]
-    at = state.address[kind]
-    return not reals or ALL_FINITE(len(at), state.h.ra, at, state.ratio, min(reals), max(reals))
+    offsets = [state.offset[field.name] for field in TABLE.group(kind).fields if field.real]
+    base, last = (state.address[kind] - 1) // state.ratio - 1, max(offsets, default=0)
+    return all(np.isfinite(state.h.ra[base + k]).all() for k in range(min(offsets, default=1), last + 1))
 
 
 def check_common(state: State) -> None:

@@ -1,21 +1,49 @@
-"""Which build of the kernels runs: compiled or interpreted, ordinary or checked. The environment decides.
+"""Which build of the kernels runs, compiled or interpreted, ordinary or checked; and when numba is loaded.
 
-NUMBA_DISABLE_JIT=1 has all kernels run as Python. UDEC_CHECKED=1, or `udec --checked`, chooses the checked
-build: its parts are in the package `checked_build`, which an ordinary build never imports. UDEC_LINK=plain
-has kernels compiled without our own linking.
+The environment decides. NUMBA_DISABLE_JIT=1 has all kernels run as Python. UDEC_CHECKED=1, or the option
+`--checked`, chooses the checked build, whose package `checked_build` an ordinary build never imports.
+UDEC_LINK=plain has kernels compiled without our own linking.
+
+numba is loaded when the first kernel is to run compiled, as loading it takes longer than to look into a
+restart file. So the compiled form of a function such as `iget` stands in a file of its own, and the decorator
+`numba_form` names it.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeVar
 
-from udec_ia.compiling.numba_loading import numba_form
-
+T = TypeVar("T")
 DISABLED = os.environ.get("NUMBA_DISABLE_JIT", "") not in ("", "0")  # as numba reads it: nothing is compiled
 CHECKED = os.environ.get("UDEC_CHECKED", "") not in ("", "0")
 TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which linking.py was tried
+JITABLE = "numba.extending:register_jitable"
+_pending: list[tuple[str, Any]] = []  # forms that are not yet registered with numba
+
+
+def numba_form(by: str) -> Callable[[T], T]:
+    """Decorator of a function or class that is compiled in a form of its own.
+
+    by: "module:function" that registers the form with numba; it is called when numba is loaded.
+    """
+
+    def decorator(one: T) -> T:
+        _pending.append((by, one))
+        return one
+
+    return decorator
+
+
+def load() -> None:
+    """Register all forms with numba that are not yet registered."""
+    while _pending:
+        by, one = _pending[0]
+        module, _, register = by.partition(":")
+        getattr(import_module(module), register)(one)
+        _pending.pop(0)  # not before: an interrupt may come between
 
 
 def plain_wanted() -> bool:
@@ -43,7 +71,7 @@ def offset(name: str, words: tuple[int, ...], kind: str, count: int = 1) -> Any:
 def forget_kinds(ia: Any) -> None:
     """Other groups have come to lie in `ia`: the checked build has to find their kinds anew."""
     if CHECKED:
-        checked_build("group_kinds").forget(ia)
+        checked_build("access_checks").shadow(ia).known = False
 
 
 def at_offset(k: int, kind: int, own: Any) -> Any:
@@ -56,4 +84,4 @@ def at_offset(k: int, kind: int, own: Any) -> Any:
 
 if CHECKED:
     at_offset = checked_build("tagged_offsets").at_offset  # all offsets of the table are exchanged, too
-numba_form("numba.extending:register_jitable")(at_offset)
+numba_form(JITABLE)(at_offset)

@@ -21,11 +21,12 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import config
+from numba.core import config, event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 
 from udec_ia.compiling.build_choice import CHECKED, plain_wanted
+from udec_ia.compiling.compile_time import begin_compiling, end_compiling
 from udec_ia.layout import offsets as g
 
 PACKAGE = Path(__file__).parent.parent
@@ -76,7 +77,7 @@ class CodeFile(IndexDataCacheFile):
 
 
 class _Cache(FunctionCache):
-    """What numba asks for the machine code of a kernel before it compiles it. folder: where our files are.
+    """Where numba looks for the machine code of a kernel before it compiles it. folder: of our files.
 
     numba prepares itself to compile before it asks, which takes longer than to read a dozen kernels. What
     machine code needs to run, which is numba's memory for arrays, is prepared here, and the rest if there is
@@ -98,8 +99,23 @@ class _Cache(FunctionCache):
         return None
 
 
+class _CompileListener(event.Listener):
+    """Notices when numba compiles a kernel that was not on disk. User laws do not count."""
+
+    def on_start(self, started: Any) -> None:
+        if isinstance(started.data["dispatcher"]._cache, _Cache):
+            begin_compiling()
+
+    def on_end(self, ended: Any) -> None:
+        if isinstance(ended.data["dispatcher"]._cache, _Cache):
+            end_compiling()
+
+
+event.register("numba:compile", _CompileListener())
+
+
 def use_cache(dispatcher: Any, folder: Path) -> None:
-    """Have numba keep the machine code of `dispatcher` in files of our kind in `folder`."""
+    """Have numba store the machine code of `dispatcher` in files of our kind in `folder`."""
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder.parent)
     try:
         dispatcher._cache = _Cache(dispatcher.py_func, folder)

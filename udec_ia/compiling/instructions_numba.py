@@ -1,12 +1,13 @@
-"""Accessors, prefetch and outlined calls as machine instructions, written out for numba.
+"""The memory, its accessors, prefetch and outlined calls as machine instructions, written out for numba.
 
-The kernels have two thousand accesses. Were an accessor a function of its own to numba, each would be a call
-that is made, and then taken apart again by LLVM: a tenth of the time that it takes to compile them.
+The kernels have two thousand accesses. If an accessor were a compiled function, LLVM would have to inline
+each of these calls, which is a tenth of the time that it takes to compile the kernels.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 from inspect import signature as parameters
 from typing import Any
 
@@ -15,14 +16,84 @@ from numba import types
 from numba.core import cgutils
 from numba.core.typing import signature
 from numba.core.typing.templates import AbstractTemplate, infer_global
-from numba.extending import intrinsic, lower_builtin, overload, typeof_impl
+from numba.extending import (
+    NativeValue,
+    intrinsic,
+    lower_builtin,
+    make_attribute_wrapper,
+    models,
+    overload,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+from numba.np.numpy_support import from_dtype
 
 from udec_ia.compiling.build_choice import CHECKED
-from udec_ia.compiling.memory_type_numba import MemoryType
+from udec_ia.compiling.kernel_memory import Memory
 
 INDEX = types.uint64  # never negative: numba would look
 LINE = 64  # bytes that the machine's memory hands out at a time
 READ, KEEP, DATA = 0, 3, 1  # arguments of llvm.prefetch: to be read, often, no instructions
+OF_CHECKED_BUILD = [("kinds", types.int8), ("notes", types.int64)] if CHECKED else []
+
+# ---- memory
+
+
+class MemoryType(types.Type):
+    """Compiled type of Memory for one word scheme; `dtypes` are those of its five arrays.
+
+    An array of numba is seven words and a reference count, and every kernel takes the memory as an argument.
+    So Memory is four bare addresses, which stay in registers, and nothing is counted. `ra` has the address of
+    `ia`, and only getr and putr use it. The arrays live while a kernel runs because its caller holds the
+    Memory; a kernel never stores or returns one.
+    """
+
+    def __init__(self, *dtypes: Any) -> None:
+        self.dtypes = dtypes
+        super().__init__(name=f"Memory{dtypes}")
+
+
+def _pointers(kind: MemoryType) -> list[tuple[str, Any]]:
+    """Names and element types of the arrays whose addresses are stored; the checked build has two more."""
+    pointers = [(name, d) for name, d in zip(Memory._fields, kind.dtypes, strict=True) if name != "ra"]
+    return pointers + OF_CHECKED_BUILD
+
+
+@register_model(MemoryType)
+class _FourPointers(models.StructModel):
+    def __init__(self, manager: Any, kind: MemoryType) -> None:
+        super().__init__(manager, kind, [(name, types.CPointer(dtype)) for name, dtype in _pointers(kind)])
+
+
+for _name in (*Memory._fields, *(name for name, _ in OF_CHECKED_BUILD)):
+    if _name != "ra":
+        make_attribute_wrapper(MemoryType, _name, _name)
+
+
+def compile_memory(memory_class: type[Memory]) -> None:
+    """Have numba give memories this type."""
+
+    @typeof_impl.register(memory_class)
+    def _type_of(memory: Memory, _: Any) -> MemoryType:
+        return MemoryType(*(from_dtype(array.dtype) for array in memory))
+
+
+@unbox(MemoryType)
+def _addresses(kind: MemoryType, memory: Any, c: Any) -> Any:
+    """Code that takes the four addresses out of the Python object `memory`."""
+    pointers = c.context.make_helper(c.builder, kind)
+    failed = []
+    for name, dtype in _pointers(kind):
+        array_type = types.Array(dtype, 1, "C")
+        member = c.pyapi.object_getattr_string(memory, name)
+        array = c.unbox(array_type, member)
+        c.pyapi.decref(member)
+        setattr(pointers, name, c.context.make_array(array_type)(c.context, c.builder, array.value).data)
+        c.context.nrt.decref(c.builder, array_type, array.value)
+        failed.append(array.is_error)
+    return NativeValue(pointers._getvalue(), is_error=reduce(c.builder.or_, failed))
+
 
 # ---- accessors
 
@@ -178,8 +249,8 @@ def type_of_kernels(kernel_class: type) -> None:
 
     @typeof_impl.register(kernel_class)
     def _type_of(kernel: Any, context: Any) -> Any:
-        found = typeof_impl(kernel.made, context)
-        return found if found is not None else types.Dispatcher(kernel.made)
+        found = typeof_impl(kernel.compiled, context)
+        return found if found is not None else types.Dispatcher(kernel.compiled)
 
 
 @intrinsic

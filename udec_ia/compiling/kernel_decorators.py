@@ -7,9 +7,8 @@ from functools import cached_property, update_wrapper
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from udec_ia.compiling.build_choice import CHECKED, DISABLED, checked_build, plain_wanted
+from udec_ia.compiling.build_choice import CHECKED, DISABLED, checked_build, load, numba_form, plain_wanted
 from udec_ia.compiling.interpreting import ObservedMemory, interpreted, mode
-from udec_ia.compiling.numba_loading import load, numba_form
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -31,33 +30,35 @@ class Kernel:
         if args and args[0].__class__ is ObservedMemory:
             with interpreted():
                 return self.py_func(*args)
-        return self.whole(*args)
+        return self.dispatcher(*args)
 
     @cached_property
-    def made(self) -> Any:
-        """What numba makes of it, for each types of arguments when they first come.
+    def compiled(self) -> Any:
+        """The compiled function: a LinkedKernel, or numba's own dispatcher on the plain path.
 
         No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
         follows IEEE 754 instead of raising.
         """
         load()
-        from udec_ia.compiling.code_cache import cache_folder
+        from udec_ia.compiling.code_cache import cache_folder, use_cache
 
         layer = Path(self.py_func.__code__.co_filename).parent.name  # two may have a file of the same name
         folder = cache_folder() / layer
         flags = {"error_model": "numpy", "forceinline": self.inline, "_nrt": self.counted}
         if plain_wanted():
-            from udec_ia.compiling.plain_path import plain_kernel
+            from numba import njit
 
-            return plain_kernel(self.py_func, folder, **flags)
+            plain = njit(**flags)(self.py_func)
+            use_cache(plain, folder)
+            return plain
         from udec_ia.compiling.linking import LinkedKernel
 
         return LinkedKernel(self.py_func, folder, self.outlined, **flags)
 
     @cached_property
-    def whole(self) -> Any:
-        """That which Python calls."""
-        return getattr(self.made, "whole", self.made)
+    def dispatcher(self) -> Any:
+        """What Python calls."""
+        return getattr(self.compiled, "dispatcher", self.compiled)
 
 
 def kernel(function: F, inline: bool = False, outlined: bool = False) -> F:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from udec_ia.compiling.build_choice import checked_build
-from udec_ia.compiling.numba_loading import numba_form
+from udec_ia.compiling.build_choice import checked_build, numba_form
+
+LEAD = 16  # groups by which a pass looks ahead
 
 
-@numba_form("udec_ia.compiling.memory_type_numba:register")
+@numba_form("udec_ia.compiling.instructions_numba:compile_memory")
 class Memory(NamedTuple):
     """All that a kernel sees.
 
@@ -25,9 +26,18 @@ class Memory(NamedTuple):
     @property
     def kinds(self) -> Any:
         """In the checked build: the kind of the group that begins at each address, counted from 0."""
-        return checked_build("group_kinds").shadow(self.ia).kinds
+        return checked_build("access_checks").shadow(self.ia).kinds
 
     @property
     def notes(self) -> Any:
         """In the checked build: what an access that was refused leaves behind."""
-        return checked_build("group_kinds").shadow(self.ia).notes
+        return checked_build("access_checks").shadow(self.ia).notes
+
+
+@numba_form("udec_ia.compiling.instructions_numba:compile_fetch")
+def fetch(h: Memory, iad: int, nv: tuple[int, ...], beyond: int = 0) -> None:
+    """Prefetch the group of size `nv` (NVBL, NVCR, ...) that lies `beyond` such groups after address `iad`.
+
+    In an array that is larger than the machine's caches, to wait for a group costs more than all its
+    arithmetic. A prefetch has no other effect: any address will do, and interpreted kernels do nothing.
+    """

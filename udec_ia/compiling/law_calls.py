@@ -1,17 +1,15 @@
-"""How a compiled kernel calls a law that its user has written (Appendix IV-4).
+"""How a compiled kernel calls a law that a user has written (Appendix IV-4).
 
-A law of the user's is compiled when a session begins, long after the kernels that call it, and the kernels
-stay on disk from session to session. So a kernel must not depend on which law it calls: it is handed
-addresses of machine code, as numbers, and calls what lies there with a fixed list of arguments,
+A user's law is compiled when a session begins, long after the kernels that call it, which stay on disk. So a
+kernel does not depend on which law it calls. Its arguments are addresses of machine code, and it calls
 
     void law(double, double, double, double, double, double, const double *material, double *result)
 
 `machine_code` (law_calls_numba.py) brings a compiled law to this form, `call` calls it. A call costs what it
-costs in C, and no kernel is compiled anew for it. Laws calculate with 64-bit reals in every word scheme.
-Kernels that are not compiled call the Python function itself.
+costs in C. Laws calculate with 64-bit reals in every word scheme. Kernels that are not compiled call the
+Python function itself.
 
-What a law raises never comes to the kernel: its increments are then no numbers, and it is noted what it was
-called with.
+An exception in a law never reaches the kernel: the increments are NaN, and the arguments are recorded.
 """
 
 from __future__ import annotations
@@ -20,16 +18,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.numba_loading import numba_form
+from udec_ia.compiling.build_choice import numba_form
 
-FIRST, LAST = 2, 5  # constitutive numbers of the user's laws
+FIRST, LAST = 2, 5  # constitutive numbers of user laws
 JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws
 
 
 class Laws(NamedTuple):
-    """The user's laws, and the materials that they may be called with.
+    """User laws, and the materials that they may be called with.
 
-    calls: CL2 ... CL5, CLJ2 ... CLJ5, those that were not given 0. materials: the Material of each number.
+    calls: CL2 ... CL5, CLJ2 ... CLJ5, 0 for those that are not given. materials: the Material of each number.
     Compiled, both are addresses: of the table of the addresses of the laws, and of the reals of material 1.
     """
 
@@ -47,7 +45,7 @@ def is_given(laws: Laws, i: int) -> bool:
 def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
     """What law `i` returns for material `mat` and six reals: three reals, of which joint laws use two.
 
-    What is not a number if the law raises an exception, whatever it is: no pass may end half way.
+    The reals are NaN if the law raises an exception: no pass may end half way.
     """
     try:
         with np.errstate(all="ignore"):

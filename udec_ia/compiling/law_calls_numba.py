@@ -1,4 +1,4 @@
-"""How a kernel that is compiled calls a law, and how a law is compiled for it (law_calls.py)."""
+"""Compiled calls of laws, and how a law is compiled for them (law_calls.py)."""
 
 from __future__ import annotations
 
@@ -33,10 +33,7 @@ def _word_at(typing: Any, address: Any) -> Any:
 
 @intrinsic
 def _jump(typing: Any, law: Any, state: Any, material: Any) -> Any:
-    """Call the law at a machine address, with the material at another, and return what it leaves behind.
-
-    What it leaves untouched is not a number.
-    """
+    """Results of the law at a machine address, with the material at another; NaN where it wrote none."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         law, state, material = args
@@ -54,7 +51,7 @@ def _jump(typing: Any, law: Any, state: Any, material: Any) -> Any:
 
 
 def compile_is_given(is_given: Callable[..., Any]) -> None:
-    """An address of 0 is that of no law."""
+    """A law that is not given has the address 0."""
 
     @overload(is_given)
     def _is_given(laws: Any, i: Any) -> Callable[..., Any]:
@@ -65,7 +62,7 @@ def compile_is_given(is_given: Callable[..., Any]) -> None:
 
 
 def compile_call(call: Callable[..., Any]) -> None:
-    """The law that lies at an address is called."""
+    """The law at an address is called."""
 
     @overload(call)
     def _call(laws: Any, i: Any, mat: Any, state: Any) -> Callable[..., Any]:
@@ -78,7 +75,7 @@ def compile_call(call: Callable[..., Any]) -> None:
 
 
 @intrinsic
-def _note(typing: Any, place: Any, state: Any) -> Any:
+def _record(typing: Any, place: Any, state: Any) -> Any:
     """Put the reals `state` at a machine address, unless there are numbers already."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -92,19 +89,19 @@ def _note(typing: Any, place: Any, state: Any) -> Any:
     return types.void(types.int64, types.UniTuple(types.float64, 6)), generate
 
 
-def machine_code(law: Any, n: int, noted: Any) -> Any:
+def machine_code(law: Any, n: int, record: Any) -> Any:
     """A compiled law, which returns `n` numbers, in the form that kernels call: its `address` is the law.
 
-    noted: six reals that are no numbers. When the law raises an exception for the first time, it leaves there
-    what it was called with. They must live as long as the law.
+    record: six reals, all NaN, for the arguments with which the law first raises an exception. They must live
+    as long as the law.
     """
     result = types.CPointer(types.UniTuple(types.float64, n))
-    place = noted.ctypes.data
+    place = record.ctypes.data
 
     def entry(a: float, b: float, c: float, d: float, e: float, f: float, material: Any, result: Any) -> None:
         try:
             result[0] = law(a, b, c, d, e, f, material[0])
         except Exception:
-            _note(place, (a, b, c, d, e, f))
+            _record(place, (a, b, c, d, e, f))
 
     return numba.cfunc(types.void(*STATE, types.CPointer(MATERIAL), result))(entry)

@@ -2,13 +2,12 @@
 
 numba makes machine code of every function it compiles, and optimises it once more inside each of its
 callers, layer upon layer. Most kernels are only ever called by kernels. So a kernel has two compiled
-forms. Its *part* is what other kernels link in: code that is neither optimised nor translated. Its
-*whole*, made when Python calls the kernel, takes in the parts of all kernels below it, and is optimised,
-translated and kept on disk.
+forms. Its *part* is what other kernels link in: code that is neither optimised nor translated. Its *complete*
+form, compiled when Python calls the kernel, contains the parts of all kernels below it, and is optimised,
+translated and stored on disk.
 
-A part is made once for the types of its arguments, not once more for every literal it is called with. What
-an operator or an accessor makes of its arguments is found once, and not wherever it stands. And what numba
-would look for in every function, though no kernel has it, is not looked for.
+A part is made once for the types of its arguments, not once more for every literal it is called with. The
+signatures of operators and accessors are found once, and passes of numba that no kernel needs are left out.
 """
 
 from __future__ import annotations
@@ -23,7 +22,6 @@ from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
 from udec_ia.compiling.code_cache import use_cache
-from udec_ia.compiling.compile_time import compiling
 from udec_ia.signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
@@ -37,7 +35,7 @@ class _NoEnvironment:
 
 
 class _Part(JITCodeLibrary):
-    """Code for others to link in. What it calls is noted, and linked in by them."""
+    """Code for others to link in, which also link in what it calls."""
 
     codegen = _NoEnvironment()
 
@@ -48,7 +46,7 @@ class _Part(JITCodeLibrary):
         self._finalized = True
 
 
-class _Whole(JITCodeLibrary):
+class _Complete(JITCodeLibrary):
     """Code with everything it calls in it."""
 
     _linking_libraries: list[Any]
@@ -69,23 +67,23 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
             found[library] = None
 
 
-class _Remembering:
-    """A typing context of numba's, `knows`, that keeps what it has found of what is no kernel."""
+class _CachedSignatures:
+    """A typing context of numba that caches the signatures of calls, but for those of kernels."""
 
     found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
 
-    def __init__(self, knows: Any) -> None:
-        self._knows = knows
+    def __init__(self, context: Any) -> None:
+        self._context = context
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._knows, name)
+        return getattr(self._context, name)
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Signature of a call; None if there is none."""
+        """Signature of a call, or None."""
         key = func, tuple(args)
         signature = self.found.get(key)
         if signature is None:
-            signature = self._knows.resolve_function_type(func, args, kws)
+            signature = self._context.resolve_function_type(func, args, kws)
             if isinstance(func, types.Function) and not kws:
                 self.found[key] = signature
         return signature
@@ -98,7 +96,7 @@ class _KernelCompiler(Compiler):
         state = self.state
         state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        state.typingctx = _Remembering(state.typingctx)
+        state.typingctx = _CachedSignatures(state.typingctx)
         (pipeline,) = super().define_pipelines()
         pipeline.passes = [one for one in pipeline.passes if one[0]._name not in NOT_IN_KERNELS]
         return [pipeline]
@@ -108,24 +106,20 @@ class _PartCompiler(_KernelCompiler):
     form = _Part
 
 
-class _WholeCompiler(_KernelCompiler):
-    form = _Whole
-
-    def compile_extra(self, function: Callable[..., Any]) -> Any:
-        """Compile `function` with all the parts that it needs. What is found on disk does not come here."""
-        with compiling():
-            return super().compile_extra(function)
+class _CompleteCompiler(_KernelCompiler):
+    form = _Complete
 
 
 class LinkedKernel:
-    """A compiled function in both its forms: called from Python it is whole, from a kernel a part.
+    """A compiled function in both forms: `dispatcher` is complete, for Python, and `part` is for kernels.
 
-    folder: of the machine code of the whole. outlined: kernels call the whole, too, by its address.
+    folder: of the machine code on disk. outlined: kernels call the complete form, too, by its address.
     """
 
     def __init__(self, function: Callable[..., Any], folder: Path, outlined: bool, **flags: Any) -> None:
-        self.whole = njit(no_cfunc_wrapper=not outlined, pipeline_class=_WholeCompiler, **flags)(function)
-        use_cache(self.whole, folder)
+        complete = njit(no_cfunc_wrapper=not outlined, pipeline_class=_CompleteCompiler, **flags)
+        self.dispatcher = complete(function)
+        use_cache(self.dispatcher, folder)
         self.part = njit(
             no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **flags
         )(function)

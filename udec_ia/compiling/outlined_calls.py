@@ -14,49 +14,49 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.compiling.build_choice import CHECKED
+from udec_ia.compiling.build_choice import CHECKED, load, numba_form
 from udec_ia.compiling.interpreting import mode
 from udec_ia.compiling.kernel_memory import Memory
-from udec_ia.compiling.numba_loading import load, numba_form
 
-_found: dict[Any, int] = {}  # by kernel and types of its arguments: numba takes its time to name their types
-
-
-def _type(given: Any) -> Any:
-    """What decides which type numba has for what is `given`: never the same for two types."""
-    if isinstance(given, tuple):
-        return tuple(_type(one) for one in given)
-    if isinstance(given, np.ndarray):
-        how = given.flags
-        return given.dtype, given.ndim, how.c_contiguous, how.f_contiguous, how.aligned, how.writeable
-    return type(given)
+_addresses: dict[Any, int] = {}  # by kernel and types of its arguments
 
 
-def _address(kernel: Any, *given: Any) -> int:
-    """Where the machine code of `kernel` is for arguments of the types of `given`."""
+def _type(value: Any) -> Any:
+    """What decides the type that numba gives to `value`; faster than `numba.typeof`."""
+    if isinstance(value, tuple):
+        return tuple(_type(one) for one in value)
+    if isinstance(value, np.ndarray):
+        flags = value.flags
+        return value.dtype, value.ndim, flags.c_contiguous, flags.f_contiguous, flags.aligned, flags.writeable
+    return type(value)
+
+
+def _address(kernel: Any, *args: Any) -> int:
+    """Address of the machine code of `kernel` for arguments of the types of `args`."""
     load()
     from numba import typeof
 
-    types = tuple(typeof(one) for one in given)
-    kernel.whole.compile(types)
-    made = kernel.whole.overloads[types]
-    name = made.fndesc.llvm_func_name if CHECKED else made.fndesc.llvm_cfunc_wrapper_name
-    return int(made.library.get_pointer_to_function(name))
+    types = tuple(typeof(one) for one in args)
+    kernel.dispatcher.compile(types)
+    compiled = kernel.dispatcher.overloads[types]
+    names = compiled.fndesc
+    name = names.llvm_func_name if CHECKED else names.llvm_cfunc_wrapper_name
+    return int(compiled.library.get_pointer_to_function(name))
 
 
 def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
-    """Where `kernel`, an outlined one, is for arguments of these types, compiled if it has not been."""
+    """Address of `kernel`, an outlined one, for arguments of these types, compiled if it has not been."""
     if mode.python:
         return kernel
     key = kernel, _type((h, *others))
-    if key not in _found:
-        _found[key] = _address(kernel, h, *others)
-    return _found[key]
+    if key not in _addresses:
+        _addresses[key] = _address(kernel, h, *others)
+    return _addresses[key]
 
 
 def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
-    """The same if it is `wanted`, or has been in this process; else 0."""
-    known = wanted or mode.python or (kernel, _type((h, *others))) in _found
+    """The same if it is `wanted`, or was in this process before; else 0."""
+    known = wanted or mode.python or (kernel, _type((h, *others))) in _addresses
     return entry(kernel, h, *others) if known else 0
 
 

@@ -19,10 +19,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from udec_ia.compiling.build_choice import CHECKED, checked_build, offset
+from udec_ia.compiling.build_choice import CHECKED, checked_build, numba_form, offset
 from udec_ia.compiling.build_choice import at_offset as at_offset
 from udec_ia.compiling.kernel_memory import Memory as Memory
-from udec_ia.compiling.numba_loading import numba_form
 
 Offset = tuple[int, int, int]  # and more in the checked build: checked_build/tagged_offsets.py
 Address = int

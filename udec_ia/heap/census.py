@@ -1,17 +1,13 @@
-"""Which groups a heap holds, found by following every pointer of the table from the list heads.
+"""The groups that a heap holds, found by following every pointer of the field table from the list heads.
 
-A word of IA() has no type of its own, and only some kinds of group carry a head code. But the table says what
-each pointer leads to: so the kind of a group is known by the way that leads there. The pointers of what was
-found are followed until they lead to nothing new (`reach`). Nothing is trusted: a pointer that leads out of
-the heap, to an address where no group can stand or to another head code is not followed. So this tells what
-is there in a damaged heap, too; whether it is sound is for the checker to say.
+A word of IA() has no type of its own, but the table defines what each pointer leads to. Nothing is trusted: a
+pointer that leads out of the heap, to an address where no group can begin or to another head code is not
+followed. So the census works in a damaged heap, too; whether a heap is sound is proved by the checker. The
+table may be that of another program, whose restart file is being read.
 
-The table may be that of another program, whose restart file is being read.
-
-Kinds are numbers, from 1 on in the order of the table. A group whose kind has a head code is known by that:
-it counts as soon as a pointer of its kind leads to it, so that no wrong pointer makes another kind of it. The
-others wait until no group with a code is left to follow; where two kinds of pointer lead to one address, it
-is of the kind that comes first in the table.
+A group whose kind has a head code counts as soon as a pointer of its kind leads to it, so that no wrong
+pointer makes another kind of it. The others wait until no group with a code is left to follow. Where two
+kinds of pointer lead to one address, it is of the kind that comes first in the table.
 """
 
 from __future__ import annotations
@@ -28,19 +24,14 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.table import Table, lay_out, read_table
 
 TABLE = read_table()
-SOFT = {  # kind of the extension of a group with this head code
-    head.value: head.extension for head in TABLE.heads if head.extension
-}
+SOFT = {head.value: head.extension for head in TABLE.heads if head.extension}  # extension by head code
 SOFT_NAMES = {head.name: head.extension for head in TABLE.heads if head.extension}
-CHOICES = {  # kinds that such a pointer can lead to
-    "item": ("corner", "contact"),
-    "soft": tuple(SOFT.values()),
-}
+CHOICES = {"item": ("corner", "contact"), "soft": tuple(SOFT.values())}  # kinds a pointer can lead to
 SURE, WAITING = 0, 1  # what is counted: groups that are yet to be followed, and places that wait
 
 
 class Shapes(NamedTuple):
-    """What groups look like, by number of the kind.
+    """Sizes, head codes and pointers of groups, by number of the kind, from 1 in the order of the table.
 
     size: in words. codes: two columns, head codes and the kinds that have them; coded: True for those kinds.
     pointers: three columns, word (1 for the first of the group), kind that it leads to, and head code that
@@ -55,10 +46,10 @@ class Shapes(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What has been found: each of as many elements as there are places, at which a group can begin.
+    """The groups found so far; one element for each place at which a group can begin.
 
     kind_at: number of the kind that begins there; wanted: of the kind that waits there; 0 for none. sure:
-    places of groups that are yet to be followed; waiting: those that wait. many: how many of both.
+    places of groups that are yet to be followed; waiting: places that wait. many: how many of both.
     """
 
     kind_at: Any
@@ -66,13 +57,6 @@ class Found(NamedTuple):
     sure: Any
     waiting: Any
     many: Any
-
-
-def room_for(places: int) -> Found:
-    """Nothing found."""
-    kind_at, wanted = (np.zeros(places, np.int8) for _ in range(2))
-    sure, waiting = (np.empty(places, np.int32) for _ in range(2))
-    return Found(kind_at, wanted, sure, waiting, np.zeros(2, np.int64))
 
 
 def census(h: Any) -> dict[str, Any]:
@@ -94,18 +78,26 @@ def list_heads(table: Table) -> list[Any]:
 def reached(
     table: Table, ratio: int, words: Any, heads: Iterable[tuple[str, int]], strict: bool = False
 ) -> dict[str, Any]:
-    """The same of any `table` and the words in use, where `heads`, pointers with their targets, lead.
+    """Addresses of the groups of every kind of `table` to which `heads`, kinds with addresses, lead.
 
-    strict: it is over as soon as groups have more words together than there are, as they lie in each other.
+    words: in use. strict: stop as soon as groups have more words together than there are, as they overlap.
     """
     shapes, number = _our_shapes(ratio) if table is TABLE else _shapes(table, ratio)
-    known = [(number[kind], iad) for kind, iad in heads if kind in number]
-    ways = np.array(known, np.int64).reshape(-1, 2)
+    known = np.array([(number[kind], iad) for kind, iad in heads if kind in number], np.int64).reshape(-1, 2)
     places = (len(words) - 1) // ratio + 1  # groups begin on reals
-    found = room_for(places)
-    REACH(places, words, ratio, shapes, ways, strict, found)
-    place = np.flatnonzero(found.kind_at)
-    kinds = found.kind_at[place]
+    kind_at, wanted = (np.zeros(places, np.int8) for _ in range(2))
+    sure, waiting = (np.empty(places, np.int32) for _ in range(2))
+    REACH(
+        places,
+        words,
+        ratio,
+        shapes,
+        known,
+        strict,
+        Found(kind_at, wanted, sure, waiting, np.zeros(2, np.int64)),
+    )
+    place = np.flatnonzero(kind_at)
+    kinds = kind_at[place]
     return {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}
 
 
@@ -119,15 +111,14 @@ def one_of(values: Any, few: Sequence[int]) -> Any:
 
 @cache
 def _our_shapes(ratio: int) -> tuple[Shapes, dict[str, int]]:
-    """Those of the table that the program has."""
     return _shapes(TABLE, ratio)
 
 
 def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
-    """What groups look like, and the numbers of the kinds.
+    """The shapes of the groups of `table`, and the numbers of the kinds.
 
-    What may be of any kind is reached by its own lists. Of what extends a block the head code of the block
-    says what it is.
+    Pointers to groups of any kind are left out, as those are in lists of their own. The kind of an extension
+    follows from the head code of its block.
     """
     number = {group.name: k for k, group in enumerate(table.groups, 1)}
     soft = [(number[SOFT_NAMES[head.name]], head.value) for head in table.heads if head.name in SOFT_NAMES]
@@ -153,10 +144,7 @@ def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
 
 @over_arrays
 def reach(words: Any, ratio: int, shapes: Shapes, heads: Any, strict: bool, found: Found) -> None:
-    """Find all that `heads`, kinds and addresses in two columns, lead to.
-
-    strict: it is over as soon as groups have more words together than there are, as they lie in each other.
-    """
+    """Find all groups that `heads`, kinds and addresses in two columns, lead to. strict: as for `reached`."""
     left = len(words)
     for k in range(len(heads)):
         _offer(words, ratio, shapes, heads[k, 0], heads[k, 1], found)
@@ -180,7 +168,7 @@ def reach(words: Any, ratio: int, shapes: Shapes, heads: Any, strict: bool, foun
 
 @over_arrays
 def _offer(words: Any, ratio: int, shapes: Shapes, kind: int, iad: int, found: Found) -> None:
-    """There may be a group of the kind at an address."""
+    """A pointer leads to a group of the kind at an address."""
     if iad < 1 or iad - 1 > len(words) - shapes.size[kind] or (iad - 1) % ratio:
         return
     place = (iad - 1) // ratio
@@ -202,7 +190,7 @@ def _offer(words: Any, ratio: int, shapes: Shapes, kind: int, iad: int, found: F
 
 @over_arrays
 def _take_in(ratio: int, found: Found) -> None:
-    """What waits is there, unless a group with a code is."""
+    """The groups that wait are found, unless a group with a code is at their place."""
     for k in range(found.many[WAITING]):
         place = found.waiting[k]
         if not found.kind_at[place]:

@@ -3,15 +3,14 @@
 Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
 reuses it for the next request of exactly the same size (junk_list.py); groups are never cut up.
 
-Its address may soon be that of another group. So whoever watches a group from outside the map, as a history
-does, is told when the group is given back.
+Its address may soon be that of another group. So LOSE updates what refers to a group from outside the map, as
+a history does.
 """
 
 from __future__ import annotations
 
-from udec_ia.compiling.build_choice import CHECKED, checked_build, offset
+from udec_ia.compiling.build_choice import CHECKED, JITABLE, checked_build, numba_form, offset
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.compiling.numba_loading import numba_form
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
@@ -20,18 +19,19 @@ from udec_ia.layout import offsets as g
 WORD: Offset = offset("WORD", (0, 0, 0), "any")  # the first one of any group
 
 
-def begins(h: Memory, iad: int, nv: Offset) -> None:
-    """FIND hands out the words at `iad` for a group of the size `nv`: noted by the checked build."""
+def note_found(h: Memory, iad: int, nv: Offset) -> None:
+    """FIND hands out the words at `iad` for a group of the size `nv`; the checked build takes note."""
 
 
-def ends(h: Memory, iad: int, nv: Offset) -> None:
-    """LOSE takes them back: tested and noted by the checked build."""
+def note_lost(h: Memory, iad: int, nv: Offset) -> None:
+    """LOSE takes the words back; the checked build tests the address and takes note."""
 
 
 if CHECKED:
-    begins, ends = checked_build("access_checks").begins, checked_build("access_checks").ends
-for each in begins, ends:
-    numba_form("numba.extending:register_jitable")(each)
+    checks = checked_build("access_checks")
+    note_found, note_lost = checks.note_found, checks.note_lost
+for each in note_found, note_lost:
+    numba_form(JITABLE)(each)
 
 
 @kernel
@@ -82,7 +82,7 @@ def find(h: Memory, nv: Offset) -> int:
             want(h, n)
             return int64(0)
         h.ci[g.MFREE] = group + n
-    begins(h, group, nv)
+    note_found(h, group, nv)
     for i in range(n):
         puti(h, group, WORD, 0, i)
     return group
@@ -90,7 +90,7 @@ def find(h: Memory, nv: Offset) -> int:
 
 @kernel
 def unwatch(h: Memory, group: int) -> None:
-    """Histories of the group at `group` lose sight of it."""
+    """Detach histories from the group at `group`."""
     ih = int64(h.ci[g.IHPNT])
     while ih != 0:
         if iget(h, ih, g.KHG) == group:
@@ -102,7 +102,7 @@ def unwatch(h: Memory, group: int) -> None:
 def lose(h: Memory, group: int, nv: Offset) -> None:
     """Give the group of the size `nv` at `group` back to the junk list."""
     unwatch(h, group)
-    ends(h, group, nv)
+    note_lost(h, group, nv)
     n = int64(size_of(h, nv))
     first, before = _chain(h, n)
     if first == 0:

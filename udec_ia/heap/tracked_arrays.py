@@ -17,10 +17,10 @@ from udec_ia.compiling.kernel_memory import Memory
 
 
 class Writes:
-    """made: True once something was written into a tracked array, until a command looks at it."""
+    """pending: True once something was written into a tracked array, until a command looks at it."""
 
     def __init__(self) -> None:
-        self.made = False
+        self.pending = False
 
 
 class TrackedArray(np.ndarray):
@@ -46,10 +46,10 @@ class TrackedArray(np.ndarray):
         return out[0] if len(out) == 1 else out or result
 
     def _to_write(self) -> Any:
-        """The same words as an ordinary array to be written; a copy of a tracked array is the user's own."""
+        """The same words as an ordinary, writeable array. A copy of a tracked array is writeable itself."""
         if self.flags.writeable:
             return self.view(np.ndarray)
-        self._writes.made = True
+        self._writes.pending = True
         first = self.ctypes.data - self._own.ctypes.data
         return np.ndarray(self.shape, self.dtype, self._own, first, self.strides)
 

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
-from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.relocation import relocate
+from udec_ia.heap.main_array import MainArray, relocate
 from udec_ia.heap_tools.rewrite_heap import groups_in_list_order, junk_words
 from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes

@@ -1,4 +1,4 @@
-"""What an integer says that is a code: the code with its number, or the flags that add up to it."""
+"""Names of the codes that an integer stands for: the code with its number, or the flags that add up to it."""
 
 from __future__ import annotations
 

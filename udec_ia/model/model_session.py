@@ -122,7 +122,7 @@ class Session:
 
     def __getstate__(self) -> dict[str, Any]:
         """For pickle and copy: all but what belongs to this process."""
-        if self.writes.made:
+        if self.writes.pending:
             self.note_writes()
         return {name: value for name, value in vars(self).items() if name not in NOT_COPIED}
 
@@ -209,7 +209,7 @@ class Session:
         if not self.started:
             self.start()
             self.log_lines(["START"])
-        if self.writes.made:  # by the function that is obeyed as a whole, and it stays if that is taken back
+        if self.writes.pending:  # by the function that runs as one command; it stays if that is taken back
             self.note_writes()
         if (sound and self.written) or (shapes and self.unproved):
             self.prove()

@@ -259,9 +259,9 @@ class Undo:
         self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
 
     def _begin(self, session: UndoSession) -> None:
-        if session.writes.made:
+        if session.writes.pending:
             session.note_writes()
-            session.writes.made = False
+            session.writes.pending = False
         self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
         self.before = FormerState(session)
         self.busy = True

@@ -147,7 +147,7 @@ class Plots:
         return said
 
     def renumber(self, moved: Any) -> None:
-        """Groups have moved (heap.relocation): the open frame goes on with their new addresses."""
+        """Groups have moved (heap.main_array): the open frame goes on with their new addresses."""
         if self.frame is not None:
             self.frame.states = [state.renumbered(moved) for state in self.frame.states]
 

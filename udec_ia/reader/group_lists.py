@@ -18,7 +18,7 @@ import numpy as np
 from udec_ia.compiling.interpreting import InterpretWhenSmall
 from udec_ia.heap.census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.untrusted_lists import astray, chains
+from udec_ia.heap.untrusted_lists import chains, wrong_pointers
 from udec_ia.reader.block_rings import Boundaries, boundaries
 from udec_ia.reader.field_reading import (
     KIND_CODE,
@@ -33,7 +33,7 @@ from udec_ia.reader.field_reading import (
 from udec_ia.reader.list_walks import HEADS
 
 CHAINS = InterpretWhenSmall(chains, 2e7)  # places where a group could begin
-ASTRAY = InterpretWhenSmall(astray, 9e5)  # addresses
+WRONG_POINTERS = InterpretWhenSmall(wrong_pointers, 9e5)  # addresses
 
 
 class Pointers(NamedTuple):
@@ -86,7 +86,7 @@ class Lists(Reading):
         """
         groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
         where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
-        return [*kernel_rows(ASTRAY, len(groups), 2, *where).tolist()]
+        return [*kernel_rows(WRONG_POINTERS, len(groups), 2, *where).tolist()]
 
     def is_one(self, iad: int, kinds: Sequence[str]) -> bool:
         """True if a group of the kinds `kinds` followed so far begins at the address `iad`."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.compiling.prefetch import LEAD, fetch
+from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.layout import offsets as g
 

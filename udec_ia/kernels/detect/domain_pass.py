@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.compiling.prefetch import LEAD, fetch
+from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import velocity_at
 from udec_ia.kernels.links.linked_lists import is_corner

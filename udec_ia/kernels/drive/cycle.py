@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
+from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.compiling.outlined_calls import call_entry, entry, entry_if
-from udec_ia.compiling.prefetch import LEAD, fetch
 from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.find_lose import room
