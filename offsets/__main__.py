@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from offsets.generate import stale, write
-from udec_ia.layout.table import TableError
+from udec_ia.layout.field_table import TableError
 
 try:
     if "--check" not in sys.argv[1:]:

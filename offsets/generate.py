@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, TableError, lay_out, parse
+from udec_ia.layout.field_table import COMMON_TYPES, RATIOS, SCHEMES, Group, Table, TableError, lay_out, parse
 
 HERE = Path(__file__).parent
 TABLE = HERE / "groups.table"
@@ -28,7 +28,7 @@ def python_text(table: Table) -> str:
         '"""',
         "",
     ]
-    lines += ["from udec_ia.layout.table import require_current", ""]
+    lines += ["from udec_ia.layout.field_table import require_current", ""]
     lines += [f'DIGEST = "{table.digest}"', "require_current(DIGEST)", ""]
     lines += [f"{head.name} = {head.value}  # {head.text}" for head in table.heads]
     lines.append("")

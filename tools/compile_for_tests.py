@@ -32,7 +32,7 @@ def compile_for(build: str) -> str:
 
     from udec_ia import Model, UdecError
     from udec_ia.checker import check_links
-    from udec_ia.compiling.interpreting import InterpretWhenSmall
+    from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 
     InterpretWhenSmall.always_compiled = True
     rigid = [scenes.play(seed, Model(build), cycles=(2, 8)).model for seed in RIGID]

@@ -22,10 +22,10 @@ from udec_ia.command_line import VERBS as WORKSHOP
 from udec_ia.command_line import add_commands
 from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
-from udec_ia.files import takes_files
-from udec_ia.layout.table import StaleLayout
-from udec_ia.printable import printable, visible
-from udec_ia.signals import SIGNALS, Terminated, hold, passing, terminate
+from udec_ia.file_replacement import takes_files
+from udec_ia.interrupt_signals import SIGNALS, Terminated, hold, passing, terminate
+from udec_ia.layout.field_table import StaleLayout
+from udec_ia.printable_text import printable, visible
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", *WORKSHOP)

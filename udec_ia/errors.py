@@ -7,7 +7,7 @@ where it arose, when it arose in a deck.
 
 from __future__ import annotations
 
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable_text import MESSAGE, printable
 
 ERRORS = {  # number: message, and what to do about it
     1: (

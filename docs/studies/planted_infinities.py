@@ -28,7 +28,7 @@ from udec_ia import Model, UdecError  # noqa: E402
 from udec_ia.checker import check  # noqa: E402
 from udec_ia.heap.accessors import putr  # noqa: E402
 from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.layout.table import read_table  # noqa: E402
+from udec_ia.layout.field_table import read_table  # noqa: E402
 
 Word = tuple[str, int, object]
 PLANTED = {"NaN": np.nan, "infinity": np.inf}

@@ -14,7 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.output.block_drawing import INK, title
 from udec_ia.output.history_graph import COLOURS

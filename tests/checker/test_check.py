@@ -20,7 +20,7 @@ from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, read_table
+from udec_ia.layout.field_table import Field, read_table
 from udec_ia.reader.list_walks import corners, groups
 
 SCHEMES = tuple(ALL_SCHEMES)

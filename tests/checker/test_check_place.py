@@ -9,7 +9,7 @@ from udec_ia import Model
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import Touches, place
-from udec_ia.kernels.audit.block_outlines import end_of
+from udec_ia.kernels.audit.outline_arrays import end_of
 from udec_ia.layout import offsets as g
 
 

@@ -12,15 +12,15 @@ import pytest
 from support.debugger_decks import PILE
 
 from udec_ia import Model
+from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
 from udec_ia.debug.stop_conditions import ContactChange, WordChange
-from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.debug.word_history import find_last_hit
 from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, TABLE, Atlas
-from udec_ia.reader.places import find_number
+from udec_ia.reader.place_grammar import find_number
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas
 
 KEPT_CYCLES = 460
 

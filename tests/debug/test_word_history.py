@@ -25,8 +25,8 @@ from udec_ia.debug.word_history import (
 from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import getr
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, Atlas
-from udec_ia.reader.places import find_number, number_of
+from udec_ia.reader.place_grammar import find_number, number_of
+from udec_ia.reader.word_map import KINDS, Atlas
 
 
 @pytest.fixture(scope="module")

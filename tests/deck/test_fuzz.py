@@ -14,7 +14,7 @@ from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.layout import offsets
-from udec_ia.layout.table import Field, read_table
+from udec_ia.layout.field_table import Field, read_table
 from udec_ia.restart import save
 
 TOOL = Path(__file__).parents[2] / "tools" / "robustness.py"

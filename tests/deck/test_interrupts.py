@@ -19,9 +19,9 @@ from trials.interrupted_commands import SCENE, state
 from udec_ia import Model, UdecError
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.heap.main_array import MainArray
+from udec_ia.interrupt_signals import Terminated, dealt_with, hold, passing, poll, terminate
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model.undo import Undo
-from udec_ia.signals import Terminated, dealt_with, hold, passing, poll, terminate
 
 ROOT = Path(__file__).parents[2]
 

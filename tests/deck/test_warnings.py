@@ -16,7 +16,7 @@ def warn(name: str, category: type[Warning]) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["udec_ia", "udec_ia.running.cycle", "offsets", "naive.shape", __name__, "bench"]
+    "name", ["udec_ia", "udec_ia.running.run_cycles", "offsets", "naive.shape", __name__, "bench"]
 )
 def test_a_warning_of_ours_is_an_error(name: str) -> None:
     for category in (DeprecationWarning, UserWarning, RuntimeWarning):

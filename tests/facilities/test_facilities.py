@@ -22,9 +22,9 @@ from udec_ia.facilities.facility_costs import WITHOUT, costs
 from udec_ia.heap.accessors import puti
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
-from udec_ia.reader.atlas import Atlas
-from udec_ia.running.cycle import prepare
+from udec_ia.layout.field_table import read_table
+from udec_ia.reader.word_map import Atlas
+from udec_ia.running.run_cycles import prepare
 
 BARE = {"blocks and contacts", "domain pass", "watch of the energy"}
 KINDS = {

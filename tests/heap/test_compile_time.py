@@ -13,7 +13,7 @@ import pytest
 from numba.core import config
 from support.handmade_map import two_blocks
 
-from udec_ia.compiling import compile_time
+from udec_ia.compiling import compile_duration
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.model import Model
 from udec_ia.output.run_progress import Report
@@ -28,23 +28,23 @@ def thrice(x: Any) -> Any:
 @contextmanager
 def compiling() -> Iterator[None]:
     """A kernel is compiled inside, and another one for it."""
-    compile_time.begin_compiling()
-    compile_time.begin_compiling()
+    compile_duration.begin_compiling()
+    compile_duration.begin_compiling()
     try:
         yield
     finally:
-        compile_time.end_compiling()
-        compile_time.end_compiling()
+        compile_duration.end_compiling()
+        compile_duration.end_compiling()
 
 
 @pytest.fixture
 def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
     """The account, as if nothing had ever been compiled."""
 
-    class Account(compile_time._Account):
+    class Account(compile_duration._Account):
         seconds = 0.0
 
-    monkeypatch.setattr(compile_time, "_Account", Account)
+    monkeypatch.setattr(compile_duration, "_Account", Account)
     Account.ended = float("-inf")
     return Account
 
@@ -53,7 +53,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
 def fake_time(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
     """A clock that goes when it is told to."""
     now = [100.0]
-    monkeypatch.setattr(compile_time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(compile_duration, "monotonic", lambda: now[0])
     return now
 
 
@@ -66,29 +66,29 @@ def test_what_is_compiled_is_told_and_what_is_found_on_disk_is_not(
     first: Any = kernel(thrice)
     assert [first(x) for x in (np.int32(2), np.float64(2), np.int32(3))] == [6, 6, 9]
     assert caplog.messages == [SAYS]
-    spent = compile_time.compile_seconds()
+    spent = compile_duration.compile_seconds()
     assert spent > 0
-    quiet.ended -= 2 * compile_time.STRETCH  # type: ignore[attr-defined]
+    quiet.ended -= 2 * compile_duration.STRETCH  # type: ignore[attr-defined]
     again: Any = kernel(thrice)
     assert [again(x) for x in (np.int32(2), np.float64(2))] == [6, 6]
-    assert (caplog.messages, compile_time.compile_seconds()) == ([SAYS], spent)
+    assert (caplog.messages, compile_duration.compile_seconds()) == ([SAYS], spent)
     assert again(np.float32(2)) == 6
     assert caplog.messages == [SAYS, SAYS]
-    assert compile_time.compile_seconds() > spent
+    assert compile_duration.compile_seconds() > spent
 
 
 def test_the_clock_of_a_run_stands_still_meanwhile(fake_time: list[float]) -> None:
-    start = compile_time.working_time()
+    start = compile_duration.working_time()
     fake_time[0] += 1
     with compiling():
         fake_time[0] += 30
-        assert compile_time.working_time() - start == 1
+        assert compile_duration.working_time() - start == 1
     with suppress(KeyboardInterrupt), compiling():
         fake_time[0] += 5
         raise KeyboardInterrupt
     fake_time[0] += 2
-    assert compile_time.working_time() - start == 3
-    assert compile_time.compile_seconds() == 35
+    assert compile_duration.working_time() - start == 3
+    assert compile_duration.compile_seconds() == 35
 
 
 def test_the_rate_is_that_of_the_cycles(fake_time: list[float]) -> None:

@@ -19,7 +19,7 @@ from udec_ia.heap.find_lose import find, lose, room
 from udec_ia.heap.main_array import LINE, MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 SCHEMES = tuple(ALL_SCHEMES)
 SIZES: tuple[Offset, ...] = (g.NVBL, g.NVCR, g.NVCN, g.NVDO, g.NVZO, g.NVDE)

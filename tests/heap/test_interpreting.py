@@ -12,16 +12,16 @@ from support.checked_build_marks import without_groups
 from support.interpreted_kernels import both_ways
 
 from udec_ia import Model
-from udec_ia.compiling.interpreting import interpreted, mode, observe
+from udec_ia.compiling.interpreted_kernels import interpreted, mode, observe
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.drive.cycle import passes
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.running.cycle import prepare
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.history_series import run_unwatched
+from udec_ia.running.run_cycles import prepare
 
 LONG, SHORT = 30, 3  # cycles compiled, and cycles interpreted
 

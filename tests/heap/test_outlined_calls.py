@@ -12,7 +12,7 @@ from support.checked_build_marks import without_groups
 from udec_ia.compiling import build_choice
 from udec_ia.compiling.build_choice import DISABLED
 from udec_ia.compiling.kernel_decorators import kernel, outlined
-from udec_ia.compiling.outlined_calls import call_entry, entry, entry_if
+from udec_ia.compiling.non_inlined_calls import call_entry, entry, entry_if
 from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME, Scheme

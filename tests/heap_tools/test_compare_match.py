@@ -21,7 +21,7 @@ from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.heap_tools.state_comparison import compare
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_tables import table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -22,8 +22,8 @@ from udec_ia.heap_tools.comparison_report import diff, raw
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.heap_tools.state_comparison import compare, real_differences, tolerance
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
 from udec_ia.reader.group_tables import table
+from udec_ia.reader.word_map import Atlas
 from udec_ia.restart import save
 
 PATCHES = 60

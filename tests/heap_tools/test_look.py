@@ -16,9 +16,9 @@ from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.memory_use import junk
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts
-from udec_ia.reader.atlas import JUNK, UNUSED, Atlas
+from udec_ia.layout.field_table import layouts
 from udec_ia.reader.list_walks import boundary, groups, loop, members
+from udec_ia.reader.word_map import JUNK, UNUSED, Atlas
 
 BUILDS = ["i16r32", "i32r64", "i64r64"]
 

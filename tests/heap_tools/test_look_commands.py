@@ -23,8 +23,8 @@ from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
 from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
 from udec_ia.output.word_dump import raw
-from udec_ia.reader.atlas import Atlas
-from udec_ia.reader.listing import Listing, Stream
+from udec_ia.reader.printed_listing import Listing, Stream
+from udec_ia.reader.word_map import Atlas
 from udec_ia.restart import save
 
 

@@ -23,11 +23,11 @@ from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
 from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.pointer_graph import graph
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.output import heap_picture, place_picture, pointer_picture
 from udec_ia.output.word_dump import raw
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, UNUSED, Atlas
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, UNUSED, Atlas
 from udec_ia.restart import look_into, save
 
 HEADS = [getattr(g, field.name) for field in read_table().common if field.target] + [g.JUNK]

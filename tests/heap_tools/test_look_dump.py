@@ -17,11 +17,11 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_dump import common, dump
 from udec_ia.heap_tools.heap_lookup import what
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.output.word_dump import dump as plain_dump
 from udec_ia.output.word_dump import raw
-from udec_ia.reader import atlas as names
-from udec_ia.reader.atlas import KINDS, Atlas
+from udec_ia.reader import word_map as names
+from udec_ia.reader.word_map import KINDS, Atlas
 
 Row = dict[str, Any]
 

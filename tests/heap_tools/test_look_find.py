@@ -15,9 +15,9 @@ from support.every_group_kind import GROUPS, every_kind
 from udec_ia import Model
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, NOTHING, TABLE, Atlas
-from udec_ia.reader.conditions import LONGEST
+from udec_ia.printable_text import counted
+from udec_ia.reader.group_conditions import LONGEST
+from udec_ia.reader.word_map import JUNK, NOTHING, TABLE, Atlas
 
 CODES = {one.name: one.value for one in TABLE.codes} | {one.name: one.value for one in TABLE.heads}
 SCENES = {build: every_kind(build) for build in ("i16r32", "i32r64")}

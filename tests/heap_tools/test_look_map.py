@@ -23,8 +23,8 @@ from udec_ia.layout import offsets as g
 from udec_ia.output import heap_picture, place_picture, pointer_picture
 from udec_ia.output.drawn_outlines import outlines
 from udec_ia.output.place_picture import outlines_left
-from udec_ia.reader.atlas import NAMES, UNUSED, Atlas
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
+from udec_ia.reader.word_map import NAMES, UNUSED, Atlas
 
 BUILDS = ["i16r32", "i32r64"]
 

@@ -20,7 +20,7 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.heap_tools.rewrite_heap import rewrite
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, Group, read_table
+from udec_ia.layout.field_table import Field, Group, read_table
 from udec_ia.reader.group_tables import table
 
 TABLE = read_table()

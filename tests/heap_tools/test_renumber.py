@@ -15,7 +15,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts, read_table
+from udec_ia.layout.field_table import layouts, read_table
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound, boundary, groups, members
 

@@ -18,10 +18,10 @@ from udec_ia.checker import check
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.memory_words import gaps
-from udec_ia.compiling.interpreting import InterpretWhenSmall, interpreted
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall, interpreted
 from udec_ia.heap import untrusted_lists
 from udec_ia.kernels.audit import domain_faces
-from udec_ia.kernels.audit.block_outlines import in_polygon, in_rounded
+from udec_ia.kernels.audit.outline_arrays import in_polygon, in_rounded
 from udec_ia.layout import offsets as g
 
 RATIO, STEP, SIZE = 2, 1, 4

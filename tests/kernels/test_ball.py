@@ -19,7 +19,7 @@ from support.mechanics_scenes import sound
 
 from udec_ia import Model
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 DECK = Path(__file__).parents[2] / "examples" / "ball-rolling.dat"
 RADIUS, EDGE, DOWN = 1.115, 5**0.5, (-2 / 5**0.5, -1 / 5**0.5)

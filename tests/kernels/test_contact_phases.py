@@ -11,14 +11,14 @@ from support import random_scenes as scenes
 from support.interpreted_kernels import both_ways
 
 from udec_ia import Model
-from udec_ia.compiling.interpreting import interpreted, observe
+from udec_ia.compiling.interpreted_kernels import interpreted, observe
 from udec_ia.heap.accessors import int64, size_of
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.contact.ford import ford
 from udec_ia.kernels.energy.work_account import note_contact
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.layout.field_table import read_table
+from udec_ia.ops.laws.registered_laws import LawBook
 
 pytestmark = both_ways
 

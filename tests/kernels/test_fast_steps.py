@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from udec_ia import Model, UdecError
-from udec_ia.compiling.outlined_calls import entry
+from udec_ia.compiling.non_inlined_calls import entry
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.kernels.detect.tunnelling import gone_through
+from udec_ia.kernels.detect.passage_through_block import gone_through
 from udec_ia.kernels.drive import cycle as passes
 from udec_ia.layout import offsets as g
 from udec_ia.running import history_series

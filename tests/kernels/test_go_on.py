@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from udec_ia import Model
-from udec_ia.files import last_number
+from udec_ia.file_replacement import last_number
 
 
 @pytest.fixture

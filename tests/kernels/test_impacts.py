@@ -21,7 +21,7 @@ from support.watched_model import Over, WatchedModel
 from trials import impact_search
 
 from udec_ia import Model, UdecError
-from udec_ia.compiling.compile_time import compile_seconds
+from udec_ia.compiling.compile_duration import compile_seconds
 from udec_ia.heap.accessors import putr
 from udec_ia.kernels.geometry.contact_geometry import faces
 from udec_ia.layout.offsets import DTOL, FIXED, KYD, TDEL

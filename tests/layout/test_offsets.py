@@ -17,8 +17,17 @@ from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets
-from udec_ia.layout.codes import spelled
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, Group, Table, TableError, lay_out, parse, read_table
+from udec_ia.layout.code_names import spelled
+from udec_ia.layout.field_table import (
+    COMMON_TYPES,
+    RATIOS,
+    Group,
+    Table,
+    TableError,
+    lay_out,
+    parse,
+    read_table,
+)
 
 TABLE = read_table()
 GROUPS = pytest.mark.parametrize("group", TABLE.groups, ids=lambda group: group.name)

@@ -13,7 +13,7 @@ from naive.stiffness import Scene
 from support.mechanics_scenes import box, model, sound
 
 from udec_ia import Model
-from udec_ia.advice.step_warnings import step_warning
+from udec_ia.advice.time_step_warnings import step_warning
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g

@@ -20,8 +20,8 @@ from udec_ia.kernels.constitutive.block_laws import stress_increment
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import _compiled, read_laws
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.restart import info
 
 ROOT = Path(__file__).parents[2]
@@ -95,7 +95,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.constitutive import block_laws as kernels
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 
 states = np.random.default_rng(1).normal(size=(20, 6)) * [1e6, 1e6, 1e6, 1e-3, 1e-3, 1e-3]
 for build in ("i32r64", "i32r32"):

@@ -14,7 +14,7 @@ from support.mechanics_scenes import G, at, block, no_damping, on_base, push, so
 from test_mechanics_energy import cycle_and_energy
 
 from udec_ia import Model
-from udec_ia.compiling.interpreting import interpreted
+from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import NERR, WFRIC
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets
-from udec_ia.layout.table import lay_out, read_table
+from udec_ia.layout.field_table import lay_out, read_table
 
 TABLE = read_table()
 CODES = {head.value: head.group for head in TABLE.heads}

@@ -11,7 +11,7 @@ import numpy as np
 
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.layout import offsets
-from udec_ia.layout.table import lay_out, read_table
+from udec_ia.layout.field_table import lay_out, read_table
 from udec_ia.reader.group_tables import table
 
 TABLE = read_table()

@@ -16,7 +16,7 @@ import numpy as np
 
 from naive.layout import count_words
 from udec_ia.heap.main_array import MainArray, variable
-from udec_ia.layout.table import COMMON_TYPES, Group, Table, read_table
+from udec_ia.layout.field_table import COMMON_TYPES, Group, Table, read_table
 from udec_ia.reader.group_tables import table as rows_of
 from udec_ia.restart.file_seal import SIZE, seal
 from udec_ia.restart.file_tables import text

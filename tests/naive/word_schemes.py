@@ -13,7 +13,7 @@ from naive.census import census
 from naive.layout import count_words
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets
-from udec_ia.layout.table import SCHEMES, read_table
+from udec_ia.layout.field_table import SCHEMES, read_table
 
 TABLE = read_table()
 LETTER = {("int", 16): "h", ("int", 32): "i", ("int", 64): "q", ("real", 32): "f", ("real", 64): "d"}

@@ -18,7 +18,7 @@ from udec_ia import Model, UdecError
 from udec_ia.checker import check, check_links
 from udec_ia.heap.accessors import getr, iget, puti
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.history_definitions import define, named
 from udec_ia.reader.recordable_numbers import recordable
 from udec_ia.running.history_series import ROWS, Recording

@@ -7,7 +7,7 @@ import pytest
 from udec_ia import Model
 from udec_ia.errors import ADVICE, ERRORS, OVERLAP_TOO_GREAT, UdecError
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.cycle_errors import raise_error
 
 

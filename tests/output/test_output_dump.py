@@ -10,7 +10,7 @@ from udec_ia.heap.accessors import Memory, puti, putr
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import lay_out, read_table
+from udec_ia.layout.field_table import lay_out, read_table
 from udec_ia.output.word_dump import dump
 from udec_ia.reader.list_walks import corners, groups
 

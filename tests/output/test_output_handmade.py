@@ -8,7 +8,7 @@ from support.handmade_map import two_blocks
 from udec_ia.heap.accessors import Memory, iget
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.list_walks import boundary, corners, groups, kind_of, loop, reverse
 
 SCHEMES = tuple(ALL_SCHEMES)

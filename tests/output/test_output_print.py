@@ -10,7 +10,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.output.printed_tables import LINE, printout
 from udec_ia.reader.list_walks import boundary, corners, groups, loop
 from udec_ia.studies.verification_tools import fan

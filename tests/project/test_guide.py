@@ -11,7 +11,7 @@ import pytest
 
 from udec_ia import Model
 from udec_ia.errors import MESSAGES
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "program-guide.md"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from udec_ia.printable import folded
+from udec_ia.printable_text import folded
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from time import process_time
 import pytest
 
 from udec_ia import Model
-from udec_ia.advice.step_warnings import describe_step
+from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.memory_use import heap_map
@@ -24,7 +24,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.output import history_files as histories
 from udec_ia.output.drawn_outlines import snapshot
 from udec_ia.output.plot_frames import Frame, What
-from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.word_map import Atlas
 from udec_ia.running.critical_step import bound
 
 ALL = (-1.0, 1e6, -1.0, 1e6)

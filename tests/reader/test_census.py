@@ -14,9 +14,9 @@ from support import random_deformable_scenes as soft_scenes
 from support import random_scenes as scenes
 
 from udec_ia import Model
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import puti
-from udec_ia.heap.census import census
+from udec_ia.heap.group_census import census
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import Unsound

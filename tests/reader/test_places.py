@@ -12,8 +12,8 @@ from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
-from udec_ia.reader.places import PlaceError, PlaceName, address_of, find_number, read_place, stretch
+from udec_ia.reader.place_grammar import PlaceError, PlaceName, address_of, find_number, read_place, stretch
+from udec_ia.reader.word_map import Atlas
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import LISTS, Unsound, corners, groups
 

@@ -17,7 +17,7 @@ from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.restart import load, save
 
 ROOT = Path(__file__).parents[2]

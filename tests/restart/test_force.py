@@ -19,7 +19,7 @@ from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart import info, look_into, read_stored_state

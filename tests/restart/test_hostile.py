@@ -18,8 +18,8 @@ from damage.storage_edits import packed_names
 
 from udec_ia import Model
 from udec_ia.errors import UdecError
-from udec_ia.layout.table import TABLE
-from udec_ia.printable import printable
+from udec_ia.layout.field_table import TABLE
+from udec_ia.printable_text import printable
 from udec_ia.restart import info
 from udec_ia.restart.file_seal import SIZE, seal
 from udec_ia.restart.file_tables import text

@@ -16,7 +16,7 @@ from naive.relocate import differences, essence
 from support.every_group_kind import every_kind
 
 from udec_ia import Model
-from udec_ia.layout.table import TABLE, read_table
+from udec_ia.layout.field_table import TABLE, read_table
 from udec_ia.restart import read_stored_state
 
 ROOT = Path(__file__).parents[2]

@@ -23,7 +23,7 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.written_state import TranslationError, words_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import TABLE, parse, read_table
+from udec_ia.layout.field_table import TABLE, parse, read_table
 from udec_ia.restart import info, look_into, read_stored_state
 
 TEXT = TABLE.read_text()

@@ -24,7 +24,7 @@ from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import lay_out, read_table
+from udec_ia.layout.field_table import lay_out, read_table
 from udec_ia.restart import info, load, save
 from udec_ia.restart import restart_writer as writing
 

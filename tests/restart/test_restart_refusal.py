@@ -15,7 +15,7 @@ from udec_ia import Model, __version__
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
-from udec_ia.layout.table import COMMON_TYPES, TABLE, parse
+from udec_ia.layout.field_table import COMMON_TYPES, TABLE, parse
 from udec_ia.restart import info, load, save
 from udec_ia.restart.file_seal import SIZE, seal
 from udec_ia.restart.file_tables import text

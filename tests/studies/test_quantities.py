@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from udec_ia import Model
-from udec_ia.reader.conditions import Wrong
+from udec_ia.reader.group_conditions import Wrong
 from udec_ia.studies.execute_run import execute
 from udec_ia.studies.quantities import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.study_run import StudyRun

@@ -11,7 +11,7 @@ import pytest
 from support.study_decks import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
 
 from udec_ia.cli import main
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 from udec_ia.studies.run_folder import LOCK, RESULT
 from udec_ia.studies.study_run import RunResult
 from udec_ia.studies.worker_pool import RUNS, run_all

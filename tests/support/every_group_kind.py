@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from support.mechanics_scenes import box, model
 from udec_ia import Model
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 # nothing makes joint data yet, and CYCLE alone makes relaxations
 GROUPS = [group for group in read_table().groups if group.name not in ("jointext", "relax")]

@@ -8,7 +8,7 @@ import pytest
 from naive.relocate import differences, essence
 
 from udec_ia.compiling.build_choice import DISABLED
-from udec_ia.compiling.interpreting import interpreted
+from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.model import Model
 
 both_ways = pytest.mark.skipif(DISABLED, reason="there is one way only")

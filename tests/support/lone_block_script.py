@@ -11,7 +11,7 @@ from hashlib import sha256
 
 from udec_ia import Model
 from udec_ia.compiling.kernel_decorators import outlined
-from udec_ia.compiling.outlined_calls import entry
+from udec_ia.compiling.non_inlined_calls import entry
 from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive import cycle as passes
 

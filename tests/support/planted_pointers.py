@@ -19,11 +19,11 @@ import numpy as np
 from udec_ia import Model
 from udec_ia.checked_build.access_checks import find_kinds, shadow
 from udec_ia.compiling.build_choice import CHECKED
-from udec_ia.compiling.interpreting import interpreted
+from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.errors import WrongAddress
-from udec_ia.heap.census import census
+from udec_ia.heap.group_census import census
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts, read_table
+from udec_ia.layout.field_table import layouts, read_table
 
 TABLE = read_table()
 

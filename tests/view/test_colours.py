@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from udec_ia.reader.atlas import NAMES
+from udec_ia.reader.word_map import NAMES
 from udec_ia.view.view_page import WEB
 
 SEEN_AS = {

@@ -20,7 +20,7 @@ from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.word_map import Atlas
 from udec_ia.view import Page, view_page
 
 INTS = {16: "h", 32: "i", 64: "q"}

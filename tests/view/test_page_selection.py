@@ -8,7 +8,7 @@ from support.view_page import ViewCase, addresses, arrived, inked, needs_browser
 
 from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
+from udec_ia.reader.word_map import Atlas
 
 pytestmark = needs_browser
 

@@ -27,8 +27,8 @@ from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import domain_polygons
-from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, Atlas, called
 from udec_ia.reader.field_rows import NOT_ALLOWED, meaning
+from udec_ia.reader.word_map import ASTRAY, JUNK, KINDS, Atlas, called
 from udec_ia.view.view_data import state, tables
 from udec_ia.view.view_page import LIMIT, script
 

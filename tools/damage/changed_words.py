@@ -39,7 +39,7 @@ from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets
-from udec_ia.layout.table import Field
+from udec_ia.layout.field_table import Field
 from udec_ia.reader.field_reading import TABLE
 from udec_ia.restart import load, save
 from udec_ia.running.history_series import Series

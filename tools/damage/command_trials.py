@@ -40,12 +40,12 @@ from damage.hostile_files import SECRET, hostile
 from damage.storage_edits import one
 
 from udec_ia import cli
-from udec_ia.compiling.compile_time import working_time
+from udec_ia.compiling.compile_duration import working_time
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
-from udec_ia.reader.atlas import KINDS
+from udec_ia.layout.field_table import read_table
+from udec_ia.reader.word_map import KINDS
 from udec_ia.restart import info, load, save
 
 TOOL = Path(__file__).parents[1] / "damaged_files.py"

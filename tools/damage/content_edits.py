@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from damage.storage_edits import TEXTS, File, Rng, one, take
 
-from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, TableError, parse, read_table
+from udec_ia.layout.field_table import COMMON_TYPES, TABLE, Table, TableError, parse, read_table
 from udec_ia.restart.file_tables import text
 
 WORDS = [

@@ -67,7 +67,7 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
     ),
     "interpreting when small": (
         CHECK,
-        "from udec_ia.compiling.interpreting import InterpretWhenSmall\n"
+        "from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall\n"
         "InterpretWhenSmall.always_compiled = True",
         {},
     ),

@@ -22,8 +22,8 @@ from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, TABLE, Atlas
-from udec_ia.reader.places import find_number
+from udec_ia.reader.place_grammar import find_number
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas
 
 QUIET = re.compile(r"(PLOT|PRINT|SAVE|STOP|END)\b.*", re.IGNORECASE)  # commands that do not run
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia import Model, UdecError, signals
+from udec_ia import Model, UdecError, interrupt_signals
 from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.deck_statements import statements
 from udec_ia.layout.offsets import MCTOT, MFREE, NCYC
@@ -67,7 +67,7 @@ def state(model: Model) -> dict[str, Any]:
 
 
 PACKAGE = str(Path(sys.modules["udec_ia"].__file__ or "").parent)
-NOT_COUNTED = str(Path(PACKAGE) / "signals.py")
+NOT_COUNTED = str(Path(PACKAGE) / "interrupt_signals.py")
 RAISED: tuple[type[BaseException], ...] = (KeyboardInterrupt, MemoryError)
 COMMANDS = """BLOCK 0,0 0,4 1,5 6,4 6,0
 SPLIT 4 3.1 7 3.3
@@ -164,8 +164,8 @@ def forget_holds(depth: int) -> None:
     What is raised here at the line of a `with` on the way out comes before its end, which is then left out.
     No signal raises there: it waits until that end.
     """
-    signals._waiting.depth = depth
-    signals._waiting.passing = signals._waiting.firm = False
+    interrupt_signals._waiting.depth = depth
+    interrupt_signals._waiting.passing = interrupt_signals._waiting.firm = False
 
 
 class Lines:
@@ -208,7 +208,7 @@ class Lines:
             self.fresh(line)
             before = state(self.model)
         k = 1 + k % self.counts[key]
-        depth = signals._waiting.depth
+        depth = interrupt_signals._waiting.depth
         with Injector(k, exception) as injector:
             try:
                 self.obey(line, typed)

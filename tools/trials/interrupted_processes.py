@@ -5,8 +5,8 @@
 First KeyboardInterrupt (Ctrl-C that does not wait) or MemoryError is raised at random lines of Python inside
 every command of a model with blocks of all types, conditions, histories and pictures, typed, in Python, and
 two of them obeyed as one. Words, common block and what the model holds in Python are compared with those
-before and after bit for bit; a CYCLE may also have ended between two cycles. Lines of signals.py are left
-out: what holds interrupts back is not interrupted itself.
+before and after bit for bit; a CYCLE may also have ended between two cycles. Lines of interrupt_signals.py
+are left out: what holds interrupts back is not interrupted itself.
 
 Then SIGINT or SIGTERM is sent to processes that run random decks, at random moments. The restart file that
 they name has to be sound, and the exit status true.

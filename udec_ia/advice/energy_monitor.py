@@ -29,8 +29,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.advice.chatter_monitor import JUDGE
-from udec_ia.advice.step_warnings import fraction_line, safe_fraction, step_warning
+from udec_ia.advice.contact_chatter_monitor import JUDGE
+from udec_ia.advice.time_step_warnings import fraction_line, safe_fraction, step_warning
 from udec_ia.errors import OUT_OF_NOWHERE, UdecError
 from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
@@ -48,7 +48,7 @@ from udec_ia.ops.common.deformable_scene import soft_in
 from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.running.critical_step import bound
 from udec_ia.running.group_names import name_of
-from udec_ia.running.stiffness_bound import Limit, damped_step
+from udec_ia.running.stiffness_bound import StepLimit, damped_step
 
 SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
 FACTOR = 10  # what there is over what there can be
@@ -82,7 +82,7 @@ class EnergyMonitor:
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
-        self.safe = Limit(np.inf, 0)
+        self.safe = StepLimit(np.inf, 0)
         self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
         self._warned = (0.0, 0.0)  # step, and what damping left of it
         self._suspected = self._own_laws = False

@@ -19,11 +19,11 @@ from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_o
 from udec_ia.kernels.geometry.tolerances import edges
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.generate_zones import inertia_ratio
 from udec_ia.ops.common.number_limits import NMAT, last_digit
-from udec_ia.printable import counted
-from udec_ia.remark import Remark
+from udec_ia.printable_text import counted
+from udec_ia.remark_key import Remark
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}

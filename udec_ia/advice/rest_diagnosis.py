@@ -19,10 +19,10 @@ from udec_ia.kernels.energy.stored_energy import strain_of_blocks, strain_of_con
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
-from udec_ia.printable import counted
-from udec_ia.remark import Remark
+from udec_ia.printable_text import counted
+from udec_ia.remark_key import Remark
+from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.group_names import contact_name
-from udec_ia.running.observer import Observer, between_cycles
 from udec_ia.running.solve_result import Solution
 
 FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
@@ -31,7 +31,7 @@ MOVED = 0.1  # of the greatest displacement: blocks that moved by more are count
 NAMED = 3  # blocks that are named
 SLIPPED = 0.0015  # of the strain energy: work of friction, and shear that contacts lost as they opened, from
 # which on the loading path matters. Slip of a hundredth of the elastic shear takes a fiftieth of the energy
-# of shear, which may be a tenth of all (tools/studies/ways.py)
+# of shear, which may be a tenth of all (docs/studies)
 ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
 
 

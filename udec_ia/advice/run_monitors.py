@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from udec_ia.advice.chatter_monitor import ChatterMonitor
+from udec_ia.advice.contact_chatter_monitor import ChatterMonitor
 from udec_ia.advice.energy_monitor import EnergyMonitor
-from udec_ia.advice.step_warnings import is_safe
+from udec_ia.advice.time_step_warnings import is_safe
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.running.observer import Observer, between_cycles
+from udec_ia.ops.laws.registered_laws import LawBook
+from udec_ia.running.cycle_observer import Observer, between_cycles
 
 
 class RunMonitors(Observer):

@@ -23,10 +23,10 @@ from udec_ia.compiling.build_choice import JITABLE, numba_form
 from udec_ia.compiling.kernel_decorators import Kernel
 from udec_ia.compiling.kernel_memory import Memory
 from udec_ia.errors import DAMAGED, WrongAddress
-from udec_ia.heap.census import census
+from udec_ia.heap.group_census import census
 from udec_ia.heap.junk_list import junk_chains
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts
+from udec_ia.layout.field_table import layouts
 
 ADVICE = "udec check shows which pointer is wrong; if none is, the routine is wrong: keep this deck"
 NOTES = 5  # what an access that was refused leaves behind: routine, address, field, element, 1 if it writes

@@ -13,7 +13,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 TABLE = read_table()
 NOTHING = 0  # no group begins at an address

@@ -9,8 +9,8 @@ import numpy as np
 
 from udec_ia.checker.block_members import zoned
 from udec_ia.checker.checked_state import State
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.kernels.audit.block_outlines import (
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.kernels.audit.outline_arrays import (
     Outlines,
     fill_blocks,
     fill_circles,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.untrusted_lists import STRETCH, rows_of
 from udec_ia.layout import offsets as g

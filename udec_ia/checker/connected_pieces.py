@@ -13,8 +13,8 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_map import SIDES
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.kernels.audit.block_outlines import Outlines, rounded
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.kernels.audit.outline_arrays import Outlines, rounded
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import Numbers
 

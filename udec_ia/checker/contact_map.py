@@ -17,11 +17,11 @@ from collections import Counter
 import numpy as np
 
 from udec_ia.checker.checked_state import State, corner_before
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
 from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
 from udec_ia.layout import offsets as g
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.list_walks import clockwise_link
 

@@ -15,17 +15,17 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_map import AHEAD
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.kernels.audit.block_outlines import Outlines
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.kernels.audit.contact_positions import (
     OVERLAP,
     PASSED_OVER,
     PLACE,
     disordered,
-    standing,
+    locate_on_outlines,
     touching,
     unlike,
 )
+from udec_ia.kernels.audit.outline_arrays import Outlines
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, kernel_rows
 
@@ -85,7 +85,7 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
             )
 
 
-STANDING = InterpretWhenSmall(standing, 2e5)  # contacts
+STANDING = InterpretWhenSmall(locate_on_outlines, 2e5)  # contacts
 DISORDERED = InterpretWhenSmall(disordered, 2e6)  # items
 
 

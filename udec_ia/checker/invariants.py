@@ -26,8 +26,8 @@ import numpy as np
 
 from udec_ia.checker.block_members import check_members, check_point_masses, check_zone_areas
 from udec_ia.checker.block_outlines import check_outlines, outlines
-from udec_ia.checker.boundary_conditions import check_bounds, check_times
 from udec_ia.checker.checked_state import State, Violation
+from udec_ia.checker.condition_proofs import check_bounds, check_times
 from udec_ia.checker.connected_pieces import check_pieces
 from udec_ia.checker.contact_map import check_map, check_outer
 from udec_ia.checker.contact_places import check_contacts, check_places, touches
@@ -42,7 +42,7 @@ from udec_ia.checker.pointers_and_codes import (
 )
 from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.audit.block_outlines import Outlines
+from udec_ia.kernels.audit.outline_arrays import Outlines
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import KIND_CODE, TABLE
 

@@ -22,8 +22,8 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import Touches
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.kernels.audit.block_outlines import Outlines, in_rounded
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.kernels.audit.outline_arrays import Outlines, in_rounded
 from udec_ia.kernels.audit.outline_intersections import EDGE, crossing, lonely_meetings
 from udec_ia.reader.field_reading import HOSTS, Numbers, kernel_rows
 
@@ -125,7 +125,7 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
 def _lies_in_third(o: Outlines, point: Numbers, depth: float, hosts: tuple[int, int]) -> bool:
     """True if the rounded outline of a third block holds `point` and all that is nearer to it than `depth`.
 
-    That is the depth from which on the program makes no contact there (detect/occupied_gaps.py).
+    That is the depth from which on the program makes no contact there (detect/third_block_in_gap.py).
     """
     near = np.flatnonzero(((o.low <= point) & (point <= o.high)).all(axis=1))
     thirds = near[~np.isin(near, hosts)]

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.checker.checked_state import State
-from udec_ia.compiling.interpreting import interpreted
+from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.errors import MESSAGES
-from udec_ia.heap.census import SOFT, one_of
+from udec_ia.heap.group_census import SOFT, one_of
 from udec_ia.heap.main_array import variable
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g

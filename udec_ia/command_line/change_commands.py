@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import Look, Script, command, file
 from udec_ia.errors import UdecError
-from udec_ia.printable import folded, printable
+from udec_ia.printable_text import folded, printable
 
 if TYPE_CHECKING:
     from udec_ia.checker import Violation
     from udec_ia.heap.main_array import MainArray
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart.restart_reader import Restored
 
 VERBS = ("convert", "renumber", "patch")
@@ -38,7 +38,7 @@ save_changed(state, {array}, {to!r}, {line!r})"""
 
 def add_commands(commands: Any) -> None:
     """Add them to those of `udec`."""
-    from udec_ia.layout.table import SCHEMES
+    from udec_ia.layout.field_table import SCHEMES
 
     text = "write a restart file in another word scheme"
     convert = _change(commands, "convert", text, _convert, _convert_script)
@@ -71,7 +71,7 @@ def _convert(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.word_scheme import scheme
     from udec_ia.heap_tools.convert_word_scheme import prove
     from udec_ia.heap_tools.rewrite_heap import rewrite
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
 
     state = _read(args)
     fresh = rewrite(state.array, scheme(args.build))
@@ -109,7 +109,7 @@ def _renumber_script(args: argparse.Namespace) -> str:
 
 def _patch(args: argparse.Namespace) -> Listing:
     from udec_ia.heap_tools.patch_words import patch
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
 
     state = _read(args)
     done = patch(state.array, *args.assignments, force=True)
@@ -167,7 +167,7 @@ def _write(
 ) -> Listing:
     """TO, unless the state is not sound: then only if it is forced."""
     from udec_ia.checker import in_short
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart import save_changed
 
     to = printable(str(args.to))

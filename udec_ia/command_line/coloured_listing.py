@@ -17,11 +17,11 @@ from rich.style import Style
 from rich.text import Text
 
 from udec_ia.heap_tools.memory_use import PICTURE
-from udec_ia.printable import visible
-from udec_ia.reader.atlas import ASTRAY, JUNK, KINDS, NOTHING, UNUSED
+from udec_ia.printable_text import visible
 from udec_ia.reader.field_rows import NOT_ALLOWED
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
-from udec_ia.reader.listing import Line, Listing, Tables
+from udec_ia.reader.printed_listing import Line, Listing, Tables
+from udec_ia.reader.word_map import ASTRAY, JUNK, KINDS, NOTHING, UNUSED
 
 ROOM = 20  # characters that the last column must have, to be folded within itself
 INDENT = 13  # characters before what has no room beside the rest

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import DAMAGED, UdecError
-from udec_ia.printable import folded, visible
+from udec_ia.printable_text import folded, visible
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.reader.printed_listing import Listing, Tables
 
 MISUSE = 2
 SECONDS = {"": 1.0, "s": 1.0, "m": 60.0, "h": 3600.0}

@@ -9,7 +9,7 @@ from typing import Any
 
 from udec_ia.command_line.command_options import MISUSE, given, variables, word_scheme
 from udec_ia.deck.deck_statements import read_deck
-from udec_ia.printable import visible
+from udec_ia.printable_text import visible
 
 VERBS = ("debug",)
 

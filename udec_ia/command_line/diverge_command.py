@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, variables
 from udec_ia.errors import UdecError
-from udec_ia.printable import counted, printable
+from udec_ia.printable_text import counted, printable
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.divergence import Divergence, SteppedRun
 
 VERBS = ("diverge",)
@@ -118,7 +118,7 @@ def _run(
 
 def _diverge(args: argparse.Namespace) -> Listing:
     """What a deck writes goes to a folder that is taken away. An error of a run is trouble: ValueError."""
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.divergence import find_divergence
 
     builds, paths = _builds(args), (args.file, args.other or args.file)
@@ -137,7 +137,7 @@ def _diverge(args: argparse.Namespace) -> Listing:
 
 
 def _sentences(found: Divergence, kept: list[Path]) -> list[str]:
-    from udec_ia.printable import printable
+    from udec_ia.printable_text import printable
 
     when = f"in cycle {found.cycle}"
     if not found.in_pass:

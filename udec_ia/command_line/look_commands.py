@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from udec_ia.command_line.command_options import command, file
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
 
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
 PLACE: dict[str, Any] = {
@@ -40,7 +40,7 @@ class Call(NamedTuple):
 
     def on(self, path: Path) -> Listing:
         """What it finds in a restart file."""
-        from udec_ia.reader.atlas import Atlas
+        from udec_ia.reader.word_map import Atlas
         from udec_ia.restart import look_into
 
         array = look_into(path)
@@ -52,7 +52,7 @@ class Call(NamedTuple):
         named = (f"{name}={_literal(one)}" for name, one in self.named.items())
         given = [self.subject, *map(_literal, self.given), *named]
         return (
-            f"from udec_ia.{self.module} import {self.function}\nfrom udec_ia.reader.atlas import Atlas\n"
+            f"from udec_ia.{self.module} import {self.function}\nfrom udec_ia.reader.word_map import Atlas\n"
             f"from udec_ia.restart import look_into\n\n"
             f"array = look_into({str(path)!r})  # of a model: model.array\natlas = Atlas(array.h)\n"
             f"print({self.function}({', '.join(given)}).as_text(), end='')"
@@ -60,7 +60,7 @@ class Call(NamedTuple):
 
 
 def _place(text: str) -> int | str:
-    """The argument PLACE: an integer, or text for udec_ia.reader.places."""
+    """The argument PLACE: an integer, or text for udec_ia.reader.place_grammar."""
     return int(text) if re.fullmatch(r"[+-]?\d+", text) else text
 
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, file, seconds
 from udec_ia.errors import UdecError
-from udec_ia.printable import counted, printable
+from udec_ia.printable_text import counted, printable
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.reader.printed_listing import Listing, Tables
 
 VERBS = ("info", "check", "diff")
 INFO = """\
@@ -70,7 +70,7 @@ def _info(args: argparse.Namespace) -> Listing | Tables:
 def _known(args: argparse.Namespace) -> Tables:
     """What the file says about itself, and what its words show, if they can be read here."""
     from udec_ia.facilities.facilities_in_use import facilities, facilities_without_effect
-    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.reader.printed_listing import Listing, Tables
     from udec_ia.restart import info, look_into
 
     parts = {"file": Listing(info(args.file).splitlines())}
@@ -96,7 +96,7 @@ def _info_script(args: argparse.Namespace) -> str:
 def _check(args: argparse.Namespace) -> Listing:
     """All violations in a file, sound or not, and what was not judged."""
     from udec_ia.checker import check, unjudged
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart import read_stored_state
 
     seen = read_stored_state(args.file)

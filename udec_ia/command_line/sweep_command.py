@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, given, seconds, study_options
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
 
 VERBS = ("sweep",)
 TEXT = "run a deck for all combinations of values of its variables: a table with a row for each run"
@@ -38,7 +38,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _sweep(args: argparse.Namespace) -> Listing:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.study_run import DIED, ERROR
     from udec_ia.studies.sweep import grid, sweep
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from udec_ia.command_line.command_options import command, given, names, seconds, study_options, variables
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.reader.printed_listing import Listing, Tables
     from udec_ia.studies.setting_runner import Options, SettingRunner
 
 VERBS = ("trade",)
@@ -57,7 +57,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.accuracy_report import (
         COLUMNS,
         answer,
@@ -99,7 +99,7 @@ def _runner(args: argparse.Namespace) -> SettingRunner:
 
 
 def _digits(args: argparse.Namespace) -> Listing | Tables:
-    from udec_ia.reader.listing import Listing, Tables
+    from udec_ia.reader.printed_listing import Listing, Tables
     from udec_ia.studies.significant_digits import (
         COLUMNS,
         ENSEMBLE,
@@ -123,7 +123,7 @@ def _digits(args: argparse.Namespace) -> Listing | Tables:
 
 
 def _levers(args: argparse.Namespace) -> Listing:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.model_levers import COLUMNS, FACTORS, vary_lever
 
     levers = names("--levers", args.levers, FACTORS)

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import command, names
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.verification import Problem, ProblemResult
 
 VERBS = ("verify",)
@@ -56,7 +56,7 @@ def _cases(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 def _verify(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.word_scheme import scheme
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.studies.verification import solve_problems
 
     problems, (builds, blocks) = _problems(args), _cases(args)

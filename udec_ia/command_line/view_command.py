@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from udec_ia.command_line.command_options import command
 
 if TYPE_CHECKING:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
 
 VERBS = ("view",)
 TEXT = "write a page for a browser that shows IA() beside the blocks, for one state or several"
@@ -32,7 +32,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _view(args: argparse.Namespace) -> Listing:
-    from udec_ia.reader.listing import Listing
+    from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart import deck_in, look_into
     from udec_ia.view import Page
 

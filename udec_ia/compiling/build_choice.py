@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 DISABLED = os.environ.get("NUMBA_DISABLE_JIT", "") not in ("", "0")  # as numba reads it: nothing is compiled
 CHECKED = os.environ.get("UDEC_CHECKED", "") not in ("", "0")
-TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which linking.py was tried
+TRIED = (0, 61), (0, 68)  # the first and the last release of numba on which kernel_linking.py was tried
 JITABLE = "numba.extending:register_jitable"
 _pending: list[tuple[str, Any]] = []  # forms that are not yet registered with numba
 
@@ -47,7 +47,7 @@ def load() -> None:
 
 
 def plain_wanted() -> bool:
-    """True if kernels are to be compiled without linking.py: on request, or as numba may have changed."""
+    """True if kernels are compiled without kernel_linking.py: on request, or as numba may have changed."""
     import numba
 
     release = tuple(int(part) for part in numba.__version__.split(".")[:2])

@@ -26,7 +26,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 
 from udec_ia.compiling.build_choice import CHECKED, plain_wanted
-from udec_ia.compiling.compile_time import begin_compiling, end_compiling
+from udec_ia.compiling.compile_duration import begin_compiling, end_compiling
 from udec_ia.layout import offsets as g
 
 PACKAGE = Path(__file__).parent.parent

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from udec_ia.compiling.build_choice import CHECKED, DISABLED, checked_build, load, numba_form, plain_wanted
-from udec_ia.compiling.interpreting import ObservedMemory, interpreted, mode
+from udec_ia.compiling.interpreted_kernels import ObservedMemory, interpreted, mode
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 @numba_form("udec_ia.compiling.instructions_numba:type_of_kernels")
 class Kernel:
-    """A kernel: compiled when it is first called, or run as Python where kernels are (interpreting.py).
+    """A kernel: compiled when it is first called, or run as Python (interpreted_kernels.py).
 
     inline, outlined, counted: as the decorators below set them.
     """
@@ -51,7 +51,7 @@ class Kernel:
             plain = njit(**flags)(self.py_func)
             use_cache(plain, folder)
             return plain
-        from udec_ia.compiling.linking import LinkedKernel
+        from udec_ia.compiling.kernel_linking import LinkedKernel
 
         return LinkedKernel(self.py_func, folder, self.outlined, **flags)
 
@@ -74,7 +74,7 @@ def inlined(function: F) -> F:
 
 
 def outlined(function: F) -> F:
-    """A kernel that other kernels call by its address (outlined_calls.py)."""
+    """A kernel that other kernels call by its address (non_inlined_calls.py)."""
     return kernel(function, outlined=True)
 
 

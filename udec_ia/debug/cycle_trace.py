@@ -17,13 +17,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import interpreted, observe
+from udec_ia.compiling.interpreted_kernels import interpreted, observe
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.history_series import run_unwatched
 

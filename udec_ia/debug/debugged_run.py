@@ -12,19 +12,19 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import Any
 
+from udec_ia.debug.cycle_snapshots import BUDGET, Timeline
 from udec_ia.debug.cycle_trace import CycleTrace
 from udec_ia.debug.stop_conditions import StopCondition
-from udec_ia.debug.timeline import BUDGET, Timeline
 from udec_ia.debug.word_history import describe_event, find_last_hit, is_cycle
 from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.deck_statements import Line, Statement, tokens
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
+from udec_ia.interrupt_signals import poll
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
-from udec_ia.running.observer import Observer
-from udec_ia.signals import poll
+from udec_ia.reader.word_map import Atlas
+from udec_ia.running.cycle_observer import Observer
 
 PIECE_SECONDS = 0.02
 FIRST_PIECE = 16  # cycles

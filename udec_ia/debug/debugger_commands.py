@@ -1,7 +1,7 @@
 """Commands of the debugger: running forwards and back, breaks and watches, and reading words.
 
 Each command prints lines and may move the event that is shown. `step`, `continue` and `goto` continue the run
-where they lead beyond what has been run. Names of words are those of places.py.
+where they lead beyond what has been run. Names of words are those of place_grammar.py.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 
 from udec_ia.checker import check
 from udec_ia.debug import word_history
+from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
 from udec_ia.debug.stop_conditions import (
     COMPARED,
@@ -21,7 +22,6 @@ from udec_ia.debug.stop_conditions import (
     WordChange,
     format_number,
 )
-from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.heap_dump import ALONE, common, dump
 from udec_ia.heap_tools.heap_lookup import walk, what, who
@@ -30,9 +30,9 @@ from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.heap_tools.pointer_graph import graph
 from udec_ia.layout import offsets as g
-from udec_ia.printable import folded
-from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import address_of, find_number
+from udec_ia.printable_text import folded
+from udec_ia.reader.place_grammar import address_of, find_number
+from udec_ia.reader.printed_listing import Listing
 
 INSIDE = ("pass", "group", "write")
 LISTED = 5  # lines of the deck before and after

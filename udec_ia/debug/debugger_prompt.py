@@ -8,17 +8,17 @@ from contextlib import suppress
 from threading import current_thread, main_thread
 from typing import Any, TextIO, cast
 
+from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger
 from udec_ia.debug.debugger_commands import DebuggerCommands
-from udec_ia.debug.timeline import UnreachableEvent
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
 from udec_ia.errors import UdecError
+from udec_ia.interrupt_signals import dealt_with, hold, passing
 from udec_ia.layout import offsets as g
-from udec_ia.printable import visible
-from udec_ia.reader.atlas import TABLE
-from udec_ia.signals import dealt_with, hold, passing
+from udec_ia.printable_text import visible
+from udec_ia.reader.word_map import TABLE
 
 ALIASES = {
     "c": "continue",

@@ -14,11 +14,11 @@ import numpy as np
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
-from udec_ia.reader.conditions import satisfying
+from udec_ia.reader.group_conditions import satisfying
 from udec_ia.reader.group_tables import addresses, table
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.reader.places import Place
+from udec_ia.reader.place_grammar import Place
+from udec_ia.reader.word_map import Atlas
 
 GROUPS_MADE = [g.MFREE, g.JUNK, g.NBLK, g.NDOM, g.NMADE, g.NBROKE]  # one changes when a group comes or goes
 COMPARED: dict[str, Callable[[Any, Any], Any]] = {">": gt, "<": lt, ">=": ge, "<=": le, "==": eq}

@@ -1,20 +1,20 @@
 """History of a word: who wrote it, from what its value was computed, and how its group was created.
 
-The last event at which something changed is searched backwards, from copy to copy (timeline.py). If it is a
-cycle, it is repeated and observed (cycle_trace.py). The answer names the routine and the line.
+The last event at which something changed is searched backwards, from copy to copy (cycle_snapshots.py). If it
+is a cycle, it is repeated and observed (cycle_trace.py). The answer names the routine and the line.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from udec_ia.debug.cycle_snapshots import Timeline
 from udec_ia.debug.cycle_trace import Access, CycleTrace
 from udec_ia.debug.stop_conditions import GroupBirth, StopCondition, WordChange, format_number
-from udec_ia.debug.timeline import Timeline
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, Atlas, called
-from udec_ia.reader.places import Place, number_of
+from udec_ia.reader.place_grammar import Place, number_of
+from udec_ia.reader.word_map import KINDS, Atlas, called
 
 MANY = 12  # origins of a value that are shown
 RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"

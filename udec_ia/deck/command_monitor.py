@@ -22,9 +22,9 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.heap.accessors import Memory
+from udec_ia.interrupt_signals import hold, passing, poll
 from udec_ia.layout import offsets as g
-from udec_ia.printable import counted, printable, visible
-from udec_ia.signals import hold, passing, poll
+from udec_ia.printable_text import counted, printable, visible
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
@@ -38,7 +38,7 @@ class Monitor:
     """
 
     def __init__(
-        self, model: Obeying, out: TextIO, *, echo: bool = True, values: Values | None = None
+        self, model: CommandTarget, out: TextIO, *, echo: bool = True, values: Values | None = None
     ) -> None:
         self.model = model
         self.out = out
@@ -230,7 +230,11 @@ def _awaited(lines: Iterable[str]) -> Iterator[str]:
 
 
 def run_deck(
-    model: Obeying, deck: str | Path | TextIO, out: TextIO, values: Values | None = None, name: str = "text"
+    model: CommandTarget,
+    deck: str | Path | TextIO,
+    out: TextIO,
+    values: Values | None = None,
+    name: str = "text",
 ) -> Monitor:
     """Obey a whole deck on `model` and return the monitor that did.
 
@@ -268,7 +272,7 @@ def names_a_file(text: str) -> bool:
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def outcome(call: Call, counts: Counts, n: int, model: Obeying) -> str:
+def outcome(call: Call, counts: Counts, n: int, model: CommandTarget) -> str:
     """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
@@ -299,7 +303,7 @@ class ObeyingSession(Protocol):
         """Log what was obeyed."""
 
 
-class Obeying(Protocol):
+class CommandTarget(Protocol):
     """A model; its commands are found by their names."""
 
     @property

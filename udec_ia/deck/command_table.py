@@ -15,7 +15,7 @@ from udec_ia.deck.deck_statements import quoted
 from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, MESSAGES, UdecError
 from udec_ia.kernels.drive.damping_modes import MODES
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
 
 WIDTH = 96

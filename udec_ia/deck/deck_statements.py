@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple, TextIO
 
 from udec_ia.errors import UdecError
-from udec_ia.printable import printable
+from udec_ia.printable_text import printable
 
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")

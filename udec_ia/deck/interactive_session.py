@@ -15,12 +15,12 @@ from typing import TextIO
 from platformdirs import user_state_dir
 
 from udec_ia.deck.command_forms import Command, match
-from udec_ia.deck.command_monitor import Monitor, Obeying
+from udec_ia.deck.command_monitor import CommandTarget, Monitor
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, obeyed
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.signals import Terminated
+from udec_ia.interrupt_signals import Terminated
 
 PROMPT = "> "
 MORE = f"{CONTINUATION} "
@@ -30,7 +30,7 @@ HISTORY_LENGTH = 1000
 
 
 def converse(
-    model: Obeying, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
+    model: CommandTarget, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
 ) -> None:
     """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
 

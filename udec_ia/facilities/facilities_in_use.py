@@ -1,7 +1,7 @@
 """Which facilities of the program a state uses, what words each takes, and which of them have no effect.
 
 A facility is what a scene may do without: zones, a damping, an account of the energy. A cycle runs what is in
-use and nothing else. Groups are found as in a damaged heap (heap/census.py), so nothing here follows a link.
+use and nothing else. Groups are found as in a damaged heap (heap/group_census.py): nothing follows a link.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.model_settings import PROPERTIES
 from udec_ia.ops.common.number_limits import NMAT
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import Atlas
+from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import chain
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import Atlas
 
 LISTS = {"block": ("KB", g.IBPNT), "contact": ("KC", g.ICPNT), "bound": ("KU", g.IBNPNT)}
 LISTS |= {"signal": ("KT", g.ISGPNT), "history": ("KH", g.IHPNT)}

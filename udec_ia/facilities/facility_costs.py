@@ -22,15 +22,15 @@ from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.kernels.links.relaxations import lose_relaxations
+from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.list_walks import chain
-from udec_ia.reader.listing import Listing
-from udec_ia.running.cycle import cycle, prepare
+from udec_ia.reader.printed_listing import Listing
 from udec_ia.running.history_series import Recording
+from udec_ia.running.run_cycles import cycle, prepare
 
 NEVER = 1e30  # m, a displacement that nothing reaches
 

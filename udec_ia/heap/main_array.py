@@ -20,7 +20,7 @@ from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, Group, Layout, layouts, read_table
+from udec_ia.layout.field_table import Field, Group, Layout, layouts, read_table
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.layout.table import SCHEMES
+from udec_ia.layout.field_table import SCHEMES
 
 
 @dataclass(frozen=True)

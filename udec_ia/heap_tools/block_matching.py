@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.untrusted_lists import groups_along
 from udec_ia.heap_tools.row_matching import Pairs, fold, longest_rising, unique_pairs
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Word
 
 GROUPS_ALONG = InterpretWhenSmall(groups_along, 1e7)  # words
 LOST = -1  # the number of a group that matches none, and of an address without a group

@@ -12,11 +12,11 @@ from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.heap_tools.state_comparison import tolerance as limits
-from udec_ia.layout.codes import spelled
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import KINDS, NAMES, NOTHING, TABLE, Atlas, names
+from udec_ia.layout.code_names import spelled
+from udec_ia.printable_text import counted
 from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
-from udec_ia.reader.listing import Listing, Tables
+from udec_ia.reader.printed_listing import Listing, Tables
+from udec_ia.reader.word_map import KINDS, NAMES, NOTHING, TABLE, Atlas, names
 
 LIMIT = 20  # rows of a table, if it is not said how many
 DISTANCES = ("difference", "relative", "ulp", "unit")

@@ -39,7 +39,7 @@ from udec_ia.heap_tools.written_state import (
     TranslationError,
     Words,
 )
-from udec_ia.layout.table import Field, Group, Table, lay_out
+from udec_ia.layout.field_table import Field, Group, Table, lay_out
 
 
 class Misfit(NamedTuple):
@@ -123,7 +123,7 @@ PIECE = 8192  # groups that are written together: they fit in the machine's cach
 def translate(state: Words, table: Table, scheme: Scheme) -> Words:
     """The same state by `table` in words of `scheme`. Raises TranslationError.
 
-    Where groups go: places.py. Reals of fewer bits are rounded.
+    Where groups go: place_grammar.py. Reals of fewer bits are rounded.
     """
     counted = state.integer("IHPNT") != 0  # a history knows a variable by its number
     work = Translation(state, table, scheme)

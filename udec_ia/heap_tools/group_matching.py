@@ -27,9 +27,9 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap_tools.block_matching import Side, blocks_of, match_blocks, same_shape
-from udec_ia.heap_tools.row_matching import Pairs, exclusive_pairs, fold, most_frequent_pairs, pairs_in_order
+from udec_ia.heap_tools.row_matching import Pairs, exclusive_pairs, fold, frequent_pairs, pairs_in_order
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import KINDS, TABLE, choices
+from udec_ia.reader.word_map import KINDS, TABLE, choices
 
 
 def turned(sides: Sequence[Side], rings: Pairs, many: Any, needed: Any) -> Any:
@@ -210,7 +210,7 @@ class Matching:
             )
         one, two = self.sides
         both = one.atlas.holding("domain", found[0]) & two.atlas.holding("domain", found[1])
-        self._join("domain", *most_frequent_pairs(found[0][both], found[1][both]))
+        self._join("domain", *frequent_pairs(found[0][both], found[1][both]))
 
     def _rest(self) -> None:
         """What is left over, and all pointers of matched groups agree on."""

@@ -14,7 +14,6 @@ import numpy as np
 
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.main_array import variable
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, TABLE, Atlas, Span, leads_to, names
 from udec_ia.reader.field_rows import (
     COLUMNS,
     COMMON,
@@ -27,8 +26,9 @@ from udec_ia.reader.field_rows import (
     span_rows,
     word_width,
 )
-from udec_ia.reader.listing import Listing, Stream
-from udec_ia.reader.places import stretch
+from udec_ia.reader.place_grammar import stretch
+from udec_ia.reader.printed_listing import Listing, Stream
+from udec_ia.reader.word_map import JUNK, KINDS, NAMES, TABLE, Atlas, Span, leads_to, names
 
 ALONE = "common"  # the common block, where a stretch of addresses is asked for
 AT_ONCE = 1024  # spans that are looked at together

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.main_array import variable
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
+from udec_ia.printable_text import counted
 from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
 from udec_ia.reader.group_positions import places
 from udec_ia.reader.list_walks import Unsound, boundary, follow, groups, loop
-from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import address_of
+from udec_ia.reader.place_grammar import address_of
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
 
 
 class Pointers(NamedTuple):

@@ -10,12 +10,12 @@ import numpy as np
 
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.heap_lookup import pointer_rows, pointing
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas, leads_to, names
-from udec_ia.reader.conditions import ADDRESS, satisfying
+from udec_ia.printable_text import counted
 from udec_ia.reader.field_rows import COMMON
-from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import address_of
+from udec_ia.reader.group_conditions import ADDRESS, satisfying
+from udec_ia.reader.place_grammar import address_of
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import JUNK, KINDS, NAMES, NOTHING, TABLE, Atlas, leads_to, names
 
 LIMIT = 1000  # rows, if it is not said how many
 TOLERANCE = 1e-6  # as a share of the value that is looked for

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, UNUSED, Atlas
+from udec_ia.printable_text import counted
 from udec_ia.reader.kind_colours import LETTERS
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import JUNK, KINDS, NAMES, NOTHING, UNUSED, Atlas
 
 
 def junk(atlas: Atlas) -> Listing:

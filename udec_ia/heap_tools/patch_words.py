@@ -19,9 +19,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.reader.atlas import Atlas
-from udec_ia.reader.places import Place, PlaceError, find_number
+from udec_ia.reader.place_grammar import Place, PlaceError, find_number
 from udec_ia.reader.recordable_numbers import HISTORY
+from udec_ia.reader.word_map import Atlas
 
 INTEGER = re.compile(r"[+-]?\d+")
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?")

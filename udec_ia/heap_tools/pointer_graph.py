@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap_tools.heap_lookup import Pointers, pointers
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, Atlas, leads_to, names
+from udec_ia.printable_text import counted
 from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.kind_colours import COLOURS
-from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import address_of
+from udec_ia.reader.place_grammar import address_of
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, Atlas, leads_to, names
 
 NODES = 40  # groups that a graph shows
 ASTRAY = "astray"  # kind of a node that is no group

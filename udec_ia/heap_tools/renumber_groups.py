@@ -21,10 +21,10 @@ from udec_ia.heap_tools.rewrite_heap import groups_in_list_order, junk_words
 from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.list_walks import chain
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
 
 
 def renumber(array: MainArray) -> Listing:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import interpreted
+from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import Scheme
@@ -23,11 +23,11 @@ from udec_ia.heap_tools.field_translation import Fit, Translation
 from udec_ia.heap_tools.written_state import words_of
 from udec_ia.kernels.geometry.tolerances import tolset
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts
-from udec_ia.reader.atlas import Atlas, called, junk_list
+from udec_ia.layout.field_table import layouts
 from udec_ia.reader.field_reading import TABLE, TARGETS
 from udec_ia.reader.group_lists import Lists
 from udec_ia.reader.list_walks import Unsound
+from udec_ia.reader.word_map import Atlas, called, junk_list
 
 
 def groups_in_list_order(array: MainArray) -> dict[str, Any]:

@@ -70,7 +70,7 @@ def votes(one: Any, two: Any) -> tuple[Any, Any, Any]:
     return one[first], two[first], times
 
 
-def most_frequent_pairs(one: Any, two: Any) -> Pairs:
+def frequent_pairs(one: Any, two: Any) -> Pairs:
     """Pairs of the numbers (n,) and (n,) that come together more often than either does with another."""
     a, b, times = votes(one, two)
     best = np.lexsort((b, a, -times))

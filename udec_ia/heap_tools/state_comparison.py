@@ -16,8 +16,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.group_matching import Matching
-from udec_ia.layout.table import Field
-from udec_ia.reader.atlas import KINDS, TABLE
+from udec_ia.layout.field_table import Field
+from udec_ia.reader.word_map import KINDS, TABLE
 
 RELATIVE, ULPS = "relative", "ulp"
 UNITS = sorted({f.unit for part in (*(one.fields for one in TABLE.groups), TABLE.common) for f in part})

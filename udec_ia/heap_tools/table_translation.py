@@ -10,8 +10,8 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from udec_ia.layout.codes import spelled
-from udec_ia.layout.table import Code, Field, Table, lay_out, read_table
+from udec_ia.layout.code_names import spelled
+from udec_ia.layout.field_table import Code, Field, Table, lay_out, read_table
 
 HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
 UNGROUPED = {code.name: code.value for code in read_table().codes_of(KIND)}

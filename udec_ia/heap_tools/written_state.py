@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.heap.census import CHOICES, list_heads, reached
+from udec_ia.heap.group_census import CHOICES, list_heads, reached
 from udec_ia.heap.junk_list import junk_chains
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import Scheme
-from udec_ia.layout.table import Table, lay_out, read_table
+from udec_ia.layout.field_table import Table, lay_out, read_table
 
 JUNK, FREE, TOP = "JUNK", "MFREE", "MTOP"  # variables of the memory
 AT_FAULT = "IERAD"  # a note of an address, which is no pointer

@@ -3,7 +3,7 @@
 Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 """
 
-from udec_ia.layout.table import require_current
+from udec_ia.layout.field_table import require_current
 
 DIGEST = "a30ea6b73f79c7590ba08a30ef6984e23e1691cac9b5cce0ceadbbaacdab7f41"
 require_current(DIGEST)

@@ -9,7 +9,7 @@ from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.offsets import DTOL, KTD
 from udec_ia.model.method_forms import takes_keywords
 from udec_ia.model.model_session import Session
-from udec_ia.ops.commands.boundary_conditions import number_of_conditions
+from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
@@ -17,7 +17,7 @@ from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 
 
 def change(

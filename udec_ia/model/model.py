@@ -20,7 +20,7 @@ from udec_ia.advice.input_warnings import (
     check_properties,
     check_tension,
 )
-from udec_ia.advice.step_warnings import describe_step
+from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unjudged
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import explain, summary
@@ -36,9 +36,9 @@ from udec_ia.model import block_commands, model_runs, saved_states
 from udec_ia.model.method_forms import InSession, of_session, on_shapes, takes_keywords
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
-from udec_ia.ops.commands import boundary_conditions as bounds
+from udec_ia.ops.commands import boundary_command as bounds
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.commands.boundary_conditions import ZERO, Triple, set_function
+from udec_ia.ops.commands.boundary_command import ZERO, Triple, set_function
 from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
@@ -49,7 +49,7 @@ from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.output.printed_tables import printout
 from udec_ia.output.word_dump import dump
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
 from udec_ia.running.critical_step import bound
 from udec_ia.running.history_series import Series

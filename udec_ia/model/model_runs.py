@@ -9,18 +9,18 @@ from functools import partial
 from udec_ia.advice.damping_report import UNDAMPED, describe_damping
 from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.rest_diagnosis import RestDiagnosis
-from udec_ia.advice.step_warnings import describe_step
-from udec_ia.compiling.interpreting import mode
+from udec_ia.advice.time_step_warnings import describe_step
+from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MCTOT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.number_limits import not_negative, whole
-from udec_ia.running.cycle import cycle as run
-from udec_ia.running.cycle import finish
+from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
-from udec_ia.running.observer import Observer
+from udec_ia.running.run_cycles import cycle as run
+from udec_ia.running.run_cycles import finish
 from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solution_of
 from udec_ia.running.static_relaxation import STATIC, statically
 

@@ -18,13 +18,14 @@ import numpy as np
 
 from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.checker import check, check_shapes
-from udec_ia.compiling.compile_time import compile_seconds
+from udec_ia.compiling.compile_duration import compile_seconds
 from udec_ia.errors import UdecError
-from udec_ia.files import last_number
+from udec_ia.file_replacement import last_number
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.tracked_arrays import Writes, track
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
+from udec_ia.heap.write_tracking import Writes, track
+from udec_ia.interrupt_signals import hold
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import CommandLog, Step
 from udec_ia.model.history_recorder import HistoryRecorder
@@ -32,15 +33,14 @@ from udec_ia.model.undo import Undo
 from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.ops.commands.split_blocks import Boxes
-from udec_ia.ops.laws.law_book import LawBook
 from udec_ia.ops.laws.law_file import Given
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.remark import Remark
+from udec_ia.remark_key import Remark
+from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording, Series
-from udec_ia.running.observer import Observer
 from udec_ia.running.solve_result import in_short
-from udec_ia.signals import hold
 
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation

@@ -11,7 +11,7 @@ from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.array_growth import refit
-from udec_ia.printable import counted, printable
+from udec_ia.printable_text import counted, printable
 
 
 def save(session: Session, path: str | Path | None = None, *, force: bool = False) -> Path:

@@ -29,16 +29,16 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 import numpy as np
 
 from udec_ia.compiling.build_choice import CHECKED, forget_kinds
-from udec_ia.compiling.interpreting import mode
+from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError, WrongAddress
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.tracked_arrays import Writes
-from udec_ia.kernels.links.relaxations import lose_relaxations
+from udec_ia.heap.write_tracking import Writes
+from udec_ia.interrupt_signals import hold, passing
+from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
-from udec_ia.printable import counted
-from udec_ia.signals import hold, passing
+from udec_ia.printable_text import counted
 
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.output.block_drawing import HATCH_WIDTH, INK, draw_blocks, limits, paper, scale_for, title

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.output.drawn_outlines import Contacts, Domain, Outlines, State, beside_corners, curves
-from udec_ia.printable import printable
+from udec_ia.printable_text import printable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

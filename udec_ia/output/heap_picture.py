@@ -31,10 +31,10 @@ from udec_ia.output.block_drawing import (
 )
 from udec_ia.output.drawn_outlines import Outlines, State, apex, domain_polygons
 from udec_ia.output.place_picture import is_near, outlines_left, points
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import KINDS, NAMES, Atlas
+from udec_ia.printable_text import counted
 from udec_ia.reader.kind_colours import COLOURS
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import KINDS, NAMES, Atlas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.files import FRONT, check_name, hidden, keep_rights, status
+from udec_ia.file_replacement import FRONT, check_name, hidden, keep_rights, status
 from udec_ia.running.history_series import Series
 
 Stamp = tuple[int, int, int, int] | None

@@ -26,11 +26,11 @@ from udec_ia.output.block_drawing import (
     write_as,
 )
 from udec_ia.output.drawn_outlines import Outlines, outlines
-from udec_ia.reader.atlas import KINDS, Atlas, Span, called
 from udec_ia.reader.group_positions import homes
 from udec_ia.reader.kind_colours import COLOURS
-from udec_ia.reader.listing import Listing
-from udec_ia.reader.places import address_of
+from udec_ia.reader.place_grammar import address_of
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import KINDS, Atlas, Span, called
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

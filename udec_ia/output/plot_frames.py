@@ -40,7 +40,7 @@ from udec_ia.output.field_drawing import (
     draw_velocities,
     draw_zones,
 )
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,12 +10,12 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.heap_tools.pointer_graph import Edge, Graph, Node, colour, dot, neighbourhood, summary
 from udec_ia.output.block_drawing import INK, picture_path, write_as
-from udec_ia.reader.atlas import NOTHING, Atlas
 from udec_ia.reader.kind_colours import COLOURS
-from udec_ia.reader.listing import Listing
+from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import NOTHING, Atlas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

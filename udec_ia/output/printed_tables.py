@@ -21,9 +21,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, read_table
+from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,

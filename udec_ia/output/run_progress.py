@@ -12,12 +12,12 @@ from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
-from udec_ia.compiling.compile_time import working_time
+from udec_ia.compiling.compile_duration import working_time
 from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive.unbalanced_force import unbalanced
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
-from udec_ia.printable import counted, printable
+from udec_ia.printable_text import counted, printable
 from udec_ia.running.critical_step import fraction_in_words
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""DUMP: the words of IA() as they are, and what each of them means (reader/atlas.py)."""
+"""DUMP: the words of IA() as they are, and what each of them means (reader/word_map.py)."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap_tools.heap_dump import parts
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, Atlas, Span, Word
-from udec_ia.reader.listing import LINES, Listing, Stream
-from udec_ia.reader.places import stretch
+from udec_ia.layout.field_table import read_table
+from udec_ia.reader.place_grammar import stretch
+from udec_ia.reader.printed_listing import LINES, Listing, Stream
+from udec_ia.reader.word_map import JUNK, KINDS, NAMES, Atlas, Span, Word
 
 POINTERS = ("MFREE", "JUNK", "IBPNT", "ICPNT", "IDPNT")
 HEAD_NAMES = {head.value: head.name for head in read_table().heads}

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.untrusted_lists import closed_lists
 from udec_ia.layout import offsets as g

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import gather
-from udec_ia.heap.census import CHOICES
+from udec_ia.heap.group_census import CHOICES
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, layouts, read_table
+from udec_ia.layout.field_table import Field, layouts, read_table
 from udec_ia.reader.list_walks import Unsound
 
 Numbers = NDArray[Any]

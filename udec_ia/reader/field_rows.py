@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.layout.codes import spelled
-from udec_ia.layout.table import Code, Field
-from udec_ia.reader.atlas import TABLE, Atlas, Span, Word, leads_to
+from udec_ia.layout.code_names import spelled
+from udec_ia.layout.field_table import Code, Field
 from udec_ia.reader.field_reading import allowed, in_words
+from udec_ia.reader.word_map import TABLE, Atlas, Span, Word, leads_to
 
 COLUMNS = ("address", "words", "field", "value", "unit", "meaning")
 Row = tuple[Any, ...]

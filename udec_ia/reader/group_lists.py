@@ -5,7 +5,7 @@ the reverse list of a block in use; any other group, if a group in use points to
 in which it stands. Every address is tested before it is used and every walk is bounded.
 
 A list that breaks raises Unsound; the checker reports it and goes on with the rest. So does a group that the
-census (heap/census.py) finds and no list leads to.
+census (heap/group_census.py) finds and no list leads to.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
-from udec_ia.heap.census import SOFT, census, one_of
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.heap.group_census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.untrusted_lists import chains, wrong_pointers
 from udec_ia.reader.block_rings import Boundaries, boundaries

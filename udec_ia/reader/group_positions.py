@@ -17,9 +17,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import KINDS, Atlas, Span
+from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
+from udec_ia.reader.word_map import KINDS, Atlas, Span
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_lists import Lists
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import cycle
 from string import ascii_lowercase
 
-from udec_ia.reader.atlas import JUNK, KINDS, NOTHING, UNUSED
+from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, UNUSED
 
 PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#b0762b",

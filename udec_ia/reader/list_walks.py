@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, size_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 TABLE = read_table()
 LISTS: dict[str, tuple[int, Offset]] = {  # kinds with a main list: its head, and the link to the next

@@ -11,7 +11,7 @@ from functools import cache
 from typing import NamedTuple
 
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, read_table
+from udec_ia.layout.field_table import Field, read_table
 
 HISTORY = "history"
 QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.history_recording.MEASURED

@@ -12,8 +12,8 @@ from udec_ia.checker.invariants import unfinished
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.written_state import Words
-from udec_ia.layout.table import read_table
-from udec_ia.printable import counted, printable
+from udec_ia.layout.field_table import read_table
+from udec_ia.printable_text import counted, printable
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart.file_seal import OTHER_TABLE, RefusedError, refusing

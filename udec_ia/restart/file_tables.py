@@ -13,10 +13,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from udec_ia.heap.census import CHOICES
+from udec_ia.heap.group_census import CHOICES
 from udec_ia.heap_tools.table_translation import in_words
-from udec_ia.layout.table import COMMON_TYPES, RATIOS, Field, Group, HeadCode, Table, lay_out
-from udec_ia.printable import printable
+from udec_ia.layout.field_table import COMMON_TYPES, RATIOS, Field, Group, HeadCode, Table, lay_out
+from udec_ia.printable_text import printable
 
 TEXT_COLUMNS = ("name", "type", "refers_to", "role", "unit", "page", "text")
 NUMBER_COLUMNS = ("count", "offset", "word")

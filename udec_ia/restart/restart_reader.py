@@ -23,9 +23,9 @@ from udec_ia.heap_tools.field_translation import translate
 from udec_ia.heap_tools.table_translation import news
 from udec_ia.heap_tools.written_state import TranslationError, Words
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Table, TableError, parse, read_table
+from udec_ia.layout.field_table import Table, TableError, parse, read_table
 from udec_ia.ops.laws.law_file import RESULTS
-from udec_ia.printable import printable
+from udec_ia.printable_text import printable
 from udec_ia.restart.file_seal import OTHER_FILE, OTHER_TABLE, RefusedError, read_sealed, refusing
 from udec_ia.restart.file_tables import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.hdf5_contents import Contents, contents

@@ -20,11 +20,11 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import COMMON_TYPES, TABLE, Table, lay_out, read_table
+from udec_ia.layout.field_table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.restart.file_seal import SIZE, VERSION, RefusedError, read_front, refusing, seal
 from udec_ia.restart.file_tables import MARK, MARKED, common_places, field_rows, shorten, text

@@ -21,18 +21,18 @@ from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness, smalles
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.running.mass_scaling import scale, scaled
-from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Limit, Rows, damped_step, rate_of, reals
+from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Rows, StepLimit, damped_step, rate_of, reals
 
 
 @OVERFLOWS
-def bound(array: MainArray) -> Limit:
+def bound(array: MainArray) -> StepLimit:
     """The safe bound of the critical time-step; infinite if no stiffness acts on anything free."""
     rows = Rows(array.h, even=bool(array.h.ci[g.LSCALE]))
     return (scaled(array, rows) if array.h.ci[g.LSCALE] else rows).limit()
 
 
 @OVERFLOWS
-def estimate(array: MainArray) -> Limit:
+def estimate(array: MainArray) -> StepLimit:
     """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
     h = array.h
     mass, at, massless = smallest_mass(h)
@@ -50,15 +50,15 @@ def estimate(array: MainArray) -> Limit:
         smallest, soft = soft_step(h, stiffness)
         if float(smallest) < ratio:
             ratio, at = float(smallest), soft
-    limit = Limit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
+    limit = StepLimit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
     return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
 
 
-def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
+def _drag_limit(h: Memory, stiffness: Array, joints: float) -> StepLimit:
     """The least step of what viscous boundaries hold; stiffness: of the grid-points, by address."""
     bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
     if not len(bounds):
-        return Limit(math.inf, 0)
+        return StepLimit(math.inf, 0)
     blocks, points = integers(h, bounds, g.KUB), integers(h, bounds, g.KUG)
     at = np.where(points > 0, points, blocks)
     drag = np.zeros_like(stiffness, dtype=float)
@@ -67,7 +67,7 @@ def _drag_limit(h: Memory, stiffness: Array, joints: float) -> Limit:
     mass = np.where(points > 0, reals(h, points, g.KGPM), reals(h, blocks, g.KBM))
     rate = np.where(drag[at] > 0, rate_of(np.where(points > 0, stiffness[at], joints), drag[at], mass), 0.0)
     fastest = int(rate.argmax())
-    return Limit(2 / float(rate[fastest]) if rate[fastest] else math.inf, int(at[fastest]))
+    return StepLimit(2 / float(rate[fastest]) if rate[fastest] else math.inf, int(at[fastest]))
 
 
 def _stiffness(h: Memory) -> float:

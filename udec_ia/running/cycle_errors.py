@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import (
     INSIDE_OUT,
     LAW_FAILED,
@@ -20,11 +20,11 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.finite_check import not_finite
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.corner_rounding import crowded
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.number_limits import last_digit
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.critical_step import fraction_in_words
 from udec_ia.running.group_names import strained_name
 

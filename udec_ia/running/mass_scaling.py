@@ -24,7 +24,7 @@ from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.kinetic_damping import halt_block
 from udec_ia.kernels.links.linked_lists import addresses
-from udec_ia.kernels.links.relaxations import lose_relaxations, make_relaxations
+from udec_ia.kernels.links.relaxation_groups import lose_relaxations, make_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import NMAT

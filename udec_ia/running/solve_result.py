@@ -19,8 +19,8 @@ from udec_ia.kernels.drive.unbalanced_force import (
 )
 from udec_ia.kernels.energy.stored_energy import liveliest
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
-from udec_ia.printable import counted
-from udec_ia.remark import Remark
+from udec_ia.printable_text import counted
+from udec_ia.remark_key import Remark
 from udec_ia.running.group_names import name_of
 
 MAX, MEAN = "max", "mean"  # what SOLVE judges by: the greatest unbalanced force, or the mean of all

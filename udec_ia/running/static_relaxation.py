@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.kernels.drive.kinetic_damping import halt_all
-from udec_ia.kernels.links.relaxations import lose_relaxations
+from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.model_settings import set_damping_mode, set_fraction
 

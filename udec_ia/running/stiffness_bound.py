@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
 from udec_ia.kernels.drive.critical_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.damping_modes import mode_of
@@ -34,7 +34,7 @@ OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
 
 @dataclass(frozen=True)
-class Limit:
+class StepLimit:
     """A critical time-step (s) and the address of the block, contact or grid-point that sets it."""
 
     step: float
@@ -171,14 +171,14 @@ class Rows:
             rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
             np.add.at(self.drag, at, rows)
 
-    def limit(self) -> Limit:
+    def limit(self) -> StepLimit:
         """The bound, and who sets it: 0 where a mass or a stiffness is not a number."""
         mass = np.where(self.free > 0, self.mass, 1.0) * self.weight
         rate = np.where(self.free > 0, rate_of(self.sum, self.drag, mass), 0.0)
         rate[np.isnan(rate)] = np.inf
         at = int(rate.max(axis=1).argmax())
         fastest = float(rate[at].max())
-        return Limit(2 / fastest if fastest else math.inf, int(self.address[at]))
+        return StepLimit(2 / fastest if fastest else math.inf, int(self.address[at]))
 
 
 def _point(n: int) -> Array:

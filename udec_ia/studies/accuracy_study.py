@@ -15,7 +15,7 @@ from pathlib import Path
 
 from udec_ia.deck.deck_variables import Values
 from udec_ia.heap.word_scheme import scheme
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import HIGHEST, Extrapolation, converges, extrapolate, share
 from udec_ia.studies.setting_runner import Options, Row, SettingRunner

@@ -20,10 +20,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import interpreted, observe
+from udec_ia.compiling.interpreted_kernels import interpreted, observe
+from udec_ia.debug.cycle_snapshots import StateCopy, copy_state
 from udec_ia.debug.cycle_trace import ROOT, UNDER
 from udec_ia.debug.debugged_run import count_cycles, cycle_statement
-from udec_ia.debug.timeline import StateCopy, copy_state
 from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
 from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
 from udec_ia.deck.deck_variables import Values
@@ -34,16 +34,16 @@ from udec_ia.heap_tools.block_matching import Side
 from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field
+from udec_ia.layout.field_table import Field
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.deformable_scene import soft
-from udec_ia.ops.laws.law_book import LawBook
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import KINDS
-from udec_ia.running.cycle import prepare
+from udec_ia.ops.laws.registered_laws import LawBook
+from udec_ia.printable_text import counted
+from udec_ia.reader.word_map import KINDS
 from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.cycle_replay import Replay
 from udec_ia.running.history_series import SOLVE_LIMIT, run_unwatched
+from udec_ia.running.run_cycles import prepare
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 STOPS = 1000  # times that a cycle may stop for memory

@@ -20,7 +20,7 @@ from pathlib import Path
 from time import monotonic, thread_time
 from typing import TextIO
 
-from udec_ia.compiling.compile_time import compile_seconds
+from udec_ia.compiling.compile_duration import compile_seconds
 from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.deck_statements import Statement, statements
 from udec_ia.deck.deck_variables import Variables
@@ -29,7 +29,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.model import Model
-from udec_ia.running.observer import Observer, between_cycles
+from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.solve_result import in_short, worth_reporting
 from udec_ia.studies.quantities import InitialState, NoValue, State, read_quantities, read_rule
 from udec_ia.studies.run_folder import BEGUN, incomplete, new_folder, publish

@@ -35,11 +35,11 @@ from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.kernels.drive.history_recording import measured
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.energy_account import Balance, balance
-from udec_ia.reader.atlas import KINDS, Atlas, Word
-from udec_ia.reader.conditions import Wrong, satisfying
+from udec_ia.reader.group_conditions import Wrong, satisfying
 from udec_ia.reader.group_positions import select_groups
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.recordable_numbers import Recordable, recordable
+from udec_ia.reader.word_map import KINDS, Atlas, Word
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
 

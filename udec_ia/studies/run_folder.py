@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from udec_ia.errors import UdecError
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable_text import MESSAGE, printable
 
 RESULT = "result.json"  # in the folder of a run; no folder gets the name of a run without it
 BEGUN = "begun"  # file in the folder of a run that is not complete

@@ -39,10 +39,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import layouts, read_table
-from udec_ia.printable import counted
+from udec_ia.layout.field_table import layouts, read_table
+from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import addresses as listed
-from udec_ia.running.observer import between_cycles
+from udec_ia.running.cycle_observer import between_cycles
 from udec_ia.studies.execute_run import RunObserver
 from udec_ia.studies.setting_runner import END_TIME, SettingRunner
 from udec_ia.studies.settings import Setting

@@ -24,7 +24,7 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import Call, parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable_text import MESSAGE, printable
 from udec_ia.studies.quantities import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.run_folder import RESULT
 from udec_ia.version import __version__

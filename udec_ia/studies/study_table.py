@@ -16,7 +16,7 @@ import numpy as np
 
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
-from udec_ia.files import check_name, put_in_place
+from udec_ia.file_replacement import check_name, put_in_place
 from udec_ia.output.block_drawing import INK, TYPES, drawable, write
 from udec_ia.studies.study_run import RunResult
 

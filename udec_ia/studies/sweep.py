@@ -28,7 +28,7 @@ from udec_ia.deck.command_monitor import names_a_file
 from udec_ia.deck.deck_variables import NAME, Value, Variables, spelt
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
-from udec_ia.printable import MESSAGE, counted, printable
+from udec_ia.printable_text import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import LOG
 from udec_ia.studies.quantities import DEFAULTS, read_quantities
 from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck

@@ -29,7 +29,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.model import Model
-from udec_ia.printable import MESSAGE, printable
+from udec_ia.printable_text import MESSAGE, printable
 
 if TYPE_CHECKING:
     from udec_ia.output.plot_frames import Frame

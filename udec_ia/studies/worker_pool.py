@@ -22,7 +22,7 @@ from urllib.parse import urlsplit
 
 from udec_ia.deck.deck_statements import at
 from udec_ia.errors import UdecError
-from udec_ia.printable import MESSAGE, counted, printable
+from udec_ia.printable_text import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import execute, record_death, rehearse
 from udec_ia.studies.run_folder import check_replaceable, clear, incomplete, lock_folder
 from udec_ia.studies.study_run import RunResult, StudyRun, kept_result

@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from udec_ia.checker import check
-from udec_ia.heap.census import CHOICES
+from udec_ia.heap.group_census import CHOICES
 from udec_ia.heap.junk_list import JNEXT
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, Layout, layouts
-from udec_ia.printable import MESSAGE, printable
-from udec_ia.reader.atlas import JUNK, KINDS, NAMES, NOTHING, TABLE, UNUSED, Atlas, Span
+from udec_ia.layout.field_table import Field, Layout, layouts
+from udec_ia.printable_text import MESSAGE, printable
 from udec_ia.reader.field_reading import in_words
 from udec_ia.reader.field_rows import NOT_ALLOWED
+from udec_ia.reader.word_map import JUNK, KINDS, NAMES, NOTHING, TABLE, UNUSED, Atlas, Span
 
 FAULTS = 1000  # violations that the page lists
 LINES = 2000  # lines of the deck that it shows, the last ones

@@ -16,10 +16,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from udec_ia.files import put_in_place
+from udec_ia.file_replacement import put_in_place
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout.offsets import MFREE
-from udec_ia.printable import printable
+from udec_ia.printable_text import printable
 from udec_ia.view.view_data import state, tables
 
 WEB = Path(__file__).with_name("web")

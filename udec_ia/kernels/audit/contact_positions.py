@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from udec_ia.compiling.kernel_decorators import over_arrays
-from udec_ia.kernels.audit.block_outlines import Outlines, deepest, end_of, start_of, turn_at
+from udec_ia.kernels.audit.outline_arrays import Outlines, deepest, end_of, start_of, turn_at
 from udec_ia.kernels.geometry.contact_geometry import BLUNT
 from udec_ia.layout import offsets as g
 
@@ -58,7 +58,7 @@ def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, lim
 
 
 @over_arrays
-def standing(o: Outlines, code: Any, corner: Any, others: Any, edge: int, places: Any) -> None:
+def locate_on_outlines(o: Outlines, code: Any, corner: Any, others: Any, edge: int, places: Any) -> None:
     """The places of contacts of these codes on one of their blocks (see checker/contact_places.py).
 
     corner, others: the corner on that block, and on the other; edge: code of contacts on an edge. places (n x

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from udec_ia.compiling.kernel_decorators import over_arrays
-from udec_ia.kernels.audit.block_outlines import (
+from udec_ia.kernels.audit.outline_arrays import (
     Outlines,
     arc_at,
     end_of,

@@ -17,7 +17,7 @@ from typing import Any
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.kernel_memory import LEAD, fetch
-from udec_ia.compiling.outlined_calls import call_entry
+from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at

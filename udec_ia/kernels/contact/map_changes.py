@@ -29,8 +29,8 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
 from udec_ia.kernels.constitutive.joint_laws import is_idle, no_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
-from udec_ia.kernels.detect.occupied_gaps import gap_taken
 from udec_ia.kernels.detect.point_depth import do_not_meet
+from udec_ia.kernels.detect.third_block_in_gap import gap_taken
 from udec_ia.kernels.geometry.contact_geometry import ce, faces, has_no_arc, meet, past
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.bridge import delc, to_virtual

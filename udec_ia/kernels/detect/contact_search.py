@@ -20,8 +20,8 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
-from udec_ia.kernels.detect.occupied_gaps import taken_between
 from udec_ia.kernels.detect.point_depth import AROUND, do_not_meet, would_cross
+from udec_ia.kernels.detect.third_block_in_gap import taken_between
 from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting, stable_order
 from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, is_blunt, meet, over_ends, past
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp

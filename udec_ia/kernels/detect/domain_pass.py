@@ -9,8 +9,8 @@ than the compared points, and no contact can be missed.
 
 A domain is updated when the sum would exceed ETOL in the next step, so that contacts form before segments
 touch. In a step with a relative displacement of more than ETOL, two blocks can change from no overlap to one
-of more than CTOL, at which no contact can form. This is an error. tunnelling.py proves that no other case can
-be missed.
+of more than CTOL, at which no contact can form. This is an error. passage_through_block.py proves that no
+other case can be missed.
 
 The pass may wait while all blocks are slow. No relative velocity exceeds twice that of the fastest block, so
 this bound is summed instead (UPEND), and added to every domain before it reaches HTOL, a hundredth of ETOL. A

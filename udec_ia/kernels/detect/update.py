@@ -20,13 +20,13 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
-from udec_ia.compiling.outlined_calls import entry
+from udec_ia.compiling.non_inlined_calls import entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.contact_search import SMALL, STRAY, search
-from udec_ia.kernels.detect.occupied_gaps import give_up_taken
-from udec_ia.kernels.detect.tunnelling import edge_lies_in
+from udec_ia.kernels.detect.passage_through_block import edge_lies_in
+from udec_ia.kernels.detect.third_block_in_gap import give_up_taken
 from udec_ia.kernels.map.bridge import bridge
 from udec_ia.kernels.map.domain_segments import (
     ARC,

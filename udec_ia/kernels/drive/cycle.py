@@ -25,7 +25,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.compiling.kernel_memory import LEAD, fetch
-from udec_ia.compiling.outlined_calls import call_entry, entry, entry_if
+from udec_ia.compiling.non_inlined_calls import call_entry, entry, entry_if
 from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.find_lose import room
@@ -36,7 +36,7 @@ from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.contact.map_changes import NOBODY, change_map
 from udec_ia.kernels.detect.domain_pass import accumulate
-from udec_ia.kernels.detect.tunnelling import gone_through
+from udec_ia.kernels.detect.passage_through_block import gone_through
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.dynamic_relaxation import relax

@@ -32,7 +32,7 @@ from udec_ia.kernels.body.fdef import next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain, straining_force
 from udec_ia.kernels.geometry.plane_tensors import first_axis, turned
-from udec_ia.kernels.links.relaxations import following
+from udec_ia.kernels.links.relaxation_groups import following
 from udec_ia.layout import offsets as g
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
+from udec_ia.layout.field_table import read_table
 
 # Offsets of all reals of a kind of group, from the field table, and how many; 0 fills tuples of one length.
 LISTED = {

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
-from udec_ia.compiling.outlined_calls import call_entry, entry
+from udec_ia.compiling.non_inlined_calls import call_entry, entry
 from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
 from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced
 from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts

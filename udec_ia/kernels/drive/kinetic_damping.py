@@ -20,7 +20,7 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr
 from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.stored_energy import energy_of_motion, kinetic
-from udec_ia.kernels.links.relaxations import following
+from udec_ia.kernels.links.relaxation_groups import following
 from udec_ia.layout import offsets as g
 
 LOWEST, HIGHEST = 1e-3, 1.0  # ALPHA times the time-step

@@ -27,7 +27,7 @@ from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
-from udec_ia.kernels.links.relaxations import following
+from udec_ia.kernels.links.relaxation_groups import following
 from udec_ia.layout import offsets as g
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
-from udec_ia.compiling.outlined_calls import call_entry, entry
+from udec_ia.compiling.non_inlined_calls import call_entry, entry
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.mass_distribution import share_extension

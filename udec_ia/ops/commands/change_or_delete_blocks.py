@@ -23,13 +23,13 @@ from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.map.block_removal import delb
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary_conditions import forget_blocks
+from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
 from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, items
 from udec_ia.ops.common.deformable_scene import renew_forces
-from udec_ia.ops.common.hosted_groups import lose_hosted
+from udec_ia.ops.common.groups_of_blocks import lose_hosted
 from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
 from udec_ia.reader.list_walks import chain
 

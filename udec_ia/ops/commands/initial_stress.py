@@ -14,7 +14,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary_conditions import ZERO, Triple
+from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
 from udec_ia.ops.common.deformable_scene import renew_forces
 from udec_ia.ops.common.number_limits import finite, held

@@ -12,8 +12,8 @@ from udec_ia.kernels.body.motion import carry_corners
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import read_table
-from udec_ia.ops.commands.boundary_conditions import given_velocities
+from udec_ia.layout.field_table import read_table
+from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.common.block_ranges import Range, blocks_in
 from udec_ia.ops.common.deformable_scene import renew_forces
 from udec_ia.ops.common.number_limits import bearable, finite, material_number, not_negative, positive, whole

@@ -13,7 +13,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
 from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.contact.map_changes import restart
-from udec_ia.kernels.detect.occupied_gaps import give_up
+from udec_ia.kernels.detect.third_block_in_gap import give_up
 from udec_ia.kernels.geometry.block_shape import crad, is_edge_point
 from udec_ia.kernels.links.linked_lists import (
     corner_of,

@@ -15,8 +15,8 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.layout.table import read_table
-from udec_ia.printable import counted
+from udec_ia.layout.field_table import read_table
+from udec_ia.printable_text import counted
 
 NMAT = next(field.count for field in read_table().common if field.name == "AKN")
 NCONS = next(

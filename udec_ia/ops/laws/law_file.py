@@ -25,7 +25,7 @@ from udec_ia.compiling.build_choice import DISABLED
 from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.errors import UdecError
 from udec_ia.layout.material import Material
-from udec_ia.printable import counted
+from udec_ia.printable_text import counted
 
 NUMBERS = range(FIRST, LAST + 1)
 RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {f"clj{n}": 2 for n in NUMBERS}  # how many numbers a law returns

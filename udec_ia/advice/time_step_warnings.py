@@ -9,17 +9,17 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.layout import offsets as g
-from udec_ia.remark import Remark
+from udec_ia.remark_key import Remark
 from udec_ia.running.critical_step import estimate
 from udec_ia.running.group_names import name_and_place
-from udec_ia.running.stiffness_bound import Limit, damped_step
+from udec_ia.running.stiffness_bound import StepLimit, damped_step
 
 NEAR = 0.8  # of the safe bound: warn of steps from here on if nothing damps
 IMPACTS = 0.5  # of the safe bound: what is advised then
 LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
 
 
-def is_safe(h: Memory, safe: Limit) -> bool:
+def is_safe(h: Memory, safe: StepLimit) -> bool:
     """True if the time-step is not above what damping leaves of the bound `safe`."""
     return bool(h.cr[g.TDEL] <= damped_step(h, safe.step) * (1 + LAST_DIGITS))
 
@@ -38,7 +38,7 @@ def safe_fraction(array: MainArray, share: float) -> float:
     return (0.95 if what_damps(array.h) else IMPACTS) * float(array.h.cr[g.FRAC]) / share
 
 
-def step_warning(array: MainArray, safe: Limit) -> Remark | None:
+def step_warning(array: MainArray, safe: StepLimit) -> Remark | None:
     """A warning of a time-step above what damping leaves of the bound `safe`, or near it; else None."""
     step = float(array.h.cr[g.TDEL])
     critical = damped_step(array.h, safe.step)
@@ -86,13 +86,13 @@ def _damping(h: Memory) -> tuple[str, str]:
     return f"{name} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
 
 
-def describe_step(array: MainArray, safe: Limit) -> str:
+def describe_step(array: MainArray, safe: StepLimit) -> str:
     """One line: the time-step, its shares of estimate and safe bound, and which groups set these.
 
     The bound is what damping leaves of it, as FRACTION ... SAFE takes it.
     """
     step = float(array.h.cr[g.TDEL])
-    left = Limit(damped_step(array.h, safe.step), safe.address) if math.isfinite(safe.step) else safe
+    left = StepLimit(damped_step(array.h, safe.step), safe.address) if math.isfinite(safe.step) else safe
     named = "safe bound" + (" with its damping" if left.step < safe.step else "")
     parts = [
         f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field
-from udec_ia.printable import counted
-from udec_ia.reader.atlas import JUNK, KINDS, TABLE, Atlas, Span, Word, called
+from udec_ia.layout.field_table import Field
+from udec_ia.printable_text import counted
+from udec_ia.reader.word_map import JUNK, KINDS, TABLE, Atlas, Span, Word, called
 
 GROUP = re.compile(r"(?:([A-Za-z]+)@)?(\d{1,40})")
 FIELD = re.compile(r"([A-Za-z]\w*)(?:\((\d{1,9})\))?")

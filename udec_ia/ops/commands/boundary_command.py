@@ -26,7 +26,7 @@ from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
-from udec_ia.ops.common.hosted_groups import HOSTED, drop
+from udec_ia.ops.common.groups_of_blocks import HOSTED, drop
 from udec_ia.ops.common.number_limits import finite, held, not_negative, positive, reals, whole
 from udec_ia.reader.list_walks import chain
 

@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreting import InterpretWhenSmall
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Table, lay_out, read_table
+from udec_ia.layout.field_table import Table, lay_out, read_table
 
 TABLE = read_table()
 SOFT = {head.value: head.extension for head in TABLE.heads if head.extension}  # extension by head code

@@ -22,7 +22,7 @@ from numba.core.compiler import Compiler
 from numba.extending import models, register_model, typeof_impl
 
 from udec_ia.compiling.code_cache import use_cache
-from udec_ia.signals import poll
+from udec_ia.interrupt_signals import poll
 
 NOT_IN_KERNELS = "inline_closure_likes", "nopython_rewrites"  # closures, expressions of whole arrays
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.reader.atlas import KINDS, TABLE, Atlas, Word
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Word
 
 LONGEST = 500  # characters of a condition: so deep it can be
 ADDRESS = "address"

@@ -14,7 +14,7 @@ Two blocks never overlap by more than CTOL without a contact or an error, for th
     block of the domain than CTOL, or have entered and left it at a depth of more than FTOL. No edge may lie
     deeper than CTOL in another block.
 5.  Contacts separate domains like walls. An open one is given up when another block comes between the two
-    (occupied_gaps.py). A closed one ends the run if a tip is squeezed through it (map_changes.py).
+    (third_block_in_gap.py). A closed one ends the run if a tip is squeezed through it (map_changes.py).
 6.  Commands that change outlines flag all domains, which are updated before the next cycle. A command that
     would cause a deeper overlap is refused, and nothing is changed (ops/commands/corner_rounding.py).
 
@@ -222,7 +222,7 @@ def _include(boxes: Any, i: int, x: float, y: float) -> None:
 
 
 @kernel
-def ways(h: Memory, seg: Any, n: int, more: int) -> Any:
+def swept_boxes(h: Memory, seg: Any, n: int, more: int) -> Any:
     """Boxes of the area that each segment has passed in this step, and `more` unused rows."""
     boxes = np.empty((n + more, 4), np.float64)
     for i in range(n):
@@ -248,7 +248,7 @@ def _corner_through(h: Memory, idm: int) -> int:
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
-    pairs = meeting(ways(h, seg, n, 0), n)
+    pairs = meeting(swept_boxes(h, seg, n, 0), n)
     for k in range(len(pairs)):
         i, j = pairs[k, 0], pairs[k, 1]
         if seg[i, BLOCK] == seg[j, BLOCK]:

@@ -19,8 +19,8 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.kernels.detect.passage_through_block import arc_point, carried, swept_boxes, was_at
 from udec_ia.kernels.detect.point_depth import depth_in
-from udec_ia.kernels.detect.tunnelling import arc_point, carried, was_at, ways
 from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, next_corner, nextcp, other, prevcp
@@ -124,7 +124,7 @@ def stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: fl
 
 
 @inlined
-def beside(h: Memory, ib: int, iad: int, forwards: bool) -> int:
+def neighbour_past(h: Memory, ib: int, iad: int, forwards: bool) -> int:
     """The first real contact of block `ib` at item `iad` or a little further on in its list; 0 for none."""
     item = int64(iad)
     for _ in range(BESIDE):
@@ -165,7 +165,7 @@ def taken_between(h: Memory, ib: int, before: int, after: int, jb: int, gap: Any
 
     before, after: the items at the place. jb, gap: as in _taken_by.
     """
-    one, two = beside(h, ib, before, False), beside(h, ib, after, True)
+    one, two = neighbour_past(h, ib, before, False), neighbour_past(h, ib, after, True)
     return _taken_by(h, ib, jb, one, gap) or _taken_by(h, ib, jb, two, gap)
 
 
@@ -214,7 +214,7 @@ def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
     m = _open_contacts(h, idm, found)
     if m == 0:
         return False, int64(idm)
-    boxes = ways(h, seg, n, m)
+    boxes = swept_boxes(h, seg, n, m)
     half = h.cr[g.BTOL] * real(h, 0.5)
     for k in range(m):
         _, _, _, x, y, _ = meet(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from udec_ia.layout.table import Code
+from udec_ia.layout.field_table import Code
 
 
 def spelled(codes: Iterable[Code], value: int) -> list[Code]:

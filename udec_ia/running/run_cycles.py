@@ -8,25 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from udec_ia.compiling.compile_time import working_time
+from udec_ia.compiling.compile_duration import working_time
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.main_array import MainArray
+from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.mass_distribution import make_masses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.deformable_scene import soft
-from udec_ia.ops.laws.law_book import Bound, LawBook
+from udec_ia.ops.laws.registered_laws import Bound, LawBook
 from udec_ia.reader.list_walks import chain
 from udec_ia.running.critical_step import time_step
 from udec_ia.running.cycle_errors import SPOILING, check_finite, raise_error
+from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording
 from udec_ia.running.mass_scaling import renew_relaxations
-from udec_ia.running.observer import Observer
 from udec_ia.running.safe_step_update import cycles_to_update, put_step, update_step
-from udec_ia.signals import poll
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10

@@ -1,8 +1,8 @@
 """Outlined calls: kernels that other kernels call by the address of their machine code.
 
 A kernel that is long and seldom called would be translated once more in each kernel that calls it
-(linking.py). An outlined kernel is translated once, and only where it is needed. Python asks for the address
-of its machine code (`entry`) and hands it to the kernels that need it, which call what lies there
+(kernel_linking.py). An outlined kernel is translated once, and only where it is needed. Python asks for the
+address of its machine code (`entry`) and hands it to the kernels that need it, which call what lies there
 (`call_entry`). A call costs what it costs in C. All such kernels return True or False. Kernels that are not
 compiled are handed the function itself.
 """
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.build_choice import CHECKED, load, numba_form
-from udec_ia.compiling.interpreting import mode
+from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.compiling.kernel_memory import Memory
 
 _addresses: dict[Any, int] = {}  # by kernel and types of its arguments

@@ -14,7 +14,7 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, integers, puti
 from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Group, read_table
+from udec_ia.layout.field_table import Group, read_table
 
 
 class Hosted(NamedTuple):

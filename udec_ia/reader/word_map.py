@@ -1,6 +1,6 @@
 """What each word of IA() is: part of a group, of a junk group, not linked, or unused; and names of groups.
 
-The census (heap/census.py) finds the groups that the lists reach; the junk list has those given back. In a
+The census (heap/group_census.py) finds the groups that lists reach; the junk list has those given back. In a
 damaged heap there may be words that nothing leads to, and groups may lie in each other: a word then belongs
 to the group that begins nearest before it. Above MFREE nothing has been used. Nothing is trusted.
 
@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, gather
-from udec_ia.heap.census import CHOICES, census, one_of
+from udec_ia.heap.group_census import CHOICES, census, one_of
 from udec_ia.heap.junk_list import junk_chains
 from udec_ia.layout import offsets as g
-from udec_ia.layout.table import Field, layouts, read_table
+from udec_ia.layout.field_table import Field, layouts, read_table
 
 TABLE = read_table()
 KINDS = tuple(group.name for group in TABLE.groups)

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.ops.laws.law_book import LawBook
+from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.cycle_replay import Replay
 
 BUDGET = 200 * 2**20  # bytes of all copies

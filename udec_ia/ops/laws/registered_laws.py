@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from udec_ia.compiling.interpreting import mode
+from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.compiling.law_calls import FIRST, LAST, Laws
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
@@ -21,7 +21,7 @@ from udec_ia.layout.material import ARRAYS, Material
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.common.number_limits import NCONS, NMAT
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
-from udec_ia.printable import printable
+from udec_ia.printable_text import printable
 
 Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 of the text of the file
 
