@@ -105,15 +105,14 @@ def boundary(
     if function is not None and not signal:
         advice = f"define it first: FUNCTION {function} t1 f1 t2 f2 ..."
         raise UdecError(26, f"FUNCTION {function}", advice)
-    require(array, len(loads) * size_of(array.h, g.NVBN) + size_of(array.h, g.NVSG))
     h = array.h
+    require(array, len(loads) * size_of(h, g.NVBN) + size_of(h, g.NVSG))
     if sine is not None:
         signal = make_sine(h, *sine)
     if fix:
         _release(h, {target[:2] for target in loads if target[2] == 0}, fix)
     for target, load in loads.items():
-        on_point = target[2] == 0 and bool(fix)
-        _make(h, target, load, fix if on_point else 0, (xvel or 0.0, yvel or 0.0), signal)
+        _make(h, target, load, fix if target[2] == 0 else 0, (xvel or 0.0, yvel or 0.0), signal)
     return len(loads)
 
 
