@@ -27,7 +27,7 @@ SPLIT 2 1 2 4
 SPLIT 4 1 4 4
 FIX 0 6 0 1
 FUNCTION 1 0 0 0.1 5
-BOUNDARY -1 4 -1 5 XVEL=1 FUNCTION 1
+BOUNDARY -1 4 1 5 XVEL=1 FUNCTION 1
 """
 POINTS = [(1.0, 1.5), (0.0, 2.0), (0.0, 1.0), (2.0, 1.0), (2.0, 2.0)]
 ZONES = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]
