@@ -144,7 +144,7 @@ def test_a_restart_file_takes_the_size_that_the_run_fixes(tmp_path: Path) -> Non
             small.restart()
         assert caught.value.number == 1
         assert f"{used} words are in use" in caught.value.detail
-        assert not small.started
+        assert not small.session.started
 
 
 def test_start_goes_back_to_the_words_of_the_run(tmp_path: Path) -> None:
