@@ -27,7 +27,7 @@ SPLIT 2 1 2 4
 SPLIT 4 1 4 4
 FIX 0 6 0 1
 FUNCTION 1 0 0 0.1 5
-BOUNDARY -1 4 -1 5 XVEL=1 FUNCTION 1
+BOUNDARY -1 4 1 5 XVEL=1 FUNCTION 1
 """
 POINTS = [(1.0, 1.5), (0.0, 2.0), (0.0, 1.0), (2.0, 1.0), (2.0, 2.0)]
 ZONES = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]
@@ -144,7 +144,7 @@ def test_a_restart_file_takes_the_size_that_the_run_fixes(tmp_path: Path) -> Non
             small.restart()
         assert caught.value.number == 1
         assert f"{used} words are in use" in caught.value.detail
-        assert not small.started
+        assert not small.session.started
 
 
 def test_start_goes_back_to_the_words_of_the_run(tmp_path: Path) -> None:
