@@ -29,11 +29,11 @@ def two_squares(request: pytest.FixtureRequest) -> Model:
     model.generate(2, 4, 0, 2, "manual", POINTS, ZONES)
     model.fraction(0.1)
     model.cycle(0)
-    for point in model.table("gridpoint"):
-        if point["KGEDGE"] == 1:
-            puti(model.h, int(point["address"]), g.KGFIX, 3)  # it keeps its velocity
-            putr(model.h, int(point["address"]), g.KXDG, -1.0)
+    (point,) = (int(row["address"]) for row in model.table("gridpoint") if row["KGEDGE"] == 1)
+    puti(model.array.h, point, g.KGFIX, 3)  # it keeps its velocity, which no condition gives
+    putr(model.array.h, point, g.KXDG, -1.0)
     model.cycle(round(0.2 * D / float(model.h.cr[g.TDEL])))
+    puti(model.array.h, point, g.KGFIX, 0)
     return model
 
 
