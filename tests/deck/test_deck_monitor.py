@@ -70,7 +70,7 @@ def test_the_first_command_is_start_or_restart() -> None:
 
 def test_commands_that_were_obeyed_are_logged() -> None:
     model, _ = refused("START\n* a comment\nBLOCK 0 0\n+ 1 1\n+ 1 1\nCYCLE 5\nCYCLE x\n")
-    assert model.session.log.lines == ["START", "BLOCK 0 0", "+ 1 1", "+ 1 1", "CYCLE 5"]
+    assert model.session.deck_log == ["START", "BLOCK 0 0", "+ 1 1", "+ 1 1", "CYCLE 5"]
 
 
 def test_an_error_saves_the_state_names_the_file_and_ends_the_run() -> None:
@@ -302,7 +302,7 @@ def test_a_plus_at_the_end_of_a_line_continues_any_command() -> None:
         ("property", (), {"material": 1, "kn": 1e8, "ks": 1e8, "friction": 0.3}),
         ("cycle", (1,), {}),
     ]
-    assert model.session.log.lines == ["START", "PROP MAT=1 KN=1E8", "+ KS=1E8", "+ F=0.3", "CYCLE 1"]
+    assert model.session.deck_log == ["START", "PROP MAT=1 KN=1E8", "+ KS=1E8", "+ F=0.3", "CYCLE 1"]
     assert "error" not in printed
 
 

@@ -128,7 +128,7 @@ def test_what_they_say(source: Path, folder: Path, capsys: pytest.CaptureFixture
     assert main(["renumber", str(source), "to.h5", "--json"]) == 0
     told, listing = json.loads(capsys.readouterr().out), renumber(load(source).array)
     assert told["said"] == ["written: to.h5", *listing.said]
-    assert [tuple(row.values()) for row in told["rows"]] == listing.rows
+    assert [tuple(row.values()) for row in told["rows"]] == list(listing.rows)
     assert main(["patch", str(source), "to.h5", "FRAC = 0.05"]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed == ["written: to.h5", "values given: 1", "what  before   now", "FRAC     0.1  0.05"]
@@ -203,7 +203,10 @@ def test_damaged_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None
         assert main([verb, "number.h5", "to.h5", *given]) == 0
         assert table(look_into("to.h5"), "block")["KMAT"].tolist() == [1, 60, 1, 1, 1, 1, 1]
         assert main([verb, "link.h5", "other.h5", *given]) == 1
-        assert f"contact@{contact} in the list of block@1, but its KB1 is 3 and" in capsys.readouterr().err
+        assert (
+            f"contact@{contact} stands in the list of block@1, but its KB1 is 3 and"
+            in capsys.readouterr().err
+        )
     right = int(m.table("contact")["KB1"][0])
     mend = [f"contact@{contact}.KB1 = {right}", f"block@{blocks[1]}.KMAT = 1"]
     assert main(["patch", "link.h5", "mended.h5", *mend]) == 0

@@ -23,6 +23,7 @@ from udec_ia.heap.word_scheme import scheme
 from udec_ia.heap_tools.convert_word_scheme import convert
 from udec_ia.heap_tools.renumber_groups import renumber
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.split_blocks import Boxes
 
 STEPS: list[Callable[[Model], Any]] = [
     lambda m: m.property(1, block_cohesion=1e4, block_friction=0.5, dilation=0.1, critical_slip=0.001),
@@ -50,7 +51,7 @@ def play(build: str, between: Between, folder: Any) -> tuple[dict[str, Any], lis
     m.run(plain_deck())
     for step in STEPS:
         between(m)
-        m.forget_boxes()  # which SPLIT keeps by address
+        m.session.split_boxes = Boxes()  # SPLIT stores them by address
         m.session.undo.release()
         step(m)
     assert int(m.h.ci[g.NBROKE]) > 0

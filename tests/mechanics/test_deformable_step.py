@@ -17,7 +17,8 @@ from udec_ia.advice.time_step_warnings import step_warning
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.running.critical_step import Limit, bound, estimate
+from udec_ia.running.critical_step import bound, estimate
+from udec_ia.running.stiffness_bound import StepLimit
 from udec_ia.studies.verification_tools import fan
 
 D = 0.05
@@ -187,7 +188,7 @@ def test_moments_of_inertia_that_are_no_numbers_set_a_step_of_nothing() -> None:
     m.cycle(0)
     putr(m.array.h, int(m.table("sdef")["address"][1]), g.KSJ12, np.nan)
     limit = bound(m.array)
-    assert limit == Limit(0.0, int(m.table("block")["address"][1]))
+    assert limit == StepLimit(0.0, int(m.table("block")["address"][1]))
     warning = step_warning(m.array, limit)
     assert warning is not None
     assert warning.key == "no-safe-step"
@@ -203,7 +204,7 @@ def test_what_is_squashed_flat_sets_a_step_of_nothing() -> None:
     m.cycle(1)
     point = int(m.table("gridpoint")["address"][0])
     putr(m.array.h, point, g.KGPM, 0.0)
-    assert bound(m.array) == Limit(0.0, point)
+    assert bound(m.array) == StepLimit(0.0, point)
     assert "inf of the safe bound 0 s" in m.step_limits()
     m.fraction(0.1, safe=True)  # the next step is found anew
     with pytest.raises(UdecError, match="error 28"):

@@ -106,7 +106,7 @@ for build in ("i32r64", "i32r32"):
     laws = book.pack(a)
     for state in states.astype(a.scheme.real_type):
         print(*(float(x).hex() for x in kernels.stress_increment(a.h, laws, 2, 1, 1, *state)))
-whole = getattr(kernels.stress_increment, "whole", None)
+whole = getattr(kernels.stress_increment, "dispatcher", None)
 found = getattr(whole, "stats", None)
 hits = found and [sum(found.cache_hits.values()), sum(found.cache_misses.values())]
 print(*(hits or []), file=sys.stderr)

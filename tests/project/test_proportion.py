@@ -93,7 +93,7 @@ def held(n: int) -> Model:
         (grid, lambda m: m.dump(1, int(m.h.ci[g.MFREE]) - 1), 100),
         (grid, lambda m: heap_map(Atlas(m.array.h)), 400),
         (grid, lambda m: m.boundary(*ALL, yvel=0.0), 400),
-        (held, lambda m: m.boundary(*ALL, xvel=1.0), 100),
+        (held, lambda m: m.boundary(*ALL[:2], 1, 1e6, xvel=1.0), 100),
         (held, lambda m: m.boundary(*ALL[:2], 1, 1e6, free=True), 400),
         (held, lambda m: m.free(*ALL), 100),
         (held, lambda m: m.delete(*ALL[:2], 1, 1e6), 100),

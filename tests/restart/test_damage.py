@@ -123,7 +123,7 @@ CASES: dict[str, tuple[Change, str]] = {
     "KGEDGE": (put("gridpoint", "KGEDGE", -1), "is -1, not 0 to 1"),
     "KGEDGE of a rounded corner": (put("gridpoint", "KGEDGE", 1, "KCOR"), "which is rounded"),
     "KUFIX": (put("bound", "KUFIX", 4), "is 4, not 0 to 3"),
-    "a velocity that is not held": (put("bound", "KUFIX", 3, "KUFIX"), "does not hold"),
+    "a velocity that is not held": (put("bound", "KUFIX", 3, "KUFIX"), "conditions give it the velocities"),
     "KHK": (put("history", "KHK", 99), "name nothing that is recorded"),
     "KHN": (put("history", "KHN", 0), "is 0, not"),
     "a FUNCTION without a number": (put("signal", "KTNUM", 0, "KTNUM"), "but it has points"),
