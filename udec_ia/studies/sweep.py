@@ -116,14 +116,15 @@ def sweep(
         files += draw_table(table, axes, names, stem, base) if axes else []
         return Sweep(results, table, files, [*progress.summary, *summarise_warnings(results, LOG)])
 
-    with WorkerPool(folder, jobs=processes(jobs, runs), dask=dask) as pool:
-        try:
+    pool = WorkerPool(folder, jobs=processes(jobs, runs), dask=dask)
+    try:
+        with pool:
             return write(pool.results(runs, progress.show))
-        except KeyboardInterrupt as interrupt:
-            with suppress(Exception):
-                found = (kept_result(run, pool.folder)[0] for run in runs)
-                write([one for one in found if one is not None])
-            raise type(interrupt)(str(folder)) from None
+    except KeyboardInterrupt as interrupt:  # the processes have ended: no result follows
+        with suppress(Exception):
+            found = (kept_result(run, pool.folder)[0] for run in runs)
+            write([one for one in found if one is not None])
+        raise type(interrupt)(str(folder)) from None
 
 
 def folder_name(values: Mapping[str, Value]) -> str:
