@@ -11,7 +11,7 @@ from udec_ia.layout import offsets as g
 
 
 def pile() -> tuple[Model, list[str], list[str]]:
-    """Three blocks on one another, the lowest fixed, and what is told and what is good to know."""
+    """Three blocks on one another, the lowest fixed, with its warnings and its information."""
     m = Model()
     told: list[str] = []
     informed: list[str] = []

@@ -1,4 +1,4 @@
-"""Who waits for a kernel that is being compiled is told, and the rate of a run leaves the time out."""
+"""A user who waits for a kernel to compile gets a message, and the rate of a run leaves the time out."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> type:
 
 @pytest.fixture
 def fake_time(monkeypatch: pytest.MonkeyPatch, quiet: type) -> list[float]:
-    """A clock that goes when it is told to."""
+    """A clock that the test advances."""
     now = [100.0]
     monkeypatch.setattr(compile_duration, "monotonic", lambda: now[0])
     return now

@@ -77,7 +77,7 @@ class Touched:
 def test_a_force_needs_no_other_contact(own: bool, kept: bool, build: str, module: Any) -> None:
     """Nor a domain; one that has to wait leaves no more than where it is.
 
-    own: with a law of the user's. kept: with an account of the energy.
+    own: with a user's law. kept: with an account of the energy.
     """
     found, written = [], set()
     for seed in SEEDS:

@@ -175,13 +175,14 @@ def test_integer_widths_do_not_change_a_bit(builds: tuple[str, ...], seed: int) 
     assert [differences(first, other) for other in others] == [[]] * len(others)
 
 
-@pytest.mark.parametrize("seed", [seed for seed in SEEDS if seed not in (3, 26)])  # these write through `h`
+@pytest.mark.parametrize("seed", SEEDS)
 def test_reused_memory_does_not_change_a_bit(seed: int) -> None:
     """With an empty junk list FIND takes fresh memory every time."""
     scene = play(seed, cycles=(5, 20))
 
     def forget(model: Model) -> Model:
-        model.array.h.ci[JUNK] = 0  # not through `h`, which would be refused: words are lost
+        model.array.h.ci[JUNK] = 0  # words are lost, which the proof after a write through `h` would refuse
+        model.session.writes.pending = model.session.written = False
         return model
 
     assert again(scene, Model(), forget) == []
