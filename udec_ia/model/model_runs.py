@@ -70,14 +70,14 @@ def _solve_statically(session: Session, ratio: float, limit: int, criterion: str
     session.inform(STATIC)
     named = {"static": True} | ({"criterion": criterion} if criterion == MEAN else {})
     undo = session.undo
-    begun = undo.before
+    former = undo.former
     try:
         with statically(session.array):
             return _run_to_rest(
                 session, ratio, limit, criterion, lambda done: session.log.add(solve, (ratio, done), named)
             )
     finally:
-        if undo.before is not begun:  # cycles are to stay, and with them what stood before
+        if undo.former is not former:  # cycles are final, and the settings from before the command are back
             undo.confirm_run(session)
 
 

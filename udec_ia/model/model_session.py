@@ -59,7 +59,7 @@ NOT_COPIED = (
     "undo",
     "writes",
     "_tracked",
-    "_clock",
+    "_start",
     "_compiled",
 )
 
@@ -110,7 +110,7 @@ class Session:
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     def _set_process(self) -> None:
-        """What belongs to this process: where messages go, the undo copy, the clock."""
+        """What belongs to this process: where messages go, the undo copy, the time."""
         self.progress: TextIO | None = None
         self.tell: Callable[[str], None] = warn_in_log
         self.inform: Callable[[str], None] = log.info
@@ -118,7 +118,7 @@ class Session:
         self.undo = Undo()
         self.writes = Writes()
         self._tracked: tuple[Memory, Memory] | None = None  # memory of IA(), and its tracked arrays
-        self._clock, self._compiled = perf_counter(), compile_seconds()
+        self._start, self._compiled = perf_counter(), compile_seconds()
 
     def __getstate__(self) -> dict[str, Any]:
         """For pickle and copy: all but what belongs to this process."""
@@ -149,8 +149,8 @@ class Session:
     def parts(self) -> Iterator[object]:
         """The objects that hold what is not in the main array."""
         frame = None if self.plots is None else self.plots.frame
-        held = self.log, self.recorder, self.plots, frame, self.animation, self.laws
-        for part in (self, *held, *self.recorder.series, self.monitors, self.monitors.energy):
+        parts = self, self.log, self.recorder, self.plots, frame, self.animation, self.laws
+        for part in (*parts, *self.recorder.series, self.monitors, self.monitors.energy):
             if part is not None:
                 yield part
 
@@ -185,7 +185,8 @@ class Session:
 
     def continue_from(self, lines: Sequence[str], series: list[Series]) -> None:
         """The state is that of a run that has logged `lines` and recorded `series`."""
-        self.log, self.recorder.series, self.continued = CommandLog(lines), series, True
+        self.log, self.continued = CommandLog(lines), True
+        self.recorder.replace(series)
         if self.plots is not None:
             self.plots.count = max(self.plots.count, self._last_picture("-plot"))
 
@@ -193,7 +194,7 @@ class Session:
         """Words were written through `h`: commands that follow them prove them first."""
         self.array.h.ci[g.LREADY] = 0
         self.forget_boxes()
-        self.undo.array = None  # commands obeyed once more would not give these words
+        self.undo.release()  # repeated commands would not give these words
         self.written = True
 
     def forget_boxes(self) -> None:
@@ -209,7 +210,7 @@ class Session:
         if not self.started:
             self.start()
             self.log_lines(["START"])
-        if self.writes.pending:  # by the function that runs as one command; it stays if that is taken back
+        if self.writes.pending:  # by the function that runs as one command; these writes are not undone
             self.note_writes()
         if (sound and self.written) or (shapes and self.unproved):
             self.prove()
@@ -285,7 +286,7 @@ class Session:
             int(h.ci[g.NCON]),
             float(forces.max(initial=0)),
             self.files,
-            perf_counter() - self._clock,
+            perf_counter() - self._start,
             compile_seconds() - self._compiled,
             in_short(self.recorder.solutions),
         )
@@ -347,7 +348,6 @@ class Session:
                 path = self.out / f"{self.name}-{max(self._last_picture(''), 1) + 1}.gif"
             self.add_files([self.animation.save(path, self.array.h)])
             self.animation = None
-        self.recorder.close()
 
 
 def _words(mtop: SupportsIndex) -> int:

@@ -270,17 +270,7 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
     )
     for domain, tint in inner:
         if np.ptp(domain.polygon, axis=0).max() * inches / POINT > LEGIBLE:
-            axes.annotate(str(domain.address), _middle(domain.polygon), color=tint, **style)
-
-
-def _middle(polygon: Any) -> tuple[float, float]:
-    """Where to name a domain: its centroid, or the middle of its points when it is a closed joint."""
-    x, y = (polygon - polygon[0]).T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    if abs(cross.sum()) < 1e-3 * np.ptp(x) * np.ptp(y) or cross.sum() == 0.0:
-        return tuple(polygon.mean(axis=0))
-    weighted = [(cross * (v + np.roll(v, -1))).sum() / (3.0 * cross.sum()) for v in (x, y)]
-    return float(polygon[0, 0] + weighted[0]), float(polygon[0, 1] + weighted[1])
+            axes.annotate(str(domain.address), tuple(domain.polygon.mean(axis=0)), color=tint, **style)
 
 
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
@@ -326,10 +316,9 @@ def write_as(figure: Figure, path: Path) -> None:
     put_in_place(path, image.getvalue(), force=False)
 
 
-def picture_path(name: str | Path, more: tuple[str, ...] = ()) -> Path:
+def picture_path(name: str | Path) -> Path:
     """The path of a picture that is to be written. ValueError unless it ends as the type of one does."""
     path = Path(name)
-    if path.suffix.lower() not in (*TYPES, *more):
-        ends = " or ".join((*TYPES, *more))
-        raise ValueError(f"{printable(str(name))}: the name of a picture ends in {ends}")
+    if path.suffix.lower() not in TYPES:
+        raise ValueError(f"{printable(str(name))}: the name of a picture ends in {' or '.join(TYPES)}")
     return path
