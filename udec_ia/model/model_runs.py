@@ -114,7 +114,7 @@ def _run_cycles(
     if moved is not None:
         session.renumber(moved)
     monitors.friction_until_rest(array)
-    report = session.report(n)
+    progress = session.run_progress(n)
     before = int(array.h.ci[MCTOT])
 
     def confirm_piece() -> None:
@@ -130,7 +130,7 @@ def _run_cycles(
             recording=recording,
             observers=(*observers, *session.observers, monitors),
             laws=session.laws,
-            report=report,
+            report=progress,
             every=max(1, n // PICTURES) if session.animate else None,
             prepared=lambda: _warn(session),
             settled=confirm_piece,
@@ -142,7 +142,7 @@ def _run_cycles(
             session.write_histories(recording)
         raise
     finally:
-        report.close()
+        progress.close()
     undo.confirm_run(session)
     session.write_histories(recording)
     return done

@@ -45,7 +45,7 @@ from udec_ia.running.solve_result import in_short
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
     from udec_ia.output.plot_frames import Plots, What
-    from udec_ia.output.run_progress import Report
+    from udec_ia.output.run_progress import RunProgress
 
 log = logging.getLogger("udec_ia")
 
@@ -305,15 +305,15 @@ class Session:
         """Write what was recorded."""
         self.add_files(self.recorder.write(recording, self.out / f"{self.name}-history", self.tell))
 
-    def report(self, n: int) -> Report:
+    def run_progress(self, n: int) -> RunProgress:
         """Shows the progress of `n` cycles, and takes pictures of them on request."""
-        from udec_ia.output.run_progress import Report
+        from udec_ia.output.run_progress import RunProgress
 
         if self.animate and self.animation is None:
             from udec_ia.output.animation import Animation
 
             self.animation = Animation(self.name)
-        return Report(lambda: self.array.h, n, self.progress, self.animation)
+        return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
         """Groups have new addresses: those of the open frame follow them."""
