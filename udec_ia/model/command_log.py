@@ -1,7 +1,7 @@
 """The log of a session: the commands that were obeyed, which can be written as the lines of a deck.
 
-A command given in Python is kept as it was called, and becomes lines on request; one of a deck is kept as its
-lines. Successive CYCLEs are one line.
+The log has the calls of commands given in Python, which become lines on request, and the lines of decks.
+Successive CYCLEs are one line.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it are kept.
+    restart file, and pictures of the run before it stay.
     """
 
     def __init__(
@@ -298,7 +298,7 @@ class Session:
         self.files += [path for path in files if path not in self.files]
 
     def _last_picture(self, kind: str) -> int:
-        """The last number of a picture to be kept: of the run that this one continues, or 0."""
+        """The last number of a picture of the run that this one continues, or 0."""
         return last_number(self.out, self.name + kind) if self.continued else 0
 
     def write_histories(self, recording: Recording) -> None:

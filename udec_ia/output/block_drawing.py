@@ -1,7 +1,7 @@
-"""Drawing on paper: blocks, contacts, domains and addresses, each on the axes of a matplotlib figure.
+"""Blocks, contacts, domains and addresses are drawn on the axes of a matplotlib figure.
 
-What stands still has the colour of its material, hatched if it is fixed; what moves from state to state
-gets a shade for each state, the darker the later.
+Blocks that do not move have the colour of their material, hatched if they are fixed. Those that move get a
+shade for each state, the darker the later.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ ROOMY = 90.0  # points that it must measure to be given those of its corners
 def limits(states: list[State], margin: float = 0.04) -> tuple[float, float, float, float]:
     """x and y range over all states, with a margin as a share of the size.
 
-    What is thrown further than the whole first state is wide must not shrink the rest to a dot: the range
-    ends there.
+    The range reaches beyond the first state by its size at most: a block that flies away must not shrink the
+    rest to a dot.
     """
     lows = np.array([state.outlines.corner.min(axis=0) for state in states if len(state.outlines.corner)])
     highs = np.array([state.outlines.corner.max(axis=0) for state in states if len(state.outlines.corner)])
@@ -91,9 +91,9 @@ def style_frame(axes: Axes) -> None:
 
 
 def title(axes: Axes, name: str, when: str = "") -> None:
-    """Write the name of the run over the picture, as it stands: a $ in it begins no formula.
+    """Write the name of the run over the picture; a $ in it begins no formula.
 
-    when: what stands at the right of it, or below it if there is no room for both.
+    when: text at the right of it, or below it if there is no room for both.
     """
     inches = axes.bbox.width / axes.figure.dpi
     above = "\n" if when and inches < LETTER * (len(name) + len(when)) else ""
@@ -190,7 +190,7 @@ def _still(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
 def draw_outlines(
     axes: Axes, o: Outlines, chosen: Any, face: Any, edge: Any, inches: float, hatched: bool = False
 ) -> None:
-    """The chosen blocks in one colour, with their centroids: as few compound paths as the renderer bears.
+    """The chosen blocks in one colour, with their centroids: as few compound paths as possible.
 
     The range of the axes is given: add_patch would look for that of the paths, and take longer than to draw.
     """
@@ -274,10 +274,7 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
 
 
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
-    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read.
-
-    Those outside of the picture are left out: what is damaged may lie where no letter can be drawn.
-    """
+    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read."""
     middles = np.repeat(o.centroid, np.diff(o.first), axis=0)
     room = np.maximum.reduceat(np.abs(o.corner - middles).max(axis=1), o.first[:-1]) * 2.0 * inches / POINT
     style: dict[str, Any] = {"ha": "center", "color": INK, "zorder": 6}

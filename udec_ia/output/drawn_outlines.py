@@ -294,15 +294,15 @@ def domain_polygons(h: Memory) -> Iterator[Domain]:
 
 
 def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
-    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7).
+    """Points along the loop of a domain. A corner is the end of its arc (Fig. 7).
 
     Each step begins where the last one ended, but for a virtual contact: there the loop crosses to the other
     block, and back by the same way.
     """
     steps = list(loop(h, domain))
     for (before, block), (item, _) in zip([steps[-1], *steps[:-1]], steps, strict=True):
-        previous, start = _stand(h, before, block)
-        corner, place = _stand(h, item, block)
+        previous, start = _place_on_block(h, before, block)
+        corner, place = _place_on_block(h, item, block)
         yield start
         if corner:
             yield from _arc(
@@ -312,10 +312,10 @@ def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
             yield place
 
 
-def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
-    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place.
+def _place_on_block(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
+    """The corner on whose arc the item is on its `block` (0 if on none), and the place of the item.
 
-    Where a virtual contact stands means nothing: it is taken to the middle of its corner's arc.
+    The position of a virtual contact means nothing: the middle of its corner's arc is returned.
     """
     if kind_of(h, item) == "corner":
         rounded = getr(h, item, g.KRAD) > 0.0

@@ -88,5 +88,5 @@ def _state(file: Contents, values: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("model", f"{blocks}, {contacts} ({values['NVIRT']} virtual), {domains}"),
         ("run", f"{cycles}, time {values['TIME']:.6g} s, time-step {values['TDEL']:.6g} s"),
         *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
-        *(("check", said) for said in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
+        *(("check", text) for text in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
     ]
