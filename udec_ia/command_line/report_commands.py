@@ -74,7 +74,9 @@ def _diff(args: argparse.Namespace) -> Call:
     return Call("command_line.report_commands.compare_files", (str(args.file), str(args.other)), named)
 
 
-def measure_costs(path: str | Path, constitutive: Sequence[str] = (), budget: float = 20.0) -> Listing:
+def measure_costs(
+    path: str | Path, constitutive: Sequence[str] | None = None, budget: float = 20.0
+) -> Listing:
     """What each facility of the state in a restart file costs; budget: seconds for measuring."""
     from udec_ia.facilities.facility_costs import costs
     from udec_ia.model import Model
