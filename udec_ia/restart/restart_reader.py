@@ -1,8 +1,8 @@
 """RESTART: the state of a run is read from a restart file, or the file is refused with the reason.
 
-Everything in the file is tested before it is used: seal, format, completeness, field table, word widths, types
-and shapes, checksums, limits, and at last the lists and pointers of the heap itself. A file that was written
-with another field table is read by the names of that table (field_translation.py).
+Everything in the file is tested before it is used: seal, format, completeness, field table, word widths,
+types and shapes, checksums, limits, and at last the lists and pointers of the heap itself. A file that was
+written with another field table is read by the names of that table (field_translation.py).
 """
 
 from __future__ import annotations
