@@ -25,13 +25,6 @@ from udec_ia.errors import UdecError
 FRONT = 512  # bytes that show what a file is
 SIGNATURE = 6  # bytes in which PNG, SVG, GIF, HDF5 and our tables differ from each other and from a deck
 LEAVE = "a file may only replace one of its own kind: use another name or folder, or move the existing file"
-NO_FILES = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-}
 Content = bytes | memoryview
 Judge = Callable[[bytes, int], str]
 
@@ -44,7 +37,7 @@ def put_in_place(path: Path, content: Content, judge: Judge | None = None, *, fo
     take as long as a thousand cycles. Error 31 if that fails; an existing file is then unchanged.
     """
     try:
-        there = status(path)
+        there = _status(path)
         target = Path(os.path.realpath(path))
         if there is None:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -57,12 +50,12 @@ def put_in_place(path: Path, content: Content, judge: Judge | None = None, *, fo
 
 def check_name(path: Path, content: Content) -> None:
     """Error 31 unless there is no file `path`, or one that begins as `content` does and may be replaced."""
-    there = status(path)
+    there = _status(path)
     if there is not None:
         _check_replaceable(path, Path(os.path.realpath(path)), there, _alike(path, content))
 
 
-def status(path: Path) -> os.stat_result | None:
+def _status(path: Path) -> os.stat_result | None:
     """Status of the file `path`, None if there is none. Error 31 for an impossible name."""
     try:
         return path.stat()
@@ -74,9 +67,9 @@ def status(path: Path) -> os.stat_result | None:
 
 def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: Judge) -> None:
     """Error 31 unless the file may be replaced."""
-    kind = stat.S_IFMT(there.st_mode)
-    if kind != stat.S_IFREG:
-        raise UdecError(31, f"{path} is {NO_FILES.get(kind, 'no file')}", LEAVE)
+    if not stat.S_ISREG(there.st_mode):
+        what = "a folder" if stat.S_ISDIR(there.st_mode) else "a device, a pipe or a socket"
+        raise UdecError(31, f"{path} is {what}", LEAVE)
     if not (there.st_mode & 0o222 and os.access(target, os.W_OK)):
         raise UdecError(31, f"{path} is read-only", "use another name, or make it writable")
     with target.open("rb") as file:  # it may have been replaced since
@@ -96,13 +89,13 @@ def _alike(path: Path, content: Content) -> Judge:
 
 
 def _write(target: Path, content: Content, before: os.stat_result | None, force: bool) -> None:
-    temporary = hidden(target)
+    temporary = target.with_name(f".udec-{secrets.token_hex(8)}.tmp")
     mode = 0o666 if before is None else 0o600  # less what the user's mask forbids
     try:
         with open(temporary, "xb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
             file.write(content)
             if before is not None:
-                keep_rights(temporary, before)
+                _keep_rights(temporary, before)
             if force:
                 file.flush()
                 os.fsync(file.fileno())
@@ -115,11 +108,6 @@ def _write(target: Path, content: Content, before: os.stat_result | None, force:
             _sync_folder(target.parent)
 
 
-def hidden(path: Path) -> Path:
-    """A name beside `path` that no file has, for the new content."""
-    return path.with_name(f".udec-{secrets.token_hex(8)}.tmp")
-
-
 def last_number(folder: Path, name: str) -> int:
     """The greatest n for which there is a file name-n.* in `folder`, or 0."""
     numbered = re.compile(rf"{re.escape(name)}-(\d+)\.[^.]+")
@@ -127,7 +115,7 @@ def last_number(folder: Path, name: str) -> int:
     return max((int(one[1]) for one in found if one), default=0)
 
 
-def keep_rights(file: Path, before: os.stat_result) -> None:
+def _keep_rights(file: Path, before: os.stat_result) -> None:
     """Give `file` the mode of what it replaces, and its owner and group as far as that is allowed.
 
     If the group cannot be kept, the new group gets no rights.

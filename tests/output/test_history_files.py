@@ -53,7 +53,7 @@ def test_what_is_interrupted_is_not_in_the_file(tmp_path: Path, monkeypatch: pyt
 
     with monkeypatch.context() as patched:
         patched.setattr("os.chown", fail, raising=False)
-        patched.setattr("udec_ia.file_replacement.keep_rights", lambda *_: fail(None))
+        patched.setattr("udec_ia.file_replacement._keep_rights", lambda *_: fail(None))
         with pytest.raises(KeyboardInterrupt):
             m.cycle(3)
     assert ((tmp_path / CSV).read_bytes(), (tmp_path / HDF5).read_bytes()) == before

@@ -8,7 +8,7 @@ for each history. After every CYCLE the new numbers are added to a copy, which r
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,6 @@ from udec_ia.file_replacement import put_in_place
 from udec_ia.running.history_series import Series
 
 Counts = tuple[int, ...]  # numbers of each history
-Extended = Callable[[bytes, Sequence[Series], Counts], bytes]  # from the former content and counts
 LIBRARY = "v108", "v108"  # format of HDF5
 
 
