@@ -24,7 +24,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -39,12 +39,10 @@ from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
 from udec_ia.printable_text import counted
 
-if TYPE_CHECKING:
-    from udec_ia.model.model_session import Session
-
 P = ParamSpec("P")
 R = TypeVar("R")
 Method = Callable[Concatenate[Any, P], R]
+Session = Any  # model_session.Session, which imports this module
 
 REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
@@ -75,7 +73,7 @@ class Undoable:
 
         @wraps(method)
         def command(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
-            session: Session = model.session
+            session = model.session
 
             def action() -> R:
                 if self.recorded:
@@ -86,7 +84,8 @@ class Undoable:
                 session.log_call(step, args, named)
                 return result
 
-            return session.undo.run_whole(model, action)
+            done: R = session.undo.run_whole(model, action)
+            return done
 
         return command
 
@@ -257,9 +256,9 @@ class Undo:
         """
         array, self.array = self.array, None
         self.former = None
-        if array is session.array and None not in self.current:
+        if array is not None and array is session.array and None not in self.current:
             self.step_seconds += perf_counter() - self._start if self.current else 0.0
-            self.common_after = common_bits(session.array.h)
+            self.common_after = common_bits(array.h)
             self.steps += [step for step in self.current if step is not None]
             if self.step_seconds > REPEATED * self.copy_seconds:
                 self.steps = []
