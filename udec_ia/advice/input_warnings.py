@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
-from udec_ia.heap.accessors import HEAD, Memory, getr, integers
+from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
 from udec_ia.layout import offsets as g
@@ -177,13 +177,26 @@ def check_loads(array: MainArray, groups: Groups = list_of) -> Iterator[Remark]:
 
 
 def check_resolution(array: MainArray) -> Iterator[Remark]:
-    """CYCLE: a last digit of coordinates whose force in the stiffest joint is large for the mean contact."""
-    usual, (force, digit) = _mean_contact_force(array.h), _digit_force(array)
+    """CYCLE: a last digit of coordinates whose force in the stiffest joint is large for the mean contact.
+
+    The mean contact force is half the weight and loads of a free block.
+    """
+    h = array.h
+    blocks, conditions = list_of(h, "block"), list_of(h, "bound")
+    x, y, reach, mass = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO, g.KBM))
+    free = integers(h, blocks, g.KBFIX) != g.FIXED
+    weight = mass[free].sum() * math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
+    loads = np.hypot(*(np.asarray(getr(h, conditions, k), float) for k in (g.KUFX, g.KUFY))).sum()
+    usual = float(weight + loads) / 2 / max(int(free.sum()), 1)
+    joints = joints_of_materials(h, np.unique(integers(h, blocks, g.KMAT)))
+    stiffness = float(max(joints.kn.max(), joints.ks.max()))
+    digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
+    force = stiffness * digit
     if force > RESOLVED * usual > 0:
         yield Remark(
             "coarse-reals",
             f"the last digit of coordinates, {digit:.2g} m with {array.scheme.real_bits}-bit reals, is a "
-            f"force of {force:.3g} N/m in joints of {force / digit:.3g} N/m2, {force / usual:.1%} of the "
+            f"force of {force:.3g} N/m in joints of {stiffness:.3g} N/m2, {force / usual:.1%} of the "
             f"{usual:.3g} N/m that a block puts on a contact: forces have at least this error, and SOLVE "
             "reaches no smaller ratio; take reals of 64 bits, a smaller KN, or an origin within the model",
         )
@@ -197,25 +210,3 @@ def check_damping(array: MainArray) -> Iterator[Remark]:
             "there is no damping, and nothing but friction brings blocks to rest: "
             "DAMPING 0.5 f MASS, with f near the frequency (Hz) at which they would swing",
         )
-
-
-def _mean_contact_force(h: Memory) -> float:
-    """Mean force of free blocks on a contact in N/m: half of their weight and of their loads."""
-    blocks = list_of(h, "block")
-    free = integers(h, blocks, g.KBFIX) != g.FIXED
-    mass = np.asarray(getr(h, blocks, g.KBM), float)[free].sum()
-    weight = mass * math.hypot(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY]))
-    bounds = list_of(h, "bound")
-    loads = np.hypot(*(np.asarray(getr(h, bounds, k), float) for k in (g.KUFX, g.KUFY))).sum()
-    return float(weight + loads) / 2 / max(int(free.sum()), 1)
-
-
-def _digit_force(array: MainArray) -> tuple[float, float]:
-    """Force (N/m) of a last digit of a coordinate in the stiffest joint, and that digit (m)."""
-    h = array.h
-    blocks = list_of(h, "block")
-    x, y, reach = (np.asarray(getr(h, blocks, k), float) for k in (g.KX, g.KY, g.KBRO))
-    joints = joints_of_materials(h, np.unique(integers(h, blocks, g.KMAT)))
-    stiffness = float(max(joints.kn.max(), joints.ks.max()))
-    digit = last_digit(array, float((np.maximum(np.abs(x), np.abs(y)) + reach).max()))
-    return stiffness * digit, digit

@@ -128,7 +128,7 @@ class RestDiagnosis(Observer):
         if solution.reached:
             remarks += self._slipped(h)
         else:
-            remarks += _moved_most(h, record)
+            remarks += _greatest_displacements(h, record)
             if not what_damps(h):
                 remarks.append(Remark("no-damping", "nothing damps: DAMPING LOCAL 0.8 damps all frequencies"))
         return solution._replace(remarks=tuple(remarks), fallen=tuple(record.blocks[fallen].tolist()))
@@ -149,7 +149,7 @@ class RestDiagnosis(Observer):
         return [Remark("joints-slipped", text)]
 
 
-def _moved_most(h: Memory, record: DisplacementRecord) -> list[Remark]:
+def _greatest_displacements(h: Memory, record: DisplacementRecord) -> list[Remark]:
     """A remark on the blocks that moved most in the last quarter of a SOLVE."""
     since = record.looks[-1 - max(len(record.looks) // 4, 1)] if len(record.looks) > 1 else record.looks[0]
     moved = record.displacements(h, since)

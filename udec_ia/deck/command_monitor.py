@@ -187,7 +187,7 @@ class Monitor:
             self.stop()
         return saved
 
-    def _save(self, sound: bool) -> Path:
+    def _save(self, sound: bool) -> Any:
         """Save the state as RESCUE, by force if it is not sound."""
         path = (self.model.session.out / RESCUE).absolute()
         if sound:

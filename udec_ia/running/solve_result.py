@@ -38,7 +38,7 @@ class Solution(NamedTuple):
 
     wanted: the given force ratio; criterion: "max" or "mean". largest, mean: greatest and mean unbalanced
     force over the mean force carried. worst: name of the group with the largest, or "". motion: kinetic over
-    strain energy; most_energetic: name of the group with most kinetic energy, or "". remarks: each with a key
+    strain energy; greatest_energy: name of the group with most kinetic energy, or "". remarks: with keys
     (advice.rest_diagnosis). fallen: addresses of the blocks that have fallen.
     """
 
@@ -48,7 +48,7 @@ class Solution(NamedTuple):
     cycles: int
     worst: str
     motion: float
-    most_energetic: str
+    greatest_energy: str
     criterion: str = MAX
     mean: float = 0.0
     remarks: tuple[Remark, ...] = ()
@@ -87,7 +87,7 @@ class Solution(NamedTuple):
         if self.motion > self.wanted:
             return (
                 f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
-                f"{self.most_energetic} has most of it"
+                f"{self.greatest_energy} has most of it"
             )
         return f"{found}, and at least one cycle must show it"
 
@@ -114,9 +114,9 @@ def solution_of(array: MainArray, wanted: float, criterion: str, cycles: int) ->
     reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(wanted)))
     largest, average = map(float, force_ratios(h, kinds))
     groups = unbalanced(h, kinds)[1], liveliest(h, kinds)[2]
-    worst, most_energetic = (name_of(h, int(at)) if at else "" for at in groups)
+    worst, greatest_energy = (name_of(h, int(at)) if at else "" for at in groups)
     motion = float(motion_ratio(h, kinds))
-    return Solution(reached, wanted, largest, cycles, worst, motion, most_energetic, criterion, average)
+    return Solution(reached, wanted, largest, cycles, worst, motion, greatest_energy, criterion, average)
 
 
 def in_short(solutions: Sequence[Solution]) -> list[str]:
