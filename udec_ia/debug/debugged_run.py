@@ -192,7 +192,7 @@ class Debugger:
             self.stop(hits)
 
     def stop(self, reasons: Sequence[str]) -> None:
-        """Stop here and now."""
+        """Stop, and show the present."""
         self.goal = self.goal_cycle = self.goal_line = None
         self.interrupted = False
         self.show(self.timeline.now)
@@ -214,7 +214,7 @@ class Debugger:
 
     @property
     def atlas(self) -> Atlas:
-        """What the words of that state are."""
+        """The words of that state, by group and field."""
         mark = self.event, self.trace.done if self.trace else -1, self.timeline.now
         if self._atlas is None or self._atlas[0] != mark:
             self._atlas = mark, Atlas(self.array.h)
@@ -226,7 +226,7 @@ class Debugger:
         return self.trace is not None or self.event < self.timeline.now
 
     def show(self, event: int) -> None:
-        """Look at the state after `event`, which was. Raises UnreachableEvent."""
+        """Show the state after an `event` of the past or present. Raises UnreachableEvent."""
         if event != self.timeline.now:
             self._array = event, self.timeline.at(event)
         self.event, self.trace = event, None
@@ -241,7 +241,7 @@ class Debugger:
     # ---- moving about
 
     def forward(self, events: int | None) -> tuple[bool, list[str]]:
-        """Look at what comes `events` later, or at the next event where a condition is met.
+        """Show what comes `events` later, or the next event where a condition is met.
 
         True if that has not been run yet: it is, when `stopped` returns. Else what has happened.
         """
@@ -291,7 +291,7 @@ class Debugger:
             condition.begin(self.model.array)
 
     def back(self, events: int) -> None:
-        """Look at what was `events` before. Raises UnreachableEvent."""
+        """Show the state `events` before. Raises UnreachableEvent."""
         self.show(max(self.event - events, self.timeline.earliest))
 
     def back_to(self, conditions: Sequence[StopCondition]) -> str:
