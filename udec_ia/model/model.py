@@ -16,10 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
-from udec_ia.advice.input_warnings import (
-    check_properties,
-    check_tension,
-)
+from udec_ia.advice.input_warnings import check_properties
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unjudged
 from udec_ia.deck.command_monitor import run_deck
@@ -243,9 +240,7 @@ class Model:
         """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-        many = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
-        self.session.remark(check_tension((s11, s12, s22), (*xgrad, *ygrad)))
-        return many
+        return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
 
     @changes_array
     def round(self, d: float) -> None:
