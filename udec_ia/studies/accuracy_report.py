@@ -48,8 +48,8 @@ def _change(study: AccuracyStudy) -> str:
         reasons = (row.why for row in study.rows if row.ran and row.why)
         why = next(reasons, "no run with half the time-step has ended; give a greater --budget")
     elif study.can_recommend:
-        least = min(study.rows, key=lambda row: row.error)
-        why = f"the least error is {least.error:.2e}, of {least.setting.name}; give a greater --budget"
+        nearest = min(study.rows, key=lambda row: row.error)
+        why = f"the least error is {nearest.error:.2e}, of {nearest.setting.name}; give a greater --budget"
     elif len(study.known) == len(study.references):
         why = f"the time-step does not change {' and '.join(study.known)}; ask for another --quantity"
     else:

@@ -41,7 +41,7 @@ class Extrapolation:
 
     @property
     def is_zero(self) -> bool:
-        """True if the value cannot be told from 0, so that shares of it have no meaning."""
+        """True if the value cannot be distinguished from 0: shares of it mean nothing."""
         return 0 < self.error >= abs(self.value) and math.isfinite(self.error)
 
     def error_of(self, value: float) -> float:

@@ -66,8 +66,10 @@ def vary_lever(runner: SettingRunner, lever: str) -> tuple[list[str], list[tuple
 
 def _rehearse(runner: SettingRunner, settings: Sequence[Setting]) -> list[RunResult]:
     """Runs with one cycle for each CYCLE and SOLVE."""
-    fields = {"quantities": CONTACTS, "rehearsal": True}
-    return runner.results([runner.run(one, name=f"rehearsal,{one.name}", **fields) for one in settings])
+    runs = [
+        runner.run(one, name=f"rehearsal,{one.name}", quantities=CONTACTS, rehearsal=True) for one in settings
+    ]
+    return runner.results(runs)
 
 
 def _keep_stiffness(own: Sequence[Setting], counts: Sequence[float]) -> tuple[list[Setting], list[str]]:

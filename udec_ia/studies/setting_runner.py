@@ -39,7 +39,7 @@ QUANTITIES = (
 )
 NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes with half the reals
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
-LONGEST = 5.0  # a run ends after so many times the predicted seconds, and so many seconds at least
+LONGEST = 5.0  # times the predicted seconds, and least seconds, after which a run is ended
 TIME_OFF = 0.05  # share of the time of all CYCLEs by which a run may be off, as cycles are whole
 NOT_AT_REST = "its SOLVE did not reach the force ratio"
 

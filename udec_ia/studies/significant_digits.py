@@ -61,7 +61,7 @@ class Digits(NamedTuple):
 
 
 def shared_digits(results: Sequence[float], bits: int) -> Digits | None:
-    """The digits of results with so many bits in their fraction (52, 23); None for too few results."""
+    """The digits of results with `bits` bits in their fraction (52, 23); None for too few results."""
     found = [value for value in results if math.isfinite(value)]
     full = (bits + 1) * math.log10(2)
     if len(found) < FEWEST:
@@ -231,7 +231,7 @@ def _cycles(runner: SettingRunner) -> int:
 def perturbed(
     runner: SettingRunner, build: str, runs: int, fields: tuple[str, ...] = (), label: str = "noise"
 ) -> list[RunResult]:
-    """So many perturbed runs of the deck as it is."""
+    """`runs` perturbed runs of the deck as it is."""
     run = PerturbedRun(
         label,
         runner.deck.written(Setting(build)),
@@ -250,18 +250,13 @@ def perturbed(
 
 
 def blame_fields(found: Ensemble, quantity: str = "") -> tuple[str, list[tuple[object, ...]]]:
-    """A sentence, and a line for each kind of groups and field whose noise alone spreads a quantity.
-
-    These are the FIELD_COLUMNS, the greatest share first. quantity: by default the one with fewest digits.
-    """
+    """The shares of kinds of groups and fields in a spread, by default of the quantity with fewest digits."""
     runner, (build, *_) = found.runner, found.results
     known = {name: one for name in found.names if (one := found.digits(build, name)) and one.spread > 0}
     quantity = quantity or min(known, key=lambda name: known[name].digits, default="")
     if quantity not in known:
         return "no digit is lost, so no field is to blame", []
-    line = (
-        f"{quantity}: the spread with noise in one field or kind of groups, as a share of that with all noise"
-    )
+    line = f"{quantity}: its spread with noise in one field or kind of groups, and the share of the whole"
     waiting, rows = [*noisy_fields().items()], list[tuple[str, float, float]]()
     while waiting and runner.left > 0:
         name, fields = waiting.pop(0)
@@ -273,7 +268,8 @@ def blame_fields(found: Ensemble, quantity: str = "") -> tuple[str, list[tuple[o
             waiting += [(field, [field]) for field in fields]
     if waiting:
         line = f"{line}; not all were tried within the budget"
-    return line, sorted((row for row in rows if row[1] > 0), key=lambda row: -row[2])
+    rows.sort(key=lambda row: -row[2])
+    return line, [row for row in rows if row[1] > 0]
 
 
 def noisy_fields() -> dict[str, list[str]]:

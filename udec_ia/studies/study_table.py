@@ -122,7 +122,7 @@ def draw_panels(
     with rc_context({"svg.hashsalt": "udec"}):
         figure = Figure((WIDTH, height * count + TITLE), facecolor="white", layout="constrained")
         FigureCanvasAgg(figure)
-        panels = figure.subplots(count, 1, squeeze=False, sharex=True)[:, 0]
+        panels = [*figure.subplots(count, 1, squeeze=False, sharex=True)[:, 0]]
         draw(panels)
         for panel in panels:
             panel.tick_params(which="both", labelsize=8, colors=INK)
@@ -142,10 +142,10 @@ def _curve(panel: Axes, x: Any, value: Any, name: str) -> None:
 def _map(panel: Axes, axes: list[Any], value: Any, name: str) -> None:
     x, y = (np.unique(one) for one in axes)
     known = np.isfinite(value)
-    shown = np.ma.masked_all((len(y), len(x)))
+    shown = np.full((len(y), len(x)), np.nan)
     shown[np.searchsorted(y, axes[1][known]), np.searchsorted(x, axes[0][known])] = value[known]
     panel.set_yscale(_scale(y))
-    mesh = panel.pcolormesh(x, y, shown, shading="nearest")
+    mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(shown), shading="nearest")
     panel.plot(axes[0][~known], axes[1][~known], "x", color=FAILED)
     bar = panel.get_figure().colorbar(mesh, ax=panel)  # type: ignore[union-attr]
     bar.ax.tick_params(labelsize=8, colors=INK)
