@@ -1,8 +1,8 @@
-"""The command `udec`: run a deck, check a restart file, say what is in one, or look into it word by word.
+"""The command `udec`: run a deck, check a restart file, show what is in one, or inspect it word by word.
 
 Exit status: 0 if all went well, 1 after an error, 2 if the command line itself is wrong, 130 after Ctrl-C and
-143 after SIGTERM. Both may come at any time, also while what the program needs is being loaded: only what
-takes no time is loaded before.
+143 after SIGTERM. Both may come at any time, also while modules are being loaded: modules that take long to
+load are imported when a command needs them.
 """
 
 from __future__ import annotations
@@ -121,15 +121,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         with hold(), passing():
             return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt as interrupt:
-        for number in former:  # nothing is left that a further one could end
+        for number in former:  # the process ends anyway
             signal.signal(number, signal.SIG_IGN)
         print(f"\ninterrupted{_saved(interrupt)}", file=sys.stderr)
         return TERMINATED if isinstance(interrupt, Terminated) else INTERRUPTED
     finally:
         for number, handler in former.items():
-            if argv is None:  # the process ends here, with a status that is settled
+            if argv is None:  # the process ends here
                 signal.signal(number, signal.SIG_IGN)
-            elif handler is not None:  # else it is none of Python's
+            elif handler is not None:  # None: not set by Python
                 signal.signal(number, handler)
 
 
@@ -184,7 +184,7 @@ def _main(argv: Sequence[str]) -> int:
         detail = str(error).partition(" for an array")[0]
         print(f"udec: there is not enough memory{f': {detail}' if detail else ''}", file=sys.stderr)
         return ERROR
-    except BrokenPipeError:  # the reader of our output has gone: nobody is left to tell
+    except BrokenPipeError:  # the reader of the output has gone
         _last_of_output()
         return ERROR
     except OSError as error:

@@ -1,13 +1,13 @@
-"""Putting a file in its place in one step, and in the place of nothing but a file of its own kind.
+"""Files are written in one step, and replace only a file of their own kind.
 
-The content goes to a temporary file in the same folder, which is renamed: the name stands for the old content
-or the new, not for a part. Whatever becomes of the program, the file is whole; what is to outlast a power
-failure as well is forced to the disk before.
+The content goes to a temporary file in the same folder, which is then renamed: the file has the old content
+or the new, never a part, whatever ends the program. With `force` it is on the disk before, to survive a power
+failure, too.
 
-What the program did not write it does not replace. Files of one kind begin alike, so what stands there must
-begin as the new file does: no picture goes over a deck, and nothing over a device. A file that was replaced
-keeps its mode, and its owner and group where that is allowed; a link stays, and the file that it leads to is
-replaced.
+The program replaces only what it has written. Files of one kind begin alike, so the existing file must begin
+as the new one does: a picture does not replace a deck, and nothing replaces a device. The new file has the
+mode of the former one, and its owner and group where that is allowed. A link stays; the file that it leads to
+is replaced.
 """
 
 from __future__ import annotations
@@ -22,16 +22,9 @@ from pathlib import Path
 
 from udec_ia.errors import UdecError
 
-FRONT = 512  # bytes that tell what a file is
+FRONT = 512  # bytes that show what a file is
 SIGNATURE = 6  # bytes in which PNG, SVG, GIF, HDF5 and our tables differ from each other and from a deck
 LEAVE = "a file may only replace one of its own kind: use another name or folder, or move the existing file"
-NO_FILES = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-}
 Content = bytes | memoryview
 Judge = Callable[[bytes, int], str]
 
@@ -39,13 +32,12 @@ Judge = Callable[[bytes, int], str]
 def put_in_place(path: Path, content: Content, judge: Judge | None = None, *, force: bool = True) -> None:
     """Write `content` as the file `path`; its folder is made if it is not there.
 
-    judge: takes the first bytes and the size of a file that stands there, and returns why it may not be
-    replaced, or ""; without it, it must begin as `content` does. force: wait until the file is on the disk,
-    which may take as long as a thousand cycles. Raises UdecError 31; what stood there before is then
-    untouched.
+    judge: takes the first bytes and the size of the existing file, and returns why it may not be replaced,
+    or ""; by default it must begin as `content` does. force: wait until the file is on the disk, which may
+    take as long as a thousand cycles. Error 31 if that fails; an existing file is then unchanged.
     """
     try:
-        there = status(path)
+        there = _status(path)
         target = Path(os.path.realpath(path))
         if there is None:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -58,13 +50,13 @@ def put_in_place(path: Path, content: Content, judge: Judge | None = None, *, fo
 
 def check_name(path: Path, content: Content) -> None:
     """Error 31 unless there is no file `path`, or one that begins as `content` does and may be replaced."""
-    there = status(path)
+    there = _status(path)
     if there is not None:
         _check_replaceable(path, Path(os.path.realpath(path)), there, _alike(path, content))
 
 
-def status(path: Path) -> os.stat_result | None:
-    """What stands under the name `path`, or None. Error 31 for what is no name, OSError for endless links."""
+def _status(path: Path) -> os.stat_result | None:
+    """Status of the file `path`, None if there is none. Error 31 for an impossible name."""
     try:
         return path.stat()
     except FileNotFoundError:
@@ -75,12 +67,12 @@ def status(path: Path) -> os.stat_result | None:
 
 def _check_replaceable(path: Path, target: Path, there: os.stat_result, judge: Judge) -> None:
     """Error 31 unless the file may be replaced."""
-    kind = stat.S_IFMT(there.st_mode)
-    if kind != stat.S_IFREG:
-        raise UdecError(31, f"{path} is {NO_FILES.get(kind, 'no file')}", LEAVE)
+    if not stat.S_ISREG(there.st_mode):
+        what = "a folder" if stat.S_ISDIR(there.st_mode) else "a device, a pipe or a socket"
+        raise UdecError(31, f"{path} is {what}", LEAVE)
     if not (there.st_mode & 0o222 and os.access(target, os.W_OK)):
         raise UdecError(31, f"{path} is read-only", "use another name, or make it writable")
-    with target.open("rb") as file:  # another may have come to stand under the name since
+    with target.open("rb") as file:  # it may have been replaced since
         reason = judge(file.read(FRONT), os.fstat(file.fileno()).st_size)
     if reason:
         raise UdecError(31, f"{path} {reason}, and stays as it is", LEAVE)
@@ -97,13 +89,13 @@ def _alike(path: Path, content: Content) -> Judge:
 
 
 def _write(target: Path, content: Content, before: os.stat_result | None, force: bool) -> None:
-    temporary = hidden(target)
+    temporary = target.with_name(f".udec-{secrets.token_hex(8)}.tmp")
     mode = 0o666 if before is None else 0o600  # less what the user's mask forbids
     try:
         with open(temporary, "xb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
             file.write(content)
             if before is not None:
-                keep_rights(temporary, before)
+                _keep_rights(temporary, before)
             if force:
                 file.flush()
                 os.fsync(file.fileno())
@@ -116,11 +108,6 @@ def _write(target: Path, content: Content, before: os.stat_result | None, force:
             _sync_folder(target.parent)
 
 
-def hidden(path: Path) -> Path:
-    """A name beside `path` that nobody has, for what is to take its place."""
-    return path.with_name(f".udec-{secrets.token_hex(8)}.tmp")
-
-
 def last_number(folder: Path, name: str) -> int:
     """The greatest n for which there is a file name-n.* in `folder`, or 0."""
     numbered = re.compile(rf"{re.escape(name)}-(\d+)\.[^.]+")
@@ -128,10 +115,10 @@ def last_number(folder: Path, name: str) -> int:
     return max((int(one[1]) for one in found if one), default=0)
 
 
-def keep_rights(file: Path, before: os.stat_result) -> None:
+def _keep_rights(file: Path, before: os.stat_result) -> None:
     """Give `file` the mode of what it replaces, and its owner and group as far as that is allowed.
 
-    A group that cannot be kept loses its rights: they were not meant for the one that comes in its place.
+    If the group cannot be kept, the new group gets no rights.
     """
     if hasattr(os, "chown"):
         for owner, group in ((-1, before.st_gid), (before.st_uid, -1)):

@@ -2,9 +2,9 @@
 
 Python raises KeyboardInterrupt between any two of its steps: half-way through a change of the map, and in the
 midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only recorded.
-It is handed to the handler that was there before, which raises, as soon as the command is done. Commands that
+It is handed to the former handler, which raises, as soon as the command is done. Commands that
 take long let it through on the way: a run between two pieces of its cycles (`poll`), what only looks or draws
-at any time (`passing`). A second Ctrl-C does not wait: the command is taken back (model/undo.py).
+at any time (`passing`). A second Ctrl-C does not wait: the command is undone (model/undo.py).
 
 An exception that is raised where Python cleans up, in a `__del__` or a callback of a weak reference, is lost.
 So a signal that is let through stays recorded until it has ended something; otherwise it is handed on again,
@@ -39,8 +39,8 @@ def terminate(number: int, frame: Any) -> None:
 class _Waiting:
     """What all holds of the process share.
 
-    depth: holds that are open. passing: signals are let through all the same. firm: even the second one
-    waits. former: the handlers that `_arrived` stands in for. tell_lost: what `_lost` stands in for.
+    depth: open holds. passing: signals do not wait all the same. firm: even the second one
+    waits. former: the handlers that `_arrived` replaces. report_lost: the hook that `_lost` replaces.
     signals: those that have come, in order. raised: what the last handler has raised.
     """
 
@@ -49,7 +49,7 @@ class _Waiting:
         self.passing = False
         self.firm = False
         self.former: dict[int, Any] = {}
-        self.tell_lost = sys.unraisablehook
+        self.report_lost = sys.unraisablehook
         self.signals: list[int] = []
         self.raised: BaseException | None = None
 
@@ -73,7 +73,7 @@ _waiting = _Waiting()
 
 
 def _arrived(number: int, frame: Any) -> None:
-    """Note the signal, or hand it on if nothing is held or one like it is waiting already."""
+    """Record the signal, or hand it on outside of `hold` or if one of its kind is waiting already."""
     waits = _waiting.depth > 0 and not _waiting.passing
     if waits and (_waiting.firm or number not in _waiting.signals):
         _waiting.signals.append(number)
@@ -88,9 +88,9 @@ def _arrived(number: int, frame: Any) -> None:
 
 
 def _lost(unraisable: sys.UnraisableHookArgs) -> None:
-    """Tell of an exception that was lost, unless it comes from a signal that is handed on again."""
+    """Report an exception that was lost, unless it comes from a signal that is handed on again."""
     if not (_waiting.signals and _waiting.has_raised(unraisable.exc_value)):
-        _waiting.tell_lost(unraisable)
+        _waiting.report_lost(unraisable)
 
 
 class hold:  # noqa: N801 - a context, which reads as a verb
@@ -111,7 +111,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                     _waiting.former[number] = handler
                     signal.signal(number, _arrived)
             if sys.unraisablehook is not _lost:  # as it is after a signal has come within these lines
-                _waiting.tell_lost, sys.unraisablehook = sys.unraisablehook, _lost
+                _waiting.report_lost, sys.unraisablehook = sys.unraisablehook, _lost
         _waiting.passing, _waiting.firm = False, self.firm or _waiting.firm
         _waiting.depth += 1
 
@@ -126,7 +126,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                 if signal.getsignal(number) is _arrived:
                     signal.signal(number, handler)
             if sys.unraisablehook is _lost:
-                sys.unraisablehook = _waiting.tell_lost
+                sys.unraisablehook = _waiting.report_lost
         if _waiting.depth == 0 or _waiting.passing:
             poll()
 
@@ -147,7 +147,7 @@ def dealt_with(error: BaseException) -> None:
 
 @contextmanager
 def passing() -> Iterator[None]:
-    """Within, signals do not wait, whatever is held around."""
+    """Within, signals do not wait, also inside a `hold`."""
     if current_thread() is not main_thread():
         yield
         return

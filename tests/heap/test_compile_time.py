@@ -16,7 +16,7 @@ from support.handmade_map import two_blocks
 from udec_ia.compiling import compile_duration
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.model import Model
-from udec_ia.output.run_progress import Report
+from udec_ia.output.run_progress import RunProgress
 
 SAYS = "compiling once for this machine, up to a minute ..."
 
@@ -93,7 +93,7 @@ def test_the_clock_of_a_run_stands_still_meanwhile(fake_time: list[float]) -> No
 
 def test_the_rate_is_that_of_the_cycles(fake_time: list[float]) -> None:
     h, out = two_blocks().h, io.StringIO()
-    report = Report(lambda: h, 4000, out, None)
+    report = RunProgress(lambda: h, 4000, out, None)
     with compiling():
         fake_time[0] += 60
     fake_time[0] += 4

@@ -94,8 +94,8 @@ def test_a_program_runs_alone(m: Model, file: str, capsys: pytest.CaptureFixture
 
 
 def test_the_pictures(file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, *rest in (["what", "40"], ["map"], ["graph", "40", "--depth", "2"]):
-        out = tmp_path / f"{name}.png"
+    for name, *rest in (["map"], ["graph", "40", "--depth", "2"]):
+        out = tmp_path / f"{name}.{'png' if name == 'map' else 'dot'}"
         assert main([name, file, *rest, "--out", str(out)]) == 0
         assert f"wrote {out}\n" in capsys.readouterr().out
         first = out.read_bytes()
@@ -122,9 +122,7 @@ def test_what_cannot_be_looked_at(file: str, tmp_path: Path, capsys: pytest.Capt
         (["find", file, "block", "--tolerance", "1"], "--tolerance goes with --value"),
         (["graph", file, "8000"], "only groups have pointers"),
         (["graph", file, "1", "--depth", "0"], "1 or more"),
-        (["graph", file, "1", "--out", "g.pdf"], "ends in .png or .svg or .dot"),
         (["map", file, "--out", "m.pdf"], "ends in .png or .svg"),
-        (["what", file, "8000", "--out", "w.png"], "lies in no block"),
     ):
         assert main(given) == 2
         assert says in capsys.readouterr().err

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,9 +18,9 @@ from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap_tools.memory_use import ACROSS, DOWN, cover, heap_map, stretch
 from udec_ia.heap_tools.pointer_graph import NODES, dot, graph, neighbourhood
 from udec_ia.layout import offsets as g
-from udec_ia.output import heap_picture, place_picture, pointer_picture
+from udec_ia.output import heap_picture
 from udec_ia.output.drawn_outlines import outlines
-from udec_ia.output.place_picture import outlines_left
+from udec_ia.output.heap_picture import outlines_left
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
 from udec_ia.reader.word_map import NAMES, UNUSED, Atlas
 
@@ -207,68 +205,23 @@ def test_dot_is_dot(scene: Model) -> None:
     )
 
 
-def test_boxes_do_not_cover_each_other(scene: Model) -> None:
-    for kind in ("block", "domain", "zone"):
-        found = neighbourhood(Atlas(scene.array.h), int(scene.table(kind)["address"][0]), 3)
-        places = pointer_picture.layout(found)
-        wide, high = pointer_picture.BOX
-        for (x, y), (u, v) in combinations(places.values(), 2):
-            assert abs(x - u) >= wide or abs(y - v) >= high
-        columns: dict[float, set[int]] = {}
-        for key, (x, _) in places.items():
-            columns.setdefault(x, set()).add(found.nodes[key].depth)
-        assert all(len(depths) == 1 for depths in columns.values())
-
-
 # ---- files
 
 
 def test_pictures_are_files_of_their_type(scene: Model, tmp_path: Path) -> None:
-    atlas, block = Atlas(scene.array.h), int(scene.table("block")["address"][0])
     for name, begins in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("A.PNG", b"\x89PNG")):
-        for draw in (
-            lambda path: heap_picture.draw(scene.array, path),
-            lambda path: place_picture.draw(atlas, block, path),
-            lambda path: pointer_picture.draw(atlas, block, path),
-        ):
-            listing = draw(tmp_path / name)
-            assert f"wrote {tmp_path / name}" in listing.said
-            assert (tmp_path / name).read_bytes().startswith(begins)
-    pointer_picture.draw(atlas, block, str(tmp_path / "a.dot"))
-    assert (tmp_path / "a.dot").read_text().startswith("digraph")
-    for draw in (heap_picture.draw, lambda _, path: place_picture.draw(atlas, block, path)):
-        with pytest.raises(ValueError, match=r"a.dot: the name of a picture ends in .png or .svg"):
-            draw(scene.array, tmp_path / "a.dot")
+        listing = heap_picture.draw(scene.array, tmp_path / name)
+        assert f"wrote {tmp_path / name}" in listing.said
+        assert (tmp_path / name).read_bytes().startswith(begins)
+    with pytest.raises(ValueError, match=r"a.dot: the name of a picture ends in .png or .svg"):
+        heap_picture.draw(scene.array, tmp_path / "a.dot")
 
 
 @pytest.mark.parametrize("centre", [1e9, 1e15, -1e25])
-def test_what_would_be_named_far_outside_is_not(scene: Model, tmp_path: Path, centre: float) -> None:
-    """The address of a corner stands beside its arc, whose centre a damaged state may have anywhere."""
+def test_arcs_far_away_can_be_drawn(scene: Model, tmp_path: Path, centre: float) -> None:
+    """A damaged state may have the centre of an arc anywhere."""
     array = scene.array.copy()
-    block = int(scene.table("block")["address"][0])
     for ip in scene.table("corner")["address"].tolist():
         putr(array.h, ip, g.KXCP, centre)
-    atlas = Atlas(array.h)
-    place_picture.draw(atlas, block, tmp_path / "place.png")
-    assert (tmp_path / "place.png").stat().st_size > 1000
-
-
-@pytest.mark.parametrize(
-    ("kind", "many"),
-    [("block", 1), ("corner", 1), ("contact", 1), ("gridpoint", 1), ("zone", 3), ("bound", 1)],
-)
-def test_the_place_is_marked(scene: Model, kind: str, many: int) -> None:
-    atlas, row = Atlas(scene.array.h), scene.table(kind)[0]
-    spots = place_picture.spots(atlas, atlas.span(int(row["address"])))
-    assert len(spots) >= many
-    names = {"block": "KX KY", "corner": "KXP KYP", "contact": "KXC KYC", "gridpoint": "KXG KYG"}
-    if kind in names:
-        assert spots.tolist() == [[float(row[name]) for name in names[kind].split()]]
-
-
-def test_a_domain_is_marked_at_its_contacts(scene: Model) -> None:
-    atlas, contacts = Atlas(scene.array.h), scene.table("contact")
-    for row in scene.table("domain"):
-        own = contacts[(contacts["KD1"] == row["address"]) | (contacts["KD2"] == row["address"])]
-        wanted: Any = {(float(one["KXC"]), float(one["KYC"])) for one in own}
-        assert {*map(tuple, place_picture.spots(atlas, atlas.span(int(row["address"]))).tolist())} == wanted
+    heap_picture.draw(array, tmp_path / "map.png")
+    assert (tmp_path / "map.png").stat().st_size > 1000

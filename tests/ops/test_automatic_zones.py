@@ -207,7 +207,7 @@ def test_a_rounded_corner_needs_room() -> None:
         m.generate(0, 2, 0, 2, "automatic", edge=0.08)
     assert (caught.value.number, caught.value.parameter) == (14, "edge")
     assert len(m.table("gridpoint")) == 0
-    m.round(float(caught.value.advice.split()[-2]))
+    m.round(float(caught.value.advice.split()[-1]))
     m.generate(0, 2, 0, 2, "automatic", edge=0.08)
     sound(m)
 

@@ -7,7 +7,7 @@ import numpy as np
 from udec_ia import Model
 from udec_ia.heap.accessors import integers
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.groups_of_blocks import lose_hosted
+from udec_ia.ops.common.listed_groups import lose_hosted
 
 
 def loaded() -> Model:

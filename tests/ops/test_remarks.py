@@ -60,13 +60,6 @@ def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: 
     assert len(said) == 1
 
 
-def test_a_property_that_is_not_named(tmp_path: Path) -> None:
-    m = Model(out=tmp_path)
-    said = collect_remarks(m)
-    m.property(2)
-    assert said.keys == ["no-property"]
-
-
 def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
     m = soft(tmp_path, bulk=1e9, g=1e9)
     said = collect_remarks(m)
@@ -83,24 +76,6 @@ def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
     assert "2 blocks of material 1" in text
     m.cycle(1)
     assert m.table("block")["KBM"].tolist() == masses
-
-
-@pytest.mark.parametrize(("at", "d", "many"), [(0.499, 0.0, 1), (0.4, 0.0, 0), (0.499, 0.0001, 0)])
-def test_a_sliver_that_makes_the_rounding_small(at: float, d: float, many: int, tmp_path: Path) -> None:
-    """A cut near a corner leaves an edge of a thousandth; who gives a length by ROUND knows."""
-    m = Model(out=tmp_path)
-    said = collect_remarks(m)
-    m.property(1, density=2000, kn=1e8, ks=1e8)
-    m.block(0, 0, 0, 1, 1, 1, 1, 0)
-    m.split(-1, 0.5, 2, 0.5)
-    m.split(0, at, 1.5, 2)
-    if d:
-        m.round(d)
-    m.cycle(1)
-    m.cycle(1)
-    assert said.keys == ["short-edge"] * many
-    for text in said:
-        assert "0.000999 m that ends at (0, 0.5)" in text
 
 
 @pytest.mark.parametrize(("moduli", "lacking"), [({"g": 1e9}, "BULK"), ({"bulk": 1e9}, "G")])
@@ -306,14 +281,3 @@ def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None
     m.cycle(1)
     assert said.keys.count("joints-of-two-materials") == 1
     assert "materials 1 and 2 meet and differ in KN and FRICTION" in said[-1]
-
-
-@pytest.mark.parametrize(("stress", "warned"), [((4e6, 0, -1e6), True), ((-4e6, 1e6, -1e6), False)])
-def test_initial_tension_is_remarked(
-    stress: tuple[float, float, float], warned: bool, tmp_path: Path
-) -> None:
-    m = soft(tmp_path, bulk=1e9, g=5e8)
-    said = collect_remarks(m)
-    m.insitu(0, 1, 1, 2, *stress)
-    assert said.keys == ["initial-tension"] * warned
-    assert all("4e+06" in one for one in said)

@@ -368,7 +368,7 @@ def test_what_slides_at_constant_speed_is_in_balance_and_not_at_rest(tmp_path: P
     assert not solution
     assert solution.ratio <= 0.01
     assert solution.motion > 0.01
-    assert solution.liveliest == f"block@{block(m, 2, 3)['address']}"
+    assert solution.greatest_energy == f"block@{block(m, 2, 3)['address']}"
     assert f"NOT REACHED (kinetic over strain energy {solution.motion:.3g}" in solution.short
 
 

@@ -74,12 +74,9 @@ def test_damping_of_strains_is_not_said_to_act_in_a_rigid_model(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("static", [False, True])
-def test_joints_too_soft_for_the_rounding_are_told_of_before_and_after(static: bool, tmp_path: Path) -> None:
+def test_joints_too_soft_for_the_rounding_are_error_15(static: bool, tmp_path: Path) -> None:
     m = made(COLUMN.replace("KN=1E9 KS=1E9", "KN=1E6 KS=1E6").replace("ROUND 0.1", "ROUND 0.01"), tmp_path)
-    told: list[str] = []
-    m.tell = lambda warning: told.append(getattr(warning, "key", ""))
     with pytest.raises(UdecError) as refused:
         m.solve(1e-4, limit=5000, static=static)
     assert refused.value.number == 15
     assert "a greater KN" in str(refused.value)
-    assert "soft-joints" in told

@@ -36,7 +36,7 @@ def test_a_command_is_taken_back_also_by_repeating_others(
     m.block(0, 0, 0, 30, 40, 30, 40, 0)
     for x in range(1, 40):
         m.split(x, -1, x, 31)
-    assert len(m.session.undo.since) == (0 if repeated == 0 else 39)
+    assert len(m.session.undo.steps) == (0 if repeated == 0 else 39)
     before, size = state(m), len(m.array.h.ia)
 
     def fail(*_: object) -> None:
@@ -218,10 +218,10 @@ def test_split_finds_the_blocks_that_were_taken_back() -> None:
 
 def test_many_commands_that_change_numbers_only_leave_no_long_list() -> None:
     m = side_by_side()
-    m.session.undo.cost = 0.0
+    m.session.undo.copy_seconds = 0.0
     for n in range(50):
         m.gravity(0, -n)
-    assert len(m.session.undo.since) < 3
+    assert len(m.session.undo.steps) < 3
 
 
 def test_numbers_that_were_changed_before_words_are_taken_back_with_them() -> None:

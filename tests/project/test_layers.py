@@ -166,6 +166,7 @@ BELOW = {  # layers that a layer imports
         "debug",
         "deck",
         "errors",
+        "file_replacement",
         "compiling",
         "facilities",
         "heap",

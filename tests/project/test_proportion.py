@@ -10,7 +10,6 @@ import gc
 from collections.abc import Callable, Iterator
 from functools import cache
 from math import isqrt
-from pathlib import Path
 from time import process_time
 
 import pytest
@@ -21,7 +20,6 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.heap_dump import dump
 from udec_ia.heap_tools.memory_use import heap_map
 from udec_ia.layout import offsets as g
-from udec_ia.output import history_files as histories
 from udec_ia.output.drawn_outlines import snapshot
 from udec_ia.output.plot_frames import Frame, What
 from udec_ia.reader.word_map import Atlas
@@ -154,30 +152,6 @@ def test_explaining_the_time_step_is_cheap_beside_cycles() -> None:
         explained.append(between - start)
         cycles.append(process_time() - between)
     assert min(explained) < min(cycles)
-
-
-def test_files_of_histories_are_extended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many CYCLEs: the whole is written twice, once for each of the copies that take turns."""
-    whole = {"_csv": 0, "_hdf5": 0}
-
-    def counting(name: str) -> Callable[..., bytes]:
-        write = getattr(histories, name)
-
-        def counted(series: object) -> bytes:
-            whole[name] += 1
-            return bytes(write(series))
-
-        return counted
-
-    for name in whole:
-        monkeypatch.setattr(histories, name, counting(name))
-    model = grid(4)
-    model.out = tmp_path
-    model.gravity(0, -10)
-    model.history(1, "KY", at=(0.5, 1.5))
-    for _ in range(10):
-        model.cycle(1)
-    assert whole == {"_csv": 2, "_hdf5": 2}
 
 
 def test_a_picture_names_the_domains_that_can_be_read() -> None:

@@ -157,7 +157,6 @@ def test_names_of_files_cannot_steer_a_terminal(
     for words in (
         ["map", f"{name}.h5", "--out", f"{name}.png"],
         ["graph", f"{name}.h5", "1", "--out", f"{name}.dot"],
-        ["what", f"{name}.h5", "1", "--out", f"{name}.svg"],
         ["view", f"{name}.h5", "--out", f"{name}.html"],
         ["check", f"{name}.h5"],
         ["info", f"{name}.h5"],

@@ -76,9 +76,9 @@ OTHERS: dict[str, tuple[Callable[[Path], object], str]] = {
     "hdf5": (foreign_hdf5, "is an HDF5 file, but not a restart file"),
     "broken": (cut_short, "is cut short"),
     "folder": (Path.mkdir, "is a folder"),
-    "pipe": (lambda path: os.mkfifo(path), "is a pipe"),
-    "socket": (listening, "is a socket"),
-    "device": (terminal, "is a device"),
+    "pipe": (lambda path: os.mkfifo(path), "is a device, a pipe or a socket"),
+    "socket": (listening, "is a device, a pipe or a socket"),
+    "device": (terminal, "is a device, a pipe or a socket"),
     "loop": (loop, "Too many levels of symbolic links"),
     "below a file": (lambda path: path.parent.rmdir() or path.parent.touch(), "Not a directory"),
 }

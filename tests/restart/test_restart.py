@@ -245,16 +245,6 @@ def test_info(name: str, tmp_path: Path) -> None:
     assert lines["deck"] == "4 command lines"
 
 
-def test_info_reports_the_inertia_of_zones(tmp_path: Path) -> None:
-    """A square in two zones has its mass at its corners: 3 times the inertia of the body."""
-    m = model(*box(0, 2, 0, 2), d=0.1)
-    m.property(1, bulk=1e8, g=5e7)
-    m.change(0, 2, 0, 2, type="fdef")
-    m.generate(0, 2, 0, 2, "manual", [(0, 0), (0, 2), (2, 2), (2, 0)], zones=[(1, 2, 3), (1, 3, 4)])
-    lines = dict(line.split(maxsplit=1) for line in info(m.save(tmp_path / "zoned.h5")).splitlines())
-    assert lines["inertia"].startswith("that of block@1 is 3.00 times")
-
-
 def test_what_rset_has_bent_is_not_cut_after_a_restart(tmp_path: Path) -> None:
     """An outline that crosses itself would lead SPLIT astray; put right again, it is cut."""
     m = model(*box(0, 4, 0, 2), d=0.1)

@@ -145,8 +145,7 @@ def pictures(rng: Rng, bad: str) -> Iterator[list[str]]:
     """What draws, or writes a page."""
     a = str(int(rng.integers(1, 3000)))
     yield ["map", bad, "--out", "map.png"]
-    yield ["what", bad, a, "--out", "place.png"]
-    yield ["graph", bad, a, "--out", "graph.svg"]
+    yield ["graph", bad, a, "--out", "graph.dot"]
     yield ["view", bad, "--out", "page.html"]
 
 

@@ -1,30 +1,24 @@
-"""The monitor of energy from nowhere: it judges the time-step before a run, and the energy on the way.
+"""The energy monitor: it checks the time-step before a run, and ends a run that gains energy from nowhere.
 
-No mode is faster than the safe bound, so a step below it makes no vibration grow (timestep.py). Even then a
-block that strikes another may leave faster than it came: a mass m that meets a stiffness K at the very
-beginning of a step dt has lost K v dt dt/m of its velocity v by the next one, and leaves with v (K dt dt/m -
-1). That is more than v for a step above 0.7 of the critical one. So a step up to 0.7 of the bound is not
-suspected of anything, and costs nothing but the bound, once for each step, and again when contacts have been
-made.
+A step below the safe bound makes no vibration grow. But a mass m that strikes a stiffness K at the beginning
+of a step dt leaves with K dt dt/m - 1 times its velocity. That is more than 1 for a step above 0.7 of the
+critical one. So runs with a step above 0.7 of the bound are monitored.
 
-Of a suspected run the energy is looked at every 100 cycles. What there can be is what there was, what
-commands and boundary conditions have put in (WDRIVE), and what gravity has given. Damping and friction only
-take. What there is,
+The energy is calculated every 100 cycles:
 
-    kinetic energy + strain energy + work of friction + what has been lifted
+    kinetic energy + strain energy + work of friction + gravity potential gained
 
-may be more, by errors of the formulation (docs/energy.md) and as velocities are known at half steps: a
-vibration with w dt below 1.8, 0.9 of the critical step, has up to ten times the energy that a small step
-would give it. If there is more, no load has made it. The work of friction counts, so that a stack that
-rattles is found as well as one that is thrown off; a user's joint law that gives energy reduces it by
-as much (constitutive.joint_laws). Nothing is known of a user's block law: blocks that follow one may swell by
-themselves, and such runs are not suspected.
+It cannot exceed the initial energy and the input by commands, boundary conditions (WDRIVE) and gravity,
+except by errors of the formulation (docs/energy.md) and because velocities are those of half steps: a
+vibration with w dt below 1.8, 0.9 of the critical step, appears to have up to ten times its energy. The work
+of friction is included, so that a stack that rattles is found, too; a user's joint law that gives energy
+reduces it by as much (constitutive.joint_laws). Models whose blocks follow a user's block law are not
+monitored: the blocks may expand by themselves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -42,33 +36,32 @@ from udec_ia.kernels.energy.stored_energy import (
     strain_of_blocks,
     strain_of_contacts,
 )
-from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.running.critical_step import bound
 from udec_ia.running.group_names import name_of
 from udec_ia.running.stiffness_bound import StepLimit, damped_step
 
-SUSPECT = 0.7  # share of the safe bound from which on a run is suspected
-FACTOR = 10  # what there is over what there can be
-LOOK = 100  # cycles between two looks at the energy; JUDGE of them at the contacts made, and at chatter
-OTHER_STEP = 1.05  # step that the bound is found anew for, over that of before
+SUSPECT = 0.7  # share of the safe bound from which on a run is monitored
+FACTOR = 10  # greatest energy over the input
+LOOK = 100  # cycles between two checks of the energy
 
 
 class Stock(NamedTuple):
-    """Energy in J/m: kinetic and strain, lost to friction, and potential of gravity against the origin."""
+    """Energy in J/m. stored: kinetic and strain. friction: its work. potential: of gravity."""
 
     stored: float
     friction: float
     potential: float
 
 
-@dataclass(frozen=True)
-class Account:
-    """What a suspected run began with. driven: WDRIVE. grain: what no look can tell from nothing.
+class Account(NamedTuple):
+    """Energies of a monitored run, which may have several CYCLEs.
 
-    begun: with what commands have changed between two CYCLEs. ended: when the last CYCLE ended.
+    begun: at its beginning, with the changes by commands since. ended: at the end of the last CYCLE.
+    driven: WDRIVE at its beginning. grain: energy that is lost in rounding.
     """
 
     begun: Stock
@@ -78,33 +71,32 @@ class Account:
 
 
 class EnergyMonitor:
-    """Monitors one model. tell: takes warnings. safe: the safe bound of the time-step, as found last."""
+    """Monitors one model. tell: takes warnings. safe: the last safe bound of the time-step."""
 
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = StepLimit(np.inf, 0)
-        self._judged = (0.0, 0.0, -1)  # step, what damping left of it, and contacts made at that time
-        self._warned = (0.0, 0.0)  # step, and what damping left of it
+        self._judged = (0.0, 0.0, -1)  # step, the same with its damping, contacts made so far
+        self._warned = (0.0, 0.0)  # step, the same with its damping
         self._suspected = self._own_laws = False
         self._account: Account | None = None
 
     def judge(self, array: MainArray, anew: bool = False) -> None:
-        """Find the safe bound if it may have changed, or `anew`; warn of a step above it, once for each."""
-        h = array.h
-        step, made = float(h.cr[g.TDEL]), int(h.ci[g.NMADE])
-        left = damped_step(h, step)  # of a critical step like this one
-        if _alike(step, left, *self._judged[:2]) and made == self._judged[2] and not anew:
+        """Calculate the safe bound if it may have changed, or `anew`; warn once of each step above it."""
+        h, step = array.h, float(array.h.cr[g.TDEL])
+        now = step, damped_step(h, step), int(h.ci[g.NMADE])
+        if now == self._judged and not anew:
             return
-        self._judged = step, left, made
+        self._judged = now
         self.safe = bound(array)
         self._suspected = step > SUSPECT * damped_step(h, self.safe.step)
         warning = step_warning(array, self.safe)
-        if warning is not None and not _alike(step, left, *self._warned):
-            self._warned = step, left
+        if warning is not None and now[:2] != self._warned:
+            self._warned = now[:2]
             self.tell(warning)
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
-        """A CYCLE begins, whose step was judged. own_laws: deformable blocks follow the user's laws."""
+        """A CYCLE begins after `judge`. own_laws: deformable blocks follow the user's laws."""
         self._own_laws = own_laws
         if not self._suspected or own_laws:
             self._account = None
@@ -114,25 +106,23 @@ class EnergyMonitor:
             self._account = Account(now, now, float(array.h.cd[g.WDRIVE]), _grain(array))
             return
         begun, ended = account.begun, account.ended
-        changed = Stock(
-            begun.stored + max(now.stored - ended.stored, 0.0),
-            begun.friction + now.friction - ended.friction,
-            begun.potential + now.potential - ended.potential,
-        )
-        self._account = replace(account, begun=changed)
+        stored = begun.stored + max(now.stored - ended.stored, 0.0)
+        friction = begun.friction + now.friction - ended.friction
+        potential = begun.potential + now.potential - ended.potential
+        self._account = account._replace(begun=Stock(stored, friction, potential))
 
     def end(self, array: MainArray) -> None:
         """A CYCLE has ended."""
         if self._account is not None:
-            self._account = replace(self._account, ended=_stock(array.h))
+            self._account = self._account._replace(ended=_stock(array.h))
 
     def cycles_ahead(self, h: Memory) -> int:
-        """Cycles until the next look. It depends on the number of the cycle alone."""
+        """Cycles until the next check, which depends on the number of the cycle alone."""
         every = JUDGE if self._account is None else LOOK
         return every - int(h.ci[g.MCTOT]) % every
 
     def look(self, array: MainArray) -> None:
-        """Error 37 if there is more energy than there can be. A run not suspected is judged again."""
+        """Error 37 if there is more energy than was put in. Checks the step of a run not monitored again."""
         h, account = array.h, self._account
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
             self.judge(array)
@@ -159,17 +149,12 @@ class EnergyMonitor:
             f"put in {came:.3g}: {name_of(h, int(at))} leads with {largest:.3g}. The time-step "
             f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
-        advice = f"go back to where you began or saved, and take {fraction_line(h, fraction)}"
+        advice = f"run again from the beginning or a saved state, and take {fraction_line(h, fraction)}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))
 
 
-def _alike(step: float, beta: float, other_step: float, other_beta: float) -> bool:
-    """True if time-steps are the same but for what deformable blocks make of them, and BETA is the same."""
-    return other_step / OTHER_STEP < step < other_step * OTHER_STEP and beta == other_beta
-
-
 def _stock(h: Memory) -> Stock:
-    """What there is now."""
+    """The energies of the model as it is."""
     soft = soft_in(h)
     moving = liveliest(h, soft)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
     strained = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
@@ -177,13 +162,9 @@ def _stock(h: Memory) -> Stock:
 
 
 def _grain(array: MainArray) -> float:
-    """Energy that blocks can gain or lose between a place and the next that the reals know, or within a step.
-
-    Where places are rounded to the digit d, a block moves by d in a step or not at all; and at rest under
-    gravity g its velocity is g dt half a step later.
-    """
+    """Energy that blocks can gain by rounding of their places to the digit d, or by gravity within a step."""
     h, dt = array.h, float(array.h.cr[g.TDEL])
-    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+    blocks = list_of(h, "block")
     mass, x, y = (np.asarray(getr(h, blocks, k), np.float64) for k in (g.KBM, g.KX, g.KY))
     digit = last_digit(array, float((np.abs(x) + np.abs(y)).max()))
     gravity = np.hypot(np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY]))

@@ -1,7 +1,7 @@
-"""The diagnosis of a SOLVE at its end: which blocks have fallen, which moved most, what damps, what slipped.
+"""The diagnosis of a SOLVE at its end: fallen blocks, blocks that moved most, joints that slipped.
 
-While SOLVE runs, a record is kept of where the blocks are and whether they have contacts, at some ten to
-twenty cycles, evenly spread.
+While SOLVE runs, ten to twenty evenly spaced looks record where the blocks are and whether they have
+contacts.
 """
 
 from __future__ import annotations
@@ -16,27 +16,28 @@ from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.energy.stored_energy import strain_of_blocks, strain_of_contacts
-from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.remark_key import Remark
 from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.group_names import contact_name
 from udec_ia.running.solve_result import Solution
 
-FIRST, KEPT = 20, 16  # cycles between the first looks; looks that are kept
-FALLEN = 0.1  # of its size: a block that moved by more has fallen. Its size is twice its greatest radius
-MOVED = 0.1  # of the greatest displacement: blocks that moved by more are counted
+FIRST, LOOKS = 20, 16  # cycles between the first looks; greatest number of looks
+FALLEN = 0.1  # displacement of a fallen block over its size, which is twice its greatest radius
+MOVED = 0.1  # displacement over the greatest one, from which on blocks are counted
 NAMED = 3  # blocks that are named
-SLIPPED = 0.0015  # of the strain energy: work of friction, and shear that contacts lost as they opened, from
-# which on the loading path matters. Slip of a hundredth of the elastic shear takes a fiftieth of the energy
-# of shear, which may be a tenth of all (docs/studies)
-ROUNDED = 1e-3  # of the largest elastic shear: less than that is no slip
+# Work of friction and of contacts that opened over the strain energy, from which on the loading path matters.
+# Slip of a hundredth of the elastic shear takes a fiftieth of the energy of shear, which may be a tenth of
+# all (docs/studies).
+SLIPPED = 0.0015
+ROUNDED = 1e-3  # least slip that is reported over the largest elastic shear
 
 
 class Look(NamedTuple):
-    """Where the centroids of all blocks were in a cycle."""
+    """The centroids of all blocks after a cycle."""
 
     cycle: int
     x: Any
@@ -47,7 +48,7 @@ class DisplacementRecord:
     """Where blocks were during a SOLVE. blocks: their addresses. lost: which of them lost all contacts."""
 
     def __init__(self, array: MainArray) -> None:
-        self.blocks: Any = addresses(array.h, int(array.h.ci[g.IBPNT]), g.KB)
+        self.blocks: Any = list_of(array.h, "block")
         self.looks: list[Look] = []
         self.every = FIRST
         self._touched = np.zeros(len(self.blocks), bool)
@@ -59,34 +60,33 @@ class DisplacementRecord:
         return self.every - (int(h.ci[g.MCTOT]) - self.looks[0].cycle) % self.every
 
     def add_if_due(self, h: Memory) -> None:
-        """Add a look if it is time for one."""
+        """Add a look if it is due; of too many, keep every second one."""
         if self.cycles_ahead(h) == self.every and int(h.ci[g.MCTOT]) != self.looks[-1].cycle:
             self.add(h)
-            if len(self.looks) > KEPT:
+            if len(self.looks) > LOOKS:
                 self.looks, self.every = self.looks[::2], 2 * self.every
 
     def add(self, h: Memory) -> None:
         """Add a look."""
-        x, y = self.places(h)
-        self.looks.append(Look(int(h.ci[g.MCTOT]), x, y))
-        touched = np.isin(self.blocks, _touched(h))
+        self.looks.append(Look(int(h.ci[g.MCTOT]), *self._centroids(h)))
+        contacts = list_of(h, "contact")
+        contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
+        touched = np.isin(self.blocks, [integers(h, contacts, k) for k in (g.KB1, g.KB2)])
         self.lost |= self._touched & ~touched
         self._touched |= touched
 
-    def places(self, h: Memory) -> tuple[Any, Any]:
-        """Where all blocks are."""
-        x, y = (np.asarray(getr(h, self.blocks, k), np.float64) for k in (g.KX, g.KY))
-        return x, y
-
     def displacements(self, h: Memory, since: Look) -> Any:
-        """How far each block has moved since a look, 0 for fixed blocks."""
-        x, y = self.places(h)
+        """Displacement of each block since a look, 0 for fixed blocks."""
+        x, y = self._centroids(h)
         free = integers(h, self.blocks, g.KBFIX) != g.FIXED
         return np.where(free, np.hypot(x - since.x, y - since.y), 0.0)
 
+    def _centroids(self, h: Memory) -> Any:
+        return [np.asarray(getr(h, self.blocks, k), np.float64) for k in (g.KX, g.KY)]
+
 
 class RestDiagnosis(Observer):
-    """Observes one SOLVE. rested: work of friction until the model was at rest last, in J/m."""
+    """Observes one SOLVE. rested: work of friction until the last state of rest, in J/m."""
 
     def __init__(self, rested: float) -> None:
         self.rested = rested
@@ -111,33 +111,30 @@ class RestDiagnosis(Observer):
             self.record.add(array.h)
 
     def complete(self, array: MainArray, solution: Solution) -> Solution:
-        """`solution` with what there is to remark, and the addresses of the blocks that have fallen."""
+        """`solution` with its remarks and the addresses of the blocks that have fallen."""
         h, record = array.h, self.record
         if record is None:
             return solution
         remarks = []
-        way, size = (
-            record.displacements(h, record.looks[0]),
-            2 * np.asarray(getr(h, record.blocks, g.KBRO), float),
-        )
-        fallen = (way > 0) & ((way > FALLEN * size) | record.lost)
-        if fallen.any():
-            named = _names(h, record.blocks, np.where(fallen, way, -1.0), int(fallen.sum()))
+        moved = record.displacements(h, record.looks[0])
+        size = 2 * np.asarray(getr(h, record.blocks, g.KBRO), float)
+        fallen = (moved > 0) & ((moved > FALLEN * size) | record.lost)
+        if many := int(fallen.sum()):
             text = (
-                f"{_have(int(fallen.sum()))} fallen, {named}: each has moved by more than {FALLEN:.0%} of "
-                "its size, or has lost all its contacts on the way"
+                f"{_have(many)} fallen, {_names(h, record.blocks, np.where(fallen, moved, -1.0), many)}: "
+                f"each has moved by more than {FALLEN:.0%} of its size, or has lost all its contacts"
             )
             remarks.append(Remark("blocks-fallen", text))
-        if not solution.reached:
-            remarks += _moved(h, record)
+        if solution.reached:
+            remarks += self._slipped(h)
+        else:
+            remarks += _greatest_displacements(h, record)
             if not what_damps(h):
                 remarks.append(Remark("no-damping", "nothing damps: DAMPING LOCAL 0.8 damps all frequencies"))
-        else:
-            remarks += self._slipped(h)
         return solution._replace(remarks=tuple(remarks), fallen=tuple(record.blocks[fallen].tolist()))
 
     def _slipped(self, h: Memory) -> list[Remark]:
-        """A remark if friction and opening contacts have taken much since the last rest."""
+        """A remark if friction and opening contacts have taken much energy since the last state of rest."""
         taken = float(h.cd[g.WFRIC]) - self.rested
         stored = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft_in(h)))
         if taken <= SLIPPED * stored:
@@ -146,50 +143,42 @@ class RestDiagnosis(Observer):
         of = f"{share:.2%} of" if share < 1 else f"{share:.3g} times"
         text = (
             f"joints have slipped on the way{_farthest_slip(h)}, or opened and lost their shear: that "
-            f"took {taken:.3g} J/m, {of} what joints and blocks hold now. The result may depend on the "
-            "loading path: load in steps, and compare"
+            f"took {taken:.3g} J/m, {of} the strain energy. The result may depend on the loading path: "
+            "load in steps, and compare"
         )
         return [Remark("joints-slipped", text)]
 
 
-def _moved(h: Memory, record: DisplacementRecord) -> list[Remark]:
+def _greatest_displacements(h: Memory, record: DisplacementRecord) -> list[Remark]:
     """A remark on the blocks that moved most in the last quarter of a SOLVE."""
     since = record.looks[-1 - max(len(record.looks) // 4, 1)] if len(record.looks) > 1 else record.looks[0]
-    way = record.displacements(h, since)
-    if not len(way) or not way.max() > 0:
+    moved = record.displacements(h, since)
+    if not len(moved) or not moved.max() > 0:
         return []
-    many, cycles = int((way > MOVED * way.max()).sum()), int(h.ci[g.MCTOT]) - since.cycle
+    many, cycles = int((moved > MOVED * moved.max()).sum()), int(h.ci[g.MCTOT]) - since.cycle
     text = f"{_have(many)} moved most in the last {counted(cycles, 'cycle')}, "
-    return [Remark("blocks-move", text + _names(h, record.blocks, way, many))]
+    return [Remark("blocks-move", text + _names(h, record.blocks, moved, many))]
 
 
 def _have(many: int) -> str:
     return "1 block has" if many == 1 else f"{many} blocks have"
 
 
-def _names(h: Memory, blocks: Any, way: Any, many: int) -> str:
-    """The first few of `many` blocks that have moved most, with their places and displacements."""
+def _names(h: Memory, blocks: Any, moved: Any, many: int) -> str:
+    """The first few of the `many` blocks that have moved most, with their places and displacements."""
     return ", ".join(
         f"block@{blocks[k]} at ({getr(h, int(blocks[k]), g.KX):.4g}, {getr(h, int(blocks[k]), g.KY):.4g}) by "
-        f"{way[k]:.2g} m"
-        for k in np.argsort(-way, kind="stable")[: min(many, NAMED)]
+        f"{moved[k]:.2g} m"
+        for k in np.argsort(-moved, kind="stable")[: min(many, NAMED)]
     )
 
 
-def _touched(h: Memory) -> Any:
-    """Addresses of blocks that have a contact, open or closed; some of them twice."""
-    contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
-    contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
-    return np.concatenate([integers(h, contacts, k) for k in (g.KB1, g.KB2)])
-
-
 def _farthest_slip(h: Memory) -> str:
-    """The contact that has slipped farthest since it closed: the shear that its spring does not hold.
+    """The closed contact of constitutive number 1 that has slipped farthest; "" without measurable slip.
 
-    Only contacts of constitutive number 1 that bear a force are asked. "" if none has slipped by more than
-    what its spring has rounded.
+    Slip is shear displacement that the spring does not hold, since the contact closed.
     """
-    contacts = addresses(h, int(h.ci[g.ICPNT]), g.KC)
+    contacts = list_of(h, "contact")
     contacts = contacts[(np.asarray(getr(h, contacts, g.KCFN)) > 0) & (integers(h, contacts, g.KCC) == 1)]
     if not len(contacts):
         return ""

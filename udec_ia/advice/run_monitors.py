@@ -1,7 +1,6 @@
-"""The monitors of a model: what its runs are watched for, from one CYCLE to the next.
+"""The monitors of a model, from one CYCLE to the next: of the time-step and the energy, and of chatter.
 
-They warn of a time-step that may be unstable and of contacts that chatter, stop a run that gains energy from
-nowhere, and know the work of friction until the model was at rest last. None of it is a part of the state.
+They also remember the work of friction until the last state of rest. None of this is saved with the state.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from udec_ia.running.cycle_observer import Observer, between_cycles
 class RunMonitors(Observer):
     """Monitors one model. laws: the user's laws. tell: takes warnings.
 
-    rested: work of friction until the model was at rest last, or was first looked at, in J/m; None before.
+    rested: work of friction until the last state of rest, or until the first run, in J/m; None before.
     """
 
     def __init__(self, laws: LawBook, tell: Callable[[str], None] = lambda warning: None) -> None:
@@ -30,7 +29,7 @@ class RunMonitors(Observer):
         self.rested: float | None = None
 
     def friction_until_rest(self, array: MainArray) -> float:
-        """Work of friction until the model was at rest last. ENERGY ON begins its sum anew."""
+        """Work of friction until the last state of rest. ENERGY ON resets the sum to 0."""
         taken = float(array.h.cd[g.WFRIC])
         if self.rested is None or taken < self.rested:
             self.rested = taken
@@ -41,7 +40,7 @@ class RunMonitors(Observer):
         self.energy.begin(array, self.laws.bind(array).own_blocks)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """Cycles until the next look. They depend on the number of the cycle alone."""
+        """See Observer. The result depends on the number of the cycle alone."""
         return min(n, self.energy.cycles_ahead(array.h))
 
     def look(self, array: MainArray, cycles: int) -> None:

@@ -1,4 +1,4 @@
-"""What the time-step of a run is, and the warnings of one that may be unstable."""
+"""The time-step of a run in words, and the warnings of one that may be unstable."""
 
 from __future__ import annotations
 
@@ -14,90 +14,80 @@ from udec_ia.running.critical_step import estimate
 from udec_ia.running.group_names import name_and_place
 from udec_ia.running.stiffness_bound import StepLimit, damped_step
 
-NEAR = 0.8  # of the safe bound: warn of steps from here on if nothing damps
-IMPACTS = 0.5  # of the safe bound: what is advised then
-LAST_DIGITS = 1e-6  # by which a step in 32-bit reals may be above the bound that it was made of
+NEAR = 0.8  # of the safe bound: least step that is reported if nothing damps
+IMPACTS = 0.5  # of the safe bound: step that is then recommended
+LAST_DIGITS = 1e-6  # relative error of a step in 32-bit reals that was calculated from the bound
 
 
 def is_safe(h: Memory, safe: StepLimit) -> bool:
-    """True if the time-step is not above what damping leaves of the bound `safe`."""
+    """True if the time-step is not above the bound `safe`, reduced by damping."""
     return bool(h.cr[g.TDEL] <= damped_step(h, safe.step) * (1 + LAST_DIGITS))
 
 
 def fraction_line(h: Memory, fraction: float) -> str:
-    """The command FRACTION with another number, of what it is a fraction now."""
+    """The command FRACTION with another number and the present word."""
     words = " SCALED" if h.ci[g.LSCALE] else " SAFE" if h.ci[g.LSAFE] else ""
     return f"FRACTION {fraction:.2g}{words}"
 
 
 def safe_fraction(array: MainArray, share: float) -> float:
-    """FRACTION of a step that is safe, where the present one is `share` of the critical one.
+    """FRACTION of a safe step, where the present step is `share` of the critical one.
 
-    It is just below that, or well below it if nothing damps what impacts give.
+    The step is just below the critical one, or well below it if nothing damps impacts.
     """
     return (0.95 if what_damps(array.h) else IMPACTS) * float(array.h.cr[g.FRAC]) / share
 
 
 def step_warning(array: MainArray, safe: StepLimit) -> Remark | None:
-    """A warning of a time-step above what damping leaves of the bound `safe`, or near it; else None."""
-    step = float(array.h.cr[g.TDEL])
-    critical = damped_step(array.h, safe.step)
-    if is_safe(array.h, safe):
-        return _near_bound(array, step / critical) if step > NEAR * critical else None
-    place = name_and_place(array.h, safe.address)
+    """A warning of a time-step above the bound `safe`, reduced by damping, or near it; else None.
+
+    Near it a joint that closes within a step may return more energy than it received, as the bound is that of
+    joints that stay closed. This counts only if nothing damps.
+    """
+    h, step = array.h, float(array.h.cr[g.TDEL])
+    critical = damped_step(h, safe.step)
+    if is_safe(h, safe) and (step <= NEAR * critical or what_damps(h)):
+        return None
+    place = name_and_place(h, safe.address)
     if safe.step == 0:
-        text = f"no time-step is safe: a mass or a stiffness of {place} is zero, infinite or no number"
+        text = f"no time-step is safe: a mass or a stiffness of {place} is zero, infinite or not a number"
         return Remark("no-safe-step", text)
     share = step / critical if critical else math.inf
-    fraction = f"{fraction_line(array.h, safe_fraction(array, share))} is safe"
+    fraction = fraction_line(h, safe_fraction(array, share))
+    if is_safe(h, safe):
+        return Remark(
+            "step-near-bound",
+            f"there is no damping, and the time-step is {share:.2g} of the safe bound: joints that open and "
+            f"close may throw blocks ever higher; take {fraction}, or DAMPING",
+        )
     if step <= safe.step:
-        cause, cure = _damping(array.h)
-        text = f"{cause} may make the time-step of {step:.3g} s unstable: {fraction}, or {cure}"
+        cause, cure = _damping(h)
+        text = f"{cause} may make the time-step of {step:.3g} s unstable: {fraction} is safe, or take {cure}"
         return Remark("step-above-damped-bound", text)
     return Remark(
         "step-above-bound",
         f"the time-step of {step:.3g} s is {share:.3g} of the safe bound, which {place} sets, and may be "
-        f"unstable: {fraction}",
-    )
-
-
-def _near_bound(array: MainArray, share: float) -> Remark | None:
-    """A warning of a time-step that is just below the safe bound, if nothing damps.
-
-    The bound is that of joints that stay closed. One that closes within a step is pressed by as much as if it
-    had been closed all the time, and gives back more than it took.
-    """
-    if what_damps(array.h):
-        return None
-    return Remark(
-        "step-near-bound",
-        f"nothing damps, and the time-step is {share:.2g} of the safe bound, which is that of joints that "
-        "stay closed: those that open and close may throw blocks ever higher; take "
-        f"{fraction_line(array.h, safe_fraction(array, share))}, or DAMPING",
+        f"unstable: {fraction} is safe",
     )
 
 
 def _damping(h: Memory) -> tuple[str, str]:
-    """The damping that lowers the safe time-step, and what to do instead of taking a shorter one."""
+    """The damping that lowers the safe time-step, and its replacement."""
     if h.cr[g.BETA]:
-        beta = float(h.cr[g.BETA])
-        return f"stiffness damping BETA = {beta:.3g} s", "a smaller fcrit, or MASS damping alone"
+        return f"stiffness damping BETA = {h.cr[g.BETA]:.3g} s", "a smaller fcrit, or MASS damping alone"
     name = BY_CODE[int(h.ci[g.LREST])].name
-    return f"{name} damping {float(h.cr[g.RESTF]):g}", "a smaller fraction of it, or ADAPTIVE damping"
+    return f"{name} damping {h.cr[g.RESTF]:g}", "a smaller fraction of it, or ADAPTIVE damping"
 
 
 def describe_step(array: MainArray, safe: StepLimit) -> str:
-    """One line: the time-step, its shares of estimate and safe bound, and which groups set these.
-
-    The bound is what damping leaves of it, as FRACTION ... SAFE takes it.
-    """
+    """One line: the time-step, its shares of estimate and damped safe bound, and which groups set these."""
     step = float(array.h.cr[g.TDEL])
-    left = StepLimit(damped_step(array.h, safe.step), safe.address) if math.isfinite(safe.step) else safe
-    named = "safe bound" + (" with its damping" if left.step < safe.step else "")
+    damped = StepLimit(damped_step(array.h, safe.step), safe.address) if math.isfinite(safe.step) else safe
+    named = "safe bound" + (" with its damping" if damped.step < safe.step else "")
     parts = [
         f"{step / limit.step if limit.step else math.inf:.3g} of the {name} {limit.step:.4g} s "
         f"({name_and_place(array.h, limit.address)})"
-        for name, limit in (("estimate", estimate(array)), (named, left))
+        for name, limit in (("estimate", estimate(array)), (named, damped))
         if math.isfinite(limit.step)
     ]
     return f"time-step {step:.4g} s, {', '.join(parts)}"

@@ -1,8 +1,8 @@
 """A listing on a terminal: the lines that a pipe gets, in colours by kind of group and folded to its width.
 
-Colour follows from what a line says: rows under the heading of a group have the colour of its kind, a name
-such as corner@412 has that of its own, what is junk is dim, and what a pointer or a number should not be is
-red. It is left off where NO_COLOR is set or the terminal has none.
+Rows under the heading of a group have the colour of its kind, and so has a name such as corner@412. Junk is
+dim; pointers and numbers that are not allowed are red. There are no colours where NO_COLOR is set or the
+terminal has none.
 """
 
 from __future__ import annotations
@@ -46,24 +46,22 @@ def show(listing: Listing | Tables, stream: TextIO) -> None:
 def _folded(line: Line, width: int) -> list[tuple[str, int]]:
     """A line in pieces that fit the width, each with the place where what is in its last column begins.
 
-    The last column is folded within itself, or stands below the others if there is no room for it.
+    The last column is folded within itself, or placed below the others if there is no room for it.
     """
     if len(line.text) <= width:
         return [(line.text, line.last)]
     fold = partial(wrap, replace_whitespace=False, break_on_hyphens=False)
     if not line.last:
         return [(text, 0) for text in fold(line.text, width)]
-    before, told = line.text[: line.last].rstrip(), line.text[line.last :]
+    before, text = line.text[: line.last].rstrip(), line.text[line.last :]
     if line.last + ROOM <= width:
-        first, *others = fold(told, width - line.last)
+        first, *others = fold(text, width - line.last)
         return [
             (f"{before:{line.last}}{first}", line.last),
             *((" " * line.last + one, line.last) for one in others),
         ]
-    pieces = [(text, len(text)) for text in fold(before, width)]
-    return pieces + [
-        (text, INDENT) for text in fold(" " * INDENT + told, width, subsequent_indent=" " * INDENT)
-    ]
+    below = fold(" " * INDENT + text, width, subsequent_indent=" " * INDENT)
+    return [(one, len(one)) for one in fold(before, width)] + [(one, INDENT) for one in below]
 
 
 def _coloured(text: str, last: int, line: Line, picture: bool) -> Text:

@@ -1,4 +1,4 @@
-"""What all commands of the workshop have in common: --json, --python, and how they end."""
+"""What all commands have in common: --json, --python, shared arguments, and how they end."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import re
 import sys
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
+from importlib import import_module
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.printable_text import folded, visible
@@ -35,6 +37,67 @@ def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
     )
     parser.set_defaults(action=partial(_obey, verb, look, script))
     return parser
+
+
+class Call(NamedTuple):
+    """A call of a function of the library, which is all that a command does.
+
+    function: its name within udec_ia. path: of the restart file whose "array", or the "atlas" of that, is the
+    first argument. given, named: the other arguments.
+    """
+
+    function: str
+    given: tuple[Any, ...] = ()
+    named: dict[str, Any] = {}  # noqa: RUF012  never changed
+    path: Path | None = None
+    subject: str = "atlas"
+
+    def result(self) -> Listing | Tables:
+        """What the function returns."""
+        module, _, name = self.function.rpartition(".")
+        function: Callable[..., Listing | Tables] = getattr(import_module(f"udec_ia.{module}"), name)
+        first: list[Any] = []
+        if self.path is not None:
+            from udec_ia.reader.word_map import Atlas
+            from udec_ia.restart import look_into
+
+            array = look_into(self.path)
+            first = [Atlas(array.h) if self.subject == "atlas" else array]
+        return function(*first, *self.given, **self.named)
+
+    def script(self) -> str:
+        """Lines of Python that print the same."""
+        module, _, name = self.function.rpartition(".")
+        given = [*map(_literal, self.given), *(f"{key}={_literal(one)}" for key, one in self.named.items())]
+        lines = [f"from udec_ia.{module} import {name}", ""]
+        if self.path is not None:
+            given = [self.subject, *given]
+            lines = [
+                *lines[:1],
+                "from udec_ia.reader.word_map import Atlas",
+                "from udec_ia.restart import look_into",
+                "",
+                f"array = look_into({str(self.path)!r})  # of a model: model.array",
+                "atlas = Atlas(array.h)",
+            ]
+        return "\n".join([*lines, f"print({name}({', '.join(given)}).as_text(), end='')"])
+
+
+def _literal(value: Any) -> str:
+    """A value as Python reads it."""
+    return f"float('{value}')" if isinstance(value, float) and not isfinite(value) else repr(value)
+
+
+def call_command(
+    commands: Any, verb: str, text: str, call: Callable[[argparse.Namespace], Call]
+) -> argparse.ArgumentParser:
+    """A command that prints what a function of the library returns."""
+    return command(commands, verb, text, lambda args: call(args).result(), lambda args: call(args).script())
+
+
+def options_given(args: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """Those of some options that were given."""
+    return {name: vars(args)[name] for name in names if vars(args)[name] is not None}
 
 
 def file(parser: argparse.ArgumentParser, name: str = "file") -> None:
@@ -90,7 +153,7 @@ def names(option: str, text: str | None, known: Collection[str]) -> list[str]:
 
 
 def given(texts: Sequence[str]) -> dict[str, str]:
-    """The values of --set, by name. ValueError for what is none."""
+    """The values of --set, by name. ValueError for anything else."""
     found: dict[str, str] = {}
     for text in texts:
         name, equal, value = (part.strip() for part in text.partition("="))
@@ -103,7 +166,7 @@ def given(texts: Sequence[str]) -> dict[str, str]:
 
 
 def seconds(option: str, text: str) -> float:
-    """Seconds of 60s, 5m or 1h. ValueError for what is none."""
+    """Seconds of 60s, 5m or 1h. ValueError for anything else."""
     found = re.fullmatch(r"(\d+\.?\d*)\s*([smh]?)", text.strip())
     if found is None:
         raise ValueError(f"{option} {text}: give a time as in 60s, 5m or 1h")
@@ -120,7 +183,7 @@ def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> in
         print(folded(visible(f"udec {verb}: {error}")), file=sys.stderr)
         return MISUSE
     except UdecError as error:
-        if error.number == DAMAGED and "file" in args:  # it is no run that has done this
+        if error.number == DAMAGED and "file" in args:  # found in the file, not caused by a run
             error.advice = f"udec check {args.file} lists all that is wrong in it"
         raise
     _print(found, args.json)

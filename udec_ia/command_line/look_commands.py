@@ -2,7 +2,7 @@
 
 udec what FILE 412        udec dump FILE 412-500    udec find FILE 'block where KXD > 0.1'
 udec who FILE block@88    udec junk FILE            udec map FILE --out map.png
-udec walk FILE block 88                             udec graph FILE 412 --depth 2 --out graph.svg
+udec walk FILE block 88                             udec graph FILE 412 --depth 2 --out graph.dot
 """
 
 from __future__ import annotations
@@ -10,53 +10,19 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable
-from importlib import import_module
-from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from udec_ia.command_line.command_options import command, file
+from udec_ia.command_line.command_options import Call, call_command, file, options_given
+from udec_ia.file_replacement import put_in_place
 
 if TYPE_CHECKING:
     from udec_ia.reader.printed_listing import Listing
+    from udec_ia.reader.word_map import Atlas
 
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
-PLACE: dict[str, Any] = {
-    "metavar": "PLACE",
-    "help": "an address, or a name as in block@88.KXD",
-}
-OUT: dict[str, Any] = {"metavar": "PICTURE", "help": "file to draw to, .png or .svg"}
+PLACE: dict[str, Any] = {"metavar": "PLACE", "help": "an address, or a name as in block@88.KXD"}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows at most"}
-
-
-class Call(NamedTuple):
-    """The function of the library that does the work of a command, and what it is given after its subject."""
-
-    module: str
-    function: str
-    given: tuple[Any, ...] = ()
-    named: dict[str, Any] = {}  # noqa: RUF012  never changed
-    subject: str = "atlas"  # or the whole "array"
-
-    def on(self, path: Path) -> Listing:
-        """What it finds in a restart file."""
-        from udec_ia.reader.word_map import Atlas
-        from udec_ia.restart import look_into
-
-        array = look_into(path)
-        function: Callable[..., Listing] = getattr(import_module(f"udec_ia.{self.module}"), self.function)
-        return function(Atlas(array.h) if self.subject == "atlas" else array, *self.given, **self.named)
-
-    def script(self, path: Path) -> str:
-        """The same in Python."""
-        named = (f"{name}={_literal(one)}" for name, one in self.named.items())
-        given = [self.subject, *map(_literal, self.given), *named]
-        return (
-            f"from udec_ia.{self.module} import {self.function}\nfrom udec_ia.reader.word_map import Atlas\n"
-            f"from udec_ia.restart import look_into\n\n"
-            f"array = look_into({str(path)!r})  # of a model: model.array\natlas = Atlas(array.h)\n"
-            f"print({self.function}({', '.join(given)}).as_text(), end='')"
-        )
 
 
 def _place(text: str) -> int | str:
@@ -64,18 +30,10 @@ def _place(text: str) -> int | str:
     return int(text) if re.fullmatch(r"[+-]?\d+", text) else text
 
 
-def _literal(value: Any) -> str:
-    """A value as Python reads it."""
-    return f"float('{value}')" if isinstance(value, float) and not isfinite(value) else repr(value)
-
-
 def add_commands(commands: Any) -> None:
     """Add them to those of `udec`."""
-    what = _look(
-        commands, "what", "say what a word is, show the group that it is part of, and where it lies", _what
-    )
-    what.add_argument("place", type=_place, **PLACE)
-    what.add_argument("--out", **OUT)
+    text = "say what a word is, show the group that it is part of, and where it lies"
+    _look(commands, "what", text, _what).add_argument("place", type=_place, **PLACE)
     who = _look(commands, "who", "list all words that point to the group of a word", _who)
     who.add_argument("place", type=_place, **PLACE)
     walk = _look(commands, "walk", "follow a list: block, contact, ..., block PLACE, KR PLACE, ...", _walk)
@@ -86,14 +44,13 @@ def add_commands(commands: Any) -> None:
     _look(commands, "junk", "say how full the memory is: kinds of groups, junk by sizes, lost words", _junk)
     _add_dump(commands)
     _add_find(commands)
-    a_map = _look(
-        commands, "map", "show the heap by kind of group, as text or as a picture beside the blocks", _map
-    )
-    a_map.add_argument("--out", **OUT)
-    graph = _look(commands, "graph", "show the pointers around a group, as a list or as a picture", _graph)
+    text = "show the heap by kind of group, as text or as a picture beside the blocks"
+    a_map = _look(commands, "map", text, _map)
+    a_map.add_argument("--out", metavar="PICTURE", help="file to draw to, .png or .svg")
+    graph = _look(commands, "graph", "show the pointers around a group, as a list or for Graphviz", _graph)
     graph.add_argument("place", type=_place, **PLACE)
     graph.add_argument("--depth", type=int, default=1, metavar="N", help="pointers to follow (default: 1)")
-    graph.add_argument("--out", metavar="PICTURE", help="file to draw to, .png, .svg or .dot")
+    graph.add_argument("--out", metavar="FILE", help="file for Graphviz, .dot")
 
 
 def _add_dump(commands: Any) -> None:
@@ -138,35 +95,26 @@ def _look(
     commands: Any, verb: str, text: str, call: Callable[[argparse.Namespace], Call]
 ) -> argparse.ArgumentParser:
     """A command that prints what a function of the library finds in FILE."""
-    parser = command(
-        commands, verb, text, lambda args: call(args).on(args.file), lambda args: call(args).script(args.file)
-    )
+    parser = call_command(commands, verb, text, lambda args: call(args)._replace(path=args.file))
     file(parser)
     return parser
 
 
-def _named(args: argparse.Namespace, *names: str) -> dict[str, Any]:
-    """Those of some options that were given."""
-    return {name: vars(args)[name] for name in names if vars(args)[name] is not None}
-
-
 def _what(args: argparse.Namespace) -> Call:
-    if args.out is not None:
-        return Call("output.place_picture", "draw", (args.place, args.out))
-    return Call("heap_tools.heap_lookup", "what", (args.place,))
+    return Call("heap_tools.heap_lookup.what", (args.place,))
 
 
 def _who(args: argparse.Namespace) -> Call:
-    return Call("heap_tools.heap_lookup", "who", (args.place,))
+    return Call("heap_tools.heap_lookup.who", (args.place,))
 
 
 def _walk(args: argparse.Namespace) -> Call:
     start = () if args.start is None else (args.start,)
-    return Call("heap_tools.heap_lookup", "walk", (args.along, *start), _named(args, "field", "limit"))
+    return Call("heap_tools.heap_lookup.walk", (args.along, *start), options_given(args, "field", "limit"))
 
 
 def _junk(_: argparse.Namespace) -> Call:
-    return Call("heap_tools.memory_use", "junk")
+    return Call("heap_tools.memory_use.junk")
 
 
 def _dump(args: argparse.Namespace) -> Call:
@@ -174,31 +122,44 @@ def _dump(args: argparse.Namespace) -> Call:
 
     radix = {} if args.radix == 10 else {"radix": args.radix}
     if args.words == ALONE and not args.raw and not radix:
-        return Call("heap_tools.heap_dump", "common")
+        return Call("heap_tools.heap_dump.common")
     given = () if args.words is None else (args.words,)
     if args.raw:
-        return Call("output.word_dump", "raw", given)
-    return Call("heap_tools.heap_dump", "dump", given, radix)
+        return Call("output.word_dump.raw", given)
+    return Call("heap_tools.heap_dump.dump", given, radix)
 
 
 def _find(args: argparse.Namespace) -> Call:
-    limit = _named(args, "limit")
+    named = options_given(args, "tolerance", "limit")
     if args.tolerance is not None and args.value is None:
         raise ValueError("--tolerance goes with --value")
     if args.value is not None:
-        return Call("heap_tools.heap_search", "find_value", (args.value,), _named(args, "tolerance", "limit"))
+        return Call("heap_tools.heap_search.find_value", (args.value,), named)
     if args.points_to is not None:
-        return Call("heap_tools.heap_search", "find_pointers", (args.points_to,), limit)
-    return Call("heap_tools.heap_search", "find", (args.condition,), limit)
+        return Call("heap_tools.heap_search.find_pointers", (args.points_to,), named)
+    return Call("heap_tools.heap_search.find", (args.condition,), named)
 
 
 def _map(args: argparse.Namespace) -> Call:
     if args.out is None:
-        return Call("heap_tools.memory_use", "heap_map")
-    return Call("output.heap_picture", "draw", (args.out, args.file.name), subject="array")
+        return Call("heap_tools.memory_use.heap_map")
+    return Call("output.heap_picture.draw", (args.out, args.file.name), subject="array")
 
 
 def _graph(args: argparse.Namespace) -> Call:
     if args.out is None:
-        return Call("heap_tools.pointer_graph", "graph", (args.place, args.depth))
-    return Call("output.pointer_picture", "draw", (args.place, args.out, args.depth))
+        return Call("heap_tools.pointer_graph.graph", (args.place, args.depth))
+    return Call("command_line.look_commands.write_dot", (args.place, args.out, args.depth))
+
+
+def write_dot(atlas: Atlas, place: int | str, out: str | Path, depth: int = 1) -> Listing:
+    """Write the pointers around the group at a place to the file `out`, in the language of Graphviz.
+
+    Raises as `pointer_graph.neighbourhood` does, and error 31 if the file cannot be written.
+    """
+    from udec_ia.heap_tools.pointer_graph import dot, neighbourhood, summary
+    from udec_ia.reader.printed_listing import Listing
+
+    found = neighbourhood(atlas, place, depth)
+    put_in_place(Path(out), dot(found).encode(), force=False)
+    return Listing([*summary(found), f"wrote {out}"])

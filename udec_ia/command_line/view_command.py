@@ -9,7 +9,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from udec_ia.command_line.command_options import command
+from udec_ia.command_line.command_options import Call, call_command
 
 if TYPE_CHECKING:
     from udec_ia.reader.printed_listing import Listing
@@ -20,7 +20,7 @@ TEXT = "write a page for a browser that shows IA() beside the blocks, for one st
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    view = command(commands, "view", TEXT, _view, _script)
+    view = call_command(commands, "view", TEXT, _view)
     view.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a restart file, sound or damaged")
     view.add_argument(
         "--out",
@@ -31,25 +31,17 @@ def add_commands(commands: Any) -> None:
     )
 
 
-def _view(args: argparse.Namespace) -> Listing:
+def _view(args: argparse.Namespace) -> Call:
+    return Call("command_line.view_command.write_page", (str(args.out), *map(str, args.files)))
+
+
+def write_page(out: str | Path, *paths: str | Path) -> Listing:
+    """Write the page `out` that shows the states in some restart files."""
     from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart import deck_in, look_into
     from udec_ia.view import Page
 
     page = Page()
-    for path in args.files:
-        page.add(look_into(path), path.name, deck_in(path))
-    return Listing([f"{page.write(args.out)}: open it in a browser", *page.left_out()])
-
-
-def _script(args: argparse.Namespace) -> str:
-    files = [str(path) for path in args.files]
-    return f"""from pathlib import Path
-
-from udec_ia.restart import deck_in, look_into
-from udec_ia.view import Page
-
-page = Page()
-for path in map(Path, {files!r}):
-    page.add(look_into(path), path.name, deck_in(path))  # of a model: its array, any name, lines of its deck
-print(f"{{page.write({str(args.out)!r})}}: open it in a browser", *page.left_out(), sep="\\n")"""
+    for path in paths:
+        page.add(look_into(path), Path(path).name, deck_in(path))
+    return Listing([f"{page.write(out)}: open it in a browser", *page.left_out()])

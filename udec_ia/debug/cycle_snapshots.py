@@ -47,8 +47,8 @@ class StateCopy(NamedTuple):
         array = MainArray(self.scheme, int(self.common[0][g.MTOP]))
         array.fixed = self.fixed
         array.h.ia[: len(self.words)] = self.words
-        for part, kept in zip(array.h[2:], self.common, strict=True):
-            part[:] = kept
+        for part, values in zip(array.h[2:], self.common, strict=True):
+            part[:] = values
         return array
 
 
@@ -131,7 +131,7 @@ class Timeline:
             self._next(array, 1)
 
     def forget(self, event: int) -> None:
-        """What came after `event` has not happened."""
+        """Discard what came after `event`."""
         self.spans = [one for one in self.spans if one.first < event]
         if self.spans:
             last = self.spans[-1]
@@ -158,7 +158,7 @@ class Timeline:
         self._cost = self._last_copy - start
 
     def _drop(self) -> None:
-        """Let go of the copy that is missed least, but never of the last one."""
+        """Discard a copy of a run that leaves the smallest gap, or the oldest one, but never the last one."""
         events = sorted(self.copies)
         spare = [
             (after - before, event)

@@ -44,7 +44,7 @@ class ResumeRun(BaseException):
 
 
 class Debugger:
-    """Runs decks on `model`, watched. out: takes what the deck prints.
+    """Runs decks on `model` and stops them. out: takes what the deck prints.
 
     stopped: called with the reasons when a run stops; it returns when that is to go on. budget: bytes for
     copies.
@@ -98,7 +98,7 @@ class Debugger:
         self.stop([self.ended])
 
     def _resume(self, event: int, command: str) -> int:
-        """Make `event` the present, and let `command`, "" for none, be next; the number of what is next."""
+        """Make `event` the present, followed by `command`, if it is not "". Returns the next number."""
         array = self.timeline.at(event)
         self.timeline.forget(event)
         done, rest = self._parted()
@@ -115,7 +115,7 @@ class Debugger:
         return len(done)
 
     def _parted(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
-        """What has been obeyed, and what of the deck is to come. A run that is not over is in both."""
+        """The commands that were obeyed, and those to come. A run that is not over is in both."""
         spans = self.timeline.spans
         if not spans:
             return [], [*enumerate(self._deck)]
@@ -127,16 +127,14 @@ class Debugger:
         left = count_cycles(whole) - sum(one.done for one in runs)
         if runs and left > 0:
             rest.insert(0, (place, cycle_statement(whole, left)))
-        elif (
-            runs and count_cycles(whole) == 0 and not runs[-1].ended
-        ):  # SOLVE, which tells by itself when it is done
+        elif runs and count_cycles(whole) == 0 and not runs[-1].ended:  # SOLVE, which ends by its ratio
             rest.insert(0, (place, whole))
         if last.runs and rest and rest[0][0] == place:
             done[-1] = place, cycle_statement(whole, last.done)
         return done, rest
 
     def _worded(self, command: str) -> Statement:
-        """A command that is typed while another one is the last."""
+        """A command that is typed after the last one of the deck that was obeyed, at the place of that."""
         spans = self.timeline.spans
         first = self._commands[spans[-1].number if spans else 0][1].tokens[0].line
         line = Line(first.file, first.number, command)
@@ -170,7 +168,7 @@ class Debugger:
         return min(n, self._piece)
 
     def ran(self, cycles: int, seconds: float) -> None:
-        """So many cycles have been run in one piece."""
+        """`cycles` have been run in one piece."""
         if seconds < PIECE_SECONDS:
             self._piece = 2 * max(self._piece, cycles)
         elif self._piece > 1:

@@ -1,7 +1,7 @@
 """Commands of the debugger: running forwards and back, breaks and watches, and reading words.
 
-Each command prints lines and may move the event that is shown. `step`, `continue` and `goto` continue the run
-where they lead beyond what has been run. Names of words are those of place_grammar.py.
+Each command prints lines and may show another event. `step`, `continue` and `goto` continue the run if they
+lead beyond its present end. Names of words are those of place_grammar.py.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ LISTED = 5  # lines of the deck before and after
 
 
 class DebuggerCommands(cmd.Cmd):
-    """What can be typed while a run stands. debugger: the run. deck: the lines of the deck, for `list`."""
+    """The commands. debugger: the run. deck: the lines of the deck, for `list`."""
 
     debugger: Debugger
     deck: Sequence[str]

@@ -1,4 +1,4 @@
-"""The prompt of the debugger: commands are typed, or taken from a file, while a run stands."""
+"""The prompt of the debugger: commands are typed, or read from a file, while a run is stopped."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ALIASES = {
 
 
 class PrintableOutput:
-    """Passes lines on to `out` with escape sequences made visible: a terminal would obey them."""
+    """Writes to `out` with escape sequences made visible: a terminal would obey them."""
 
     def __init__(self, out: TextIO) -> None:
         self.out = out
@@ -54,7 +54,7 @@ class PrintableOutput:
 
 
 class Console(DebuggerCommands):
-    """Asks for commands while a run stands. script: lines that are taken first. ends: quit after them."""
+    """Asks for commands while a run is stopped. script: commands that come first. ends: quit after them."""
 
     doc_header = "commands (help COMMAND describes one; names may be abbreviated):"
 
@@ -159,7 +159,7 @@ class Console(DebuggerCommands):
             whole = f"{head}.{begun.upper()}"
         else:
             names, whole = [f"{kind}@{iad}" for kind in groups for iad in groups[kind].tolist()], word
-        known = len(word) - len(text)  # what stands before a character such as @ is not asked for
+        known = len(word) - len(text)  # readline passes only what follows a character such as @
         return [name[known:] for name in names if name.startswith(whole)]
 
 

@@ -1,13 +1,12 @@
 """The form of a command: its kind, numbers, words and list, and how typed words match keywords (MATCH).
 
-A keyword is printed as in the report: its upper-case letters must be typed, the others may be left off
-from the end. `PROperty` is matched by PRO, PROP and property, not by PR or PROPS. Where two keywords
-match, the one that stands first in the table is taken: R is Restart, FR is FRaction.
+A keyword is printed as in the report: its upper-case letters must be typed, the others may be omitted from
+the end. `PROperty` is matched by PRO, PROP and property, not by PR or PROPS. If two keywords match, the first
+one in the table is taken: R is Restart, FR is FRaction.
 
-A number is named as in the report: names that begin with i to n take an integer, all others a real. After
-its numbers a command takes words, in any order, and after its words a list. Each parameter reaches the
-method of Model that has the command's full keyword as its name: numbers and the list as positional
-arguments, words by name.
+Numbers are named as in the report: names that begin with i to n are integers, all others reals. A command has
+numbers, then words in any order, then a list. The method of Model that has its full keyword as its name gets
+numbers and list as positional arguments, and words by name.
 """
 
 from __future__ import annotations
@@ -15,30 +14,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
-MANY = 20  # choices that are told by the name of their argument, not one by one
-SEVERAL = "*"  # a word that sets this stands for itself among the positional arguments
-
-
-class Named(Protocol):
-    """Anything that is called by a keyword."""
-
-    @property
-    def keyword(self) -> str: ...
-
-
-N = TypeVar("N", bound=Named)
+MANY = 20  # number of choices from which on a form has the name of the argument instead
+SEVERAL = "*"  # a word that sets this is itself a positional argument
 
 
 @dataclass(frozen=True)
 class Word:
     """A keyword among the parameters of a command.
 
-    values: names of the numbers that follow the word. repeated: a list of such tuples follows.
-    sets: the argument that the word sets; by default the keyword itself, in lower case.
-    Several values without a list are one tuple.
-    Without values the word sets True, or its own name if it shares an argument with others.
+    values: names of the numbers that follow; several are one tuple. repeated: a list of such tuples follows.
+    sets: the argument that the word sets; by default the keyword itself, in lower case. Without values the
+    word sets True, or its own name if it shares an argument with others.
     """
 
     keyword: str
@@ -57,7 +45,7 @@ class Word:
 
 
 class Kind(Enum):
-    """What a command does: change the model, run cycles, show something, or direct the session."""
+    """The kind of a command: it changes the model, runs cycles, shows something or controls the session."""
 
     CHANGES = auto()
     RUNS = auto()
@@ -70,10 +58,9 @@ CHANGES, RUNS, SHOWS, SESSION = Kind
 
 @dataclass(frozen=True)
 class Counts:
-    """What the number counts that a command returns, as a run reports it: `3 blocks deleted, 9 blocks now`.
+    """What the number counts that a command returns, as in `3 blocks deleted, 9 blocks now`.
 
-    thing: what is counted. done: what was done with it. none: what is reported instead of 0. of_all: the
-    number of all such things follows.
+    thing, done: block, deleted. none: text instead of 0. of_all: the number of all such things follows.
     """
 
     thing: str
@@ -86,15 +73,12 @@ class Counts:
 class Command:
     """A command of the language.
 
-    kind: what it does, on which the log, studies and the rescue of a run depend. counts: what the number
-    counts that its method returns; None if that number is for Python only.
-    numbers: names of the numbers that must be given. optional: of those that may be left off.
-    words: its keywords. first: the argument that its first word must set, and the error if it does not.
-    list: names of one tuple of the list that ends the command. text: name of a parameter that is taken as
-    it stands, to the end of the line or to the word that stands last in it; needs_text: it must be given.
-    opens: may come before START. begins: another model takes the place of this one. ends: ends the run.
-    writes_words: writes any word of the array, by name or by address.
-    ours: what of the command is not in Appendix I-1.
+    counts: what the number counts that its method returns; None if it is for Python only. numbers, optional:
+    names of the numbers. first: the argument that its first word must set; first_error: if it does not.
+    list: names of one tuple of the list at the end. text: name of a parameter that is the rest of the line
+    without the last word, if that is one of `words`; needs_text: it must be given. opens: may come before
+    START. begins: replaces the model. ends: ends the run. writes_words: writes any word of the array, by name
+    or by address. ours: the part of the command that is not in Appendix I-1.
     """
 
     keyword: str
@@ -133,7 +117,7 @@ class Command:
 
     @property
     def form(self) -> str:
-        """The command as the report prints it, brackets around what may be left off."""
+        """The command as the report prints it, optional parts in brackets."""
         parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
         parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
         for argument in dict.fromkeys(word.argument for word in self.words):
@@ -147,13 +131,16 @@ class Command:
         return " ".join(part for part in parts if part)
 
 
+N = TypeVar("N", Command, Word)
+
+
 def required(keyword: str) -> str:
     """The letters of `keyword` that must be typed: those up to its last upper-case one."""
     return keyword.rstrip("abcdefghijklmnopqrstuvwxyz")
 
 
 def matches(keyword: str, typed: str) -> bool:
-    """True if `typed` has all required letters of `keyword`, and nothing that does not belong to it."""
+    """True if `typed` has all required letters of `keyword`, and no others than its own."""
     return (
         typed.isascii() and len(typed) >= len(required(keyword)) and keyword.upper().startswith(typed.upper())
     )

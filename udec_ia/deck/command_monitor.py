@@ -1,8 +1,7 @@
-"""The monitor: takes the commands of a deck one after the other and has a model obey them (MON, III-3).
+"""The monitor: it executes the commands of a deck on a model, one after the other (MON, III-3).
 
-It echoes every line behind a `>`, hands the call to the method of Model that has the command's name, and
-writes what that method returns. What goes wrong becomes a numbered error with its place in the deck;
-in a run the state is then saved, so that nothing that was computed is lost.
+It echoes every line behind a `>`, calls the method of Model that has the command's name, and prints what the
+method returns. Errors get their place in the deck. A run that ends in an error saves its state first.
 """
 
 from __future__ import annotations
@@ -10,10 +9,10 @@ from __future__ import annotations
 import io
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Protocol, TextIO, TypeVar
+from typing import Any, TextIO
 
 from udec_ia.deck.command_forms import RUNS, Counts, match
 from udec_ia.deck.command_table import COMMANDS
@@ -21,25 +20,22 @@ from udec_ia.deck.deck_statements import WORD, Statement, at, limited, open_deck
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
-from udec_ia.heap.accessors import Memory
 from udec_ia.interrupt_signals import hold, passing, poll
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted, printable, visible
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
-RESCUE = "rescue.h5"  # restart file of a run that was cut short, in the folder for files
+RESCUE = "rescue.h5"  # restart file of a run that ended early, in the folder for files
 
 
 class Monitor:
-    """Obeys statements on `model` and writes to `out`.
+    """Obeys statements on `model`, a Model, and writes to `out`.
 
-    echo: False where the user sees what he types. ended: True after STOP or END. values: of variables.
+    echo: False at a terminal. ended: True after STOP or END. values: of variables.
     """
 
-    def __init__(
-        self, model: CommandTarget, out: TextIO, *, echo: bool = True, values: Values | None = None
-    ) -> None:
+    def __init__(self, model: Any, out: TextIO, *, echo: bool = True, values: Values | None = None) -> None:
         self.model = model
         self.out = out
         self.echo = echo
@@ -50,10 +46,10 @@ class Monitor:
     def run(self, lines: Iterable[str], file: str) -> None:
         """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
 
-        Whatever ends it, the state is saved before: UdecError.saved, the argument of KeyboardInterrupt and
-        a note to any other exception name the restart file.
+        An exception that ends it names the restart file of the state: UdecError in `saved`, KeyboardInterrupt
+        in its argument, others in a note.
         """
-        with hold():  # around all of it: no signal comes between what ends the run and its rescue
+        with hold():  # no signal comes between what ends the run and its rescue
             try:
                 for statement in self.variables.filled(statements(_awaited(lines), file)):
                     self.obey(statement)
@@ -67,12 +63,12 @@ class Monitor:
                 raise type(interrupt)(self.rescue()) from None
             except BrokenPipeError:
                 raise
-            except BaseException as failure:  # of ours, or of a function of the user's
+            except BaseException as failure:
                 failure.add_note(f"the results so far are saved in {self.rescue()}")
                 raise
 
     def obey(self, statement: Statement) -> None:
-        """Echo and obey one statement, with its values put in. Raises UdecError with its place."""
+        """Echo and obey one statement without variables. Raises UdecError with its place."""
         if self.echo:
             for line in statement.lines:
                 self._write(f"> {line.shown}".rstrip())
@@ -85,8 +81,7 @@ class Monitor:
         try:
             result = self.model.whole(lambda: self._carry_out(call, statement))
         except MemoryError as error:
-            runs = call.command.kind is RUNS
-            stays = "the results so far are kept" if runs else "nothing was changed"
+            stays = "the results so far are kept" if call.command.kind is RUNS else "nothing was changed"
             advice = f"use a smaller model, or a machine with more memory;  {stays}"
             raise at(UdecError(1, "this machine is out of memory", advice), call.head) from error
         except UdecError as error:
@@ -101,9 +96,9 @@ class Monitor:
         self._show(result)
 
     def stop(self) -> None:
-        """End the run, as STOP does, if a run was started and has not been ended.
+        """End the run, as STOP does, if it was started and has not ended.
 
-        What cannot be written is told, and the summary written all the same, before the error is raised.
+        If pictures cannot be written, this is reported and the summary is printed before the error is raised.
         """
         if not self.model.session.started or self._stopped:
             return
@@ -117,16 +112,16 @@ class Monitor:
         self._show(last)
 
     def _carry_out(self, call: Call, statement: Statement) -> object:
-        """Obey `call` and log its lines; what is returned is to be shown."""
+        """Obey `call` and log its lines. Returns what is to be shown."""
         result = self._call(call)
         lines = dict.fromkeys(token.line for token in statement.tokens)
-        if call.command.name != "default":  # the lines that are logged have their values
+        if call.command.name != "default":  # logged lines have values instead of variables
             self.model.session.log_lines([line.shown for line in lines])
         return result
 
     def _call(self, call: Call) -> object:
         name = call.command.name
-        if name == "default":  # obeyed when its line was read
+        if name == "default":  # done when the variables were replaced
             return None
         if call.command.ends:
             self.ended = True
@@ -152,11 +147,15 @@ class Monitor:
         self._write(f" {command.upper()}: {text}")
 
     def place(self, command: str, name: str | None) -> Path | None:
-        """Where the file is that a command names: in the folder for files. None if it names none."""
-        return None if name is None else _in_folder(self.model.session.out, name)
+        """The path of the file `name` of a command, which starts in the folder for files."""
+        if name is None:
+            return None
+        folder = self.model.session.out
+        # no system resolves `..` behind a folder that does not exist yet
+        return folder / name if folder.exists() else Path(os.path.normpath(folder / name))
 
     def _show(self, result: object) -> None:
-        """Write what a command returned: text, names of files, or what has a text; numbers are for Python."""
+        """Write what a command returned: names of files, or text; numbers are for Python only."""
         if isinstance(result, Path):
             self._write(f"written: {printable(str(result))}")
         elif isinstance(result, list):
@@ -170,11 +169,10 @@ class Monitor:
         self.out.flush()
 
     def rescue(self, *, sound: bool = True) -> str | None:
-        """Save the state, and end the run. Returns the name of the restart file.
+        """Save the state, by force if it is not sound, and end the run. Returns the name of the restart file.
 
-        An unsound state is saved by force. The file is read again and proved before it is named. A failure
-        here must not hide what has gone wrong before. However often Ctrl-C is pressed, the file is written;
-        then only the pictures are left out.
+        The file is read again and proved. A failure here must not hide the error before it. The file is
+        written even if Ctrl-C is pressed several times; then only the pictures are omitted.
         """
         if not self.model.session.started:
             return None
@@ -186,11 +184,11 @@ class Monitor:
                 saved = self._proved(path)
             except Exception as failure:
                 self._write(f"the state could not be saved: {failure}")
-            self.stop()  # which tells what it cannot write
+            self.stop()
         return saved
 
-    def _save(self, sound: bool) -> Path:
-        """Save the state for the rescue, by force if it is not sound."""
+    def _save(self, sound: bool) -> Any:
+        """Save the state as RESCUE, by force if it is not sound."""
         path = (self.model.session.out / RESCUE).absolute()
         if sound:
             try:
@@ -201,7 +199,7 @@ class Monitor:
         return self.model.save(path, force=True)
 
     def _proved(self, path: Path) -> str:
-        """The name of the restart file `path`; says what is wrong with the state in it."""
+        """The name of the restart file `path`; reports the first violation in it."""
         try:
             violations = self.model.check_file(path)
         except KeyboardInterrupt:
@@ -212,14 +210,8 @@ class Monitor:
         return str(path)
 
 
-def _in_folder(folder: Path, name: str) -> Path:
-    """The file `name` in `folder`, which need not be there yet: no system finds the `..` of such a one."""
-    path = folder / name
-    return path if folder.exists() else Path(os.path.normpath(path))
-
-
 def _awaited(lines: Iterable[str]) -> Iterator[str]:
-    """`lines`, for which it may take long to come: they can be interrupted."""
+    """`lines`; waiting for one can be interrupted."""
     source = iter(lines)
     while True:
         with passing():
@@ -230,17 +222,17 @@ def _awaited(lines: Iterable[str]) -> Iterator[str]:
 
 
 def run_deck(
-    model: CommandTarget,
+    model: Any,
     deck: str | Path | TextIO,
     out: TextIO,
     values: Values | None = None,
     name: str = "text",
 ) -> Monitor:
-    """Obey a whole deck on `model` and return the monitor that did.
+    """Obey a whole deck on `model`, a Model. Returns the monitor.
 
-    deck: the path of a deck, its text, or a stream; a str is a path if there is a file of that name, or if it
-    looks like one. values: of its variables, by name. name: what errors call a text or a stream. Raises
-    UdecError, and OSError if the file cannot be read.
+    deck: path, text or stream; a str is a path if a file has this name, or if it looks like a file name.
+    values: of its variables, by name. name: of a text or a stream, for errors. Raises UdecError, and OSError
+    if the file cannot be read.
     """
     monitor = Monitor(model, out, values=values)
     if not isinstance(deck, str | Path):
@@ -254,9 +246,9 @@ def run_deck(
 
 
 def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
-    """Have the monitor obey a deck, after a look at all its variables.
+    """Have the monitor obey a deck after a check of all its variables.
 
-    What comes out of a pipe is obeyed as it comes, but for one to which values are given.
+    Lines of a pipe are obeyed as they come, without the check, unless values are given.
     """
     if lines.seekable() or monitor.variables.given:
         lines = io.StringIO("".join(limited(lines, file)))
@@ -266,68 +258,16 @@ def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
 
 
 def names_a_file(text: str) -> bool:
-    """True if `text` is one line that begins with no command and ends like the name of a file: in `.dat`."""
+    """True if `text` is one line that begins with no command and ends like a file name, as in `.dat`."""
     if FILE_NAME.fullmatch(text) is None or match(COMMANDS, text.split()[0]):
         return False
     return NUMBER.fullmatch(WORD.findall(text)[-1]) is None
 
 
-def outcome(call: Call, counts: Counts, n: int, model: CommandTarget) -> str:
-    """One line on what `call`, which returned `n`, has done, or why it has done nothing."""
+def outcome(call: Call, counts: Counts, n: int, model: Any) -> str:
+    """One line: what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
     if n == 0:
         return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
-
-
-# ---- What the monitor needs of a model, beside a method for every command of the table
-
-R = TypeVar("R")
-
-
-class ObeyingSession(Protocol):
-    """The session of a model, with attributes of udec_ia.model.model_session.Session."""
-
-    started: bool
-    tell: Callable[[str], None]
-    inform: Callable[[str], None]
-    explain_step: bool
-    logs_calls: bool
-
-    @property
-    def out(self) -> Path:
-        """The folder for files."""
-
-    def log_lines(self, lines: Sequence[Any]) -> None:
-        """Log what was obeyed."""
-
-
-class CommandTarget(Protocol):
-    """A model; its commands are found by their names."""
-
-    @property
-    def session(self) -> ObeyingSession:
-        """What belongs to the model beside the array."""
-
-    @property
-    def h(self) -> Memory:
-        """The array."""
-
-    def whole(self, action: Callable[[], R]) -> R:
-        """Have all that `action` does done, or nothing of it."""
-
-    def why_none(self, command: str, a: float, b: float, c: float, d: float) -> str:
-        """Why a command has found nothing."""
-
-    def save(self, path: str | Path | None = None, *, force: bool = False) -> Path:
-        """SAVE."""
-
-    def check_file(self, path: str | Path) -> list[Any]:
-        """All violations in a restart file."""
-
-    def stop(self) -> str:
-        """STOP."""
-
-    def summary(self) -> str:
-        """The line that sums up the run."""

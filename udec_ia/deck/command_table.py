@@ -1,6 +1,6 @@
 """The table of commands: every command of the deck language, its parameters and its help (Appendix I-1).
 
-The parser, the log, studies, HELP, suggestions in error messages and docs/commands.md come from this table.
+Parser, log, studies, HELP, suggestions and docs/commands.md follow from this table.
 
 python -m udec_ia.deck.command_table > docs/commands.md
 """
@@ -25,21 +25,18 @@ INTRODUCTION = """\
 
 A deck is a text file with one command to a line. The language is that of the report's Appendix I-1.
 
-- Upper-case letters of a command or word below must be typed, the others may be left off from the end, and
-  the case of what is typed does not matter: `PROperty` is `PROP`, `Print Blocks` is `P B`. Where two keywords
-  fit, the first one below is meant.
-- Lower-case parameters stand for numbers. Those that begin with i, j, k, l, m or n must be integers; the
-  others are reals, which may be given as integers. `0.5`, `.5`, `5.`, `1.E08` and `1D8` are reals.
-- `[ ]` encloses what may be left off, `|` separates alternatives, `...` means that more of the same follows.
+- Upper-case letters of a command or word must be typed. The others may be omitted from the end. Case does not
+  matter: `PROperty` is `PROP`, `Print Blocks` is `P B`. If two keywords fit, the first one below is taken.
+- Lower-case parameters are numbers. Those that begin with i, j, k, l, m or n must be integers. The others are
+  reals, which may be given as integers. `0.5`, `.5`, `5.`, `1.E08` and `1D8` are reals.
+- `[ ]` encloses optional parts, `|` separates alternatives, `...` means that more of the same may follow.
 - Parameters are separated by blanks or any of `= ( ) , /`.
-- A line that begins with `*`, `;`, `#` or `!` is a comment, and so is what follows a `;`, `#` or `!` in any
-  other line. In the name of a file these three belong to the name, unless a blank stands before them and the
-  name is not in quotes.
-- A line that begins with `+` continues the one before it, but the numbers of a pair or triple must stand on
-  one line.
+- A line that begins with `*`, `;`, `#` or `!` is a comment. In other lines `;`, `#` and `!` begin a comment;
+  in file names only behind a blank and outside quotes.
+- A line that begins with `+` continues the one before it. Numbers of a pair or triple must be on one line.
 - At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
-  with `...` in their form ask for more by themselves, until an empty line or the next command. A line that
-  continues them with a word that is a command, too, needs a `+` before it: `G` is GRAVITY, `GRID` is not.
+  with `...` in their form continue until an empty line or the next command. If a line continues them with a
+  word that is also a command, it needs a `+` before it: `G` is GRAVITY, `GRID` is not.
 - The first command is START or RESTART. Lines after STOP are ignored.
 """
 
@@ -52,6 +49,7 @@ PROPERTIES = [
 CONSTITUTIVE = Word("Constitutive", "m")
 BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
+PRINTED = "Blocks Contacts CORners Domains List DList Gridpoints Zones BOundaries ENErgy HIStories"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
@@ -114,13 +112,13 @@ COMMANDS = (
         "Calculate n cycles.",
         "CYCLE 300",
         numbers="n",
-        ours="listed in no appendix, but used in both example runs",
+        ours="the command, which both example runs use",
     ),
     Command(
         "DAmping",
         CHANGES,
         "Rayleigh damping: the fraction of critical damping at the centre frequency, in cycles per unit "
-        "time. Mass or Stiffness keeps that half alone, which is fcrit/2 at that frequency. There is no "
+        "time. Mass or Stiffness keeps only that half, which is fcrit/2 at that frequency. There is no "
         "damping by default, and DAMPING 0 1 switches it off again. The other kinds only lead to rest and "
         "are not physical. " + " ".join(f"{one.name} {one.help}." for one in MODES),
         "DAMP 0.1 30 STIFFNESS",
@@ -176,7 +174,7 @@ COMMANDS = (
         "The last line of a deck, after STOP.",
         "END",
         opens=True,
-        ours="only said to be one more line",
+        ours="its name; the report only requires one more line",
         ends=True,
     ),
     Command(
@@ -220,9 +218,9 @@ COMMANDS = (
         "GEnerate",
         CHANGES,
         "Make the first block in the range that has no zones fully-deformable; the same command again takes "
-        "the next block. Manual: grid-points (x,y), and zones as "
-        "triples of their numbers; the last grid-point is number 1. Automatic: triangles with sides of "
-        "about d. Mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.",
+        "the next block. Manual: grid-points (x,y), and zones as triples of their numbers; the last "
+        "grid-point is number 1. Automatic: triangles with sides of about d. Mixed: zones 1 and 2, 3 and 4 "
+        "... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
         numbers=RANGE,
         words=(
@@ -237,13 +235,7 @@ COMMANDS = (
         first_error=22,
         ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
-    Command(
-        "Gravity",
-        CHANGES,
-        "Set the gravitational accelerations in x and y.",
-        "GRAVITY 0 -9.81",
-        numbers="gx gy",
-    ),
+    Command("Gravity", CHANGES, "Set the accelerations of gravity.", "GRAVITY 0 -9.81", numbers="gx gy"),
     Command(
         "HElp",
         SESSION,
@@ -328,22 +320,7 @@ COMMANDS = (
         "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or the"
         " histories.",
         "PRINT BLOCKS CONTACTS",
-        words=tuple(
-            Word(keyword, sets=SEVERAL)
-            for keyword in (
-                "Blocks",
-                "Contacts",
-                "CORners",
-                "Domains",
-                "List",
-                "DList",
-                "Gridpoints",
-                "Zones",
-                "BOundaries",
-                "ENErgy",
-                "HIStories",
-            )
-        ),
+        words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED.split()),
         first=SEVERAL,
     ),
     Command(
@@ -355,18 +332,13 @@ COMMANDS = (
         "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
         "blocks face to face have two contacts. A contact has the material of its first block, so the "
         "contacts of one joint between two materials can differ (PRINT CONTACTS shows them): give both the "
-        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, "
-        "residual friction and cohesion, and the critical slip that "
-        "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
-        "laws of your own. Frictions and dilations are tangents of angles.",
+        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, residual friction and "
+        "cohesion, and the critical slip that leads to them; friction, cohesion, tensile strength and "
+        "dilation inside blocks; four numbers for laws of your own. Frictions and dilations are tangents.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
-        words=(
-            MATERIAL,
-            *PROPERTIES,
-            Word("K", "b", sets="bulk"),
-        ),
+        words=(MATERIAL, *PROPERTIES, Word("K", "b", sets="bulk")),
         first="material",
-        ours="what stands behind G",
+        ours="all properties behind G",
     ),
     Command(
         "Restart",
@@ -418,9 +390,9 @@ COMMANDS = (
         "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
         "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
         "carry; and until kinetic over strain energy is no more either. At its end it reports which blocks "
-        "moved most, which have fallen, and whether joints slipped. LIMIT: cycles after which to give up, "
-        "100000 if it is left off. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, "
-        "whatever DAMPING and FRACTION say; all stands still at its end.",
+        "moved most, which have fallen, and whether joints slipped. LIMIT: greatest number of cycles, 100000 "
+        "by default. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, whatever "
+        "DAMPING and FRACTION are; at its end all velocities are 0.",
         "SOLVE 1E-3 LIMIT 20000",
         numbers="ratio",
         words=(
@@ -439,27 +411,13 @@ COMMANDS = (
         numbers="x1 y1 x2 y2",
         counts=Counts("block", "cut off", none="no block was cut", of_all=True),
     ),
-    Command(
-        "STArt",
-        CHANGES,
-        "Start from nothing.",
-        "START",
-        opens=True,
-        begins=True,
-    ),
-    Command(
-        "Stop",
-        SESSION,
-        "End the run.",
-        "STOP",
-        opens=True,
-        ends=True,
-    ),
+    Command("STArt", CHANGES, "Start from nothing.", "START", opens=True, begins=True),
+    Command("Stop", SESSION, "End the run.", "STOP", opens=True, ends=True),
 )
 
 
 def meaning(command: Command, width: int, indent: str = "") -> str:
-    """What the command does, in lines of at most `width` characters."""
+    """The help of a command, in lines of at most `width` characters."""
     return textwrap.fill(command.help, width, initial_indent=indent, subsequent_indent=indent)
 
 

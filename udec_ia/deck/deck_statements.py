@@ -1,8 +1,8 @@
 """From lines to statements: comments, continuation lines and separators (TIDY and SEP, Appendix III-3).
 
-A statement is one command with all its continuation lines, as a row of tokens. Each token knows its file,
-line and column, so that an error can point at it. A command is complete only when the line after it is
-known not to continue it: this is why the report asks for one more line after STOP.
+A statement is one command with all its continuation lines, as a list of tokens, each with its file, line and
+column. A command is complete when the line after it does not continue it: this is why the report requires
+one more line after STOP.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from udec_ia.printable_text import printable
 SEPARATORS = "=(),/"
 WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment
-REMARK = re.compile("[;#!]")  # begins a comment behind a command; * does not, being of 1980
+REMARK = re.compile("[;#!]")  # begins a comment behind a command; the * of 1980 does not
 CONTINUATION = "+"
 LARGEST = 100_000_000  # characters of a deck
-SHOWN = 40  # characters of a word that are worth repeating
-WIDTH = 200  # longer lines are shown up to the place of the error, and not at all if it is beyond
+SHOWN = 40  # characters of a word that are repeated in a message
+WIDTH = 200  # longer lines are shown up to the place of the error, or not at all if it is beyond
 
 
 class Put(NamedTuple):
-    """A value that was put into a line: its columns first to end - 1 stand for those from at to after - 1."""
+    """A value that replaced a variable: columns first to end - 1, of the variable from at to after - 1."""
 
     first: int
     end: int
@@ -41,7 +41,7 @@ class Put(NamedTuple):
 class Line:
     """One line of a deck. number counts from 1.
 
-    written: the line as it was written, if values were put in for its variables; put_in: these, in order.
+    written: the line with its variables, if values have replaced them; put_in: these values, in order.
     """
 
     file: str
@@ -52,13 +52,13 @@ class Line:
 
     @property
     def shown(self) -> str:
-        """The line as it can be printed: one visible character or blank for each of its characters."""
+        """The line with one printable character for each of its characters."""
         if self.text.isprintable():
             return self.text
         return "".join(c if c.isprintable() else " " if c.isspace() else "?" for c in self.text)
 
     def as_written(self, column: int) -> tuple[Line, int]:
-        """The line as it was written, and the column there of what stands in `column` here."""
+        """The line with its variables, and the column there that corresponds to `column` here."""
         shift = 0
         for put in self.put_in:
             if column < put.first:
@@ -71,7 +71,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Token:
-    """A word or number of a deck, and where it stands. column counts from 1."""
+    """A word or number of a deck, and its place. column counts from 1."""
 
     text: str
     line: Line
@@ -85,7 +85,7 @@ class Token:
 
 @dataclass
 class Statement:
-    """A command: its tokens, and all lines that it was read from with the comments between them."""
+    """A command: its tokens, and all its lines with the comments between them."""
 
     lines: list[Line]
     tokens: list[Token] = field(default_factory=list)
@@ -102,13 +102,13 @@ def at(error: UdecError, place: Token) -> UdecError:
 
 
 def quoted(text: str) -> str:
-    """`text` in quotes, cut off when it is very long, harmless to print."""
+    """`text` in quotes, shortened if it is very long, with printable characters only."""
     shown = "".join(c if c.isprintable() else "?" for c in text[:SHOWN])
     return f'"{shown}{"..." if len(text) > SHOWN else ""}"'
 
 
 def obeyed(text: str) -> str:
-    """What there is to obey in a line: all but its comment."""
+    """A line without its comment."""
     return "" if text.lstrip()[:1] in tuple(COMMENTS) else REMARK.split(text, 1)[0]
 
 
@@ -120,7 +120,7 @@ def tokens(line: Line, start: int = 0) -> list[Token]:
 
 
 def tokens_of(lines: Iterable[Line]) -> list[Token]:
-    """The words and numbers of a command that has these lines, comments among them."""
+    """The words and numbers of a command with these lines, which may contain comments."""
     found: list[Token] = []
     for line in lines:
         if WORD.search(obeyed(line.text)):
@@ -129,10 +129,9 @@ def tokens_of(lines: Iterable[Line]) -> list[Token]:
 
 
 class Reader:
-    """Puts lines together to statements.
+    """Joins lines to statements.
 
-    `pending` is the last command, which may yet be continued. Comments and blank lines after it are
-    held back until it is known where they belong.
+    pending: the last command, which may still be continued. Comments and blank lines after it are held back.
     """
 
     def __init__(self, file: str) -> None:
@@ -142,7 +141,7 @@ class Reader:
         self._number = 0
 
     def feed(self, text: str) -> Statement | None:
-        """Read one line. Returns the command before it if the line shows that it is complete."""
+        """Read one line. Returns the command before it if the line does not continue it."""
         self._number += 1
         line = Line(self.file, self._number, text)
         if not WORD.search(obeyed(text)):
@@ -164,7 +163,7 @@ class Reader:
         return complete
 
     def rest(self) -> Statement | None:
-        """What is left at the end of the deck: comments and blank lines, as a statement without tokens."""
+        """Comments and blank lines at the end of the deck, as a statement without tokens."""
         held, self._held = self._held, []
         return Statement(held) if held else None
 
@@ -189,7 +188,7 @@ def read_deck(path: str | Path) -> str:
 
 
 def open_deck(path: str | Path) -> TextIO:
-    """The file of a deck. A name that no file can have, with a NUL in it, is that of no file."""
+    """The file of a deck. OSError also for a name that no file can have, such as one with a NUL."""
     try:
         return open(path, encoding="utf-8-sig", errors="replace")
     except ValueError as error:

@@ -1,10 +1,9 @@
-"""Variables of a deck: what `$F` and `${F}` stand for.
+"""Variables of a deck: `$F` and `${F}`.
 
-DEFAULT gives a variable a value, unless whoever runs the deck has given it another one. The values are put
-into the lines before they are read as commands: all that follows, the log of the run among it, knows lines
-with values only, and an error still points at the place in the line as it was written.
+DEFAULT gives a variable a value, unless a value is given with the deck. Values replace variables before a
+line is read as a command. So the log has values only, but an error points at the line with its variables.
 
-A value is a number or a word. In comments, and before what is no name, a `$` is a character like others.
+A value is a number or a word. In comments, and without a name behind it, a `$` has no meaning.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ IS_VALUE = "a value is a number, or a word of letters, digits, _ . and -"
 
 
 def spelt(name: str, value: object) -> str:
-    """The value of a variable as a line of a deck has it. Raises UdecError 10 for what can be none."""
+    """The value of a variable as text in a deck. Raises UdecError 10 for an unsuitable value."""
     if isinstance(value, str) and (NUMBER.fullmatch(value) or PLAIN.fullmatch(value)):
         return value
     if isinstance(value, int | np.integer) and not isinstance(value, bool):
@@ -54,10 +53,9 @@ def spelt(name: str, value: object) -> str:
 
 
 class Variables:
-    """The variables of one deck. given: values that go before those of DEFAULT, by name in any case.
+    """The variables of one deck. given: values that replace those of DEFAULT, by name in any case.
 
-    used: names that the lines have asked for until now, in order. Raises UdecError 10 for what cannot be
-    given.
+    used: names of the variables in the lines so far, in order. Raises UdecError 10 for unsuitable `given`.
     """
 
     def __init__(self, given: Values | None = None) -> None:
@@ -69,13 +67,13 @@ class Variables:
         self.used: dict[str, None] = {}
 
     def fill(self, statement: Statement) -> Statement:
-        """`statement` with values in the place of its variables. One that is a DEFAULT is noted.
+        """`statement` with values for its variables; the values of a DEFAULT are stored.
 
-        Raises UdecError 7 for a variable without a value, 10 for a DEFAULT that cannot be understood.
+        Raises UdecError 7 for a variable without a value, 10 for a wrong DEFAULT.
         """
         command = command_of(statement)
         if command is not None and command.name == "default":
-            self._note(statement)
+            self._set_defaults(statement)
             return statement
         lines = [self._filled(line, command) for line in statement.lines]
         return Statement(lines, tokens_of(lines)) if lines != statement.lines else statement
@@ -85,15 +83,12 @@ class Variables:
         return map(self.fill, deck)
 
     def check(self, lines: Iterable[str], file: str) -> None:
-        """Go through a whole deck beforehand: error 7 or 10 for what is wrong with its variables.
-
-        So it is for a value that was given and is used nowhere.
-        """
+        """Error 7 or 10 for a fault of the variables anywhere in a deck, or for a given value without use."""
         ahead = Variables(self.given)
         for statement in ahead.filled(statements(lines, file)):
             command = command_of(statement)
             if command is None and statement.tokens:
-                return  # with which the run will end
+                return  # the run will end with an error here
             if command is not None and command.ends:
                 break
         for name in self.given:
@@ -102,13 +97,12 @@ class Variables:
                 advice = f"the variables of the deck are {known}" if known else "the deck has no variables"
                 raise UdecError(10, f"{file} has no ${name}", with_suggestion(name, ahead.used, advice))
 
-    def _note(self, statement: Statement) -> None:
-        """Note the defaults that a statement gives."""
+    def _set_defaults(self, statement: Statement) -> None:
+        """Store the values of a DEFAULT."""
         head, *rest = statement.tokens
         if not rest:
-            raise at(
-                UdecError(7, f"nothing follows {quoted(head.text)}", FORM), Token("", head.line, head.end)
-            )
+            place = Token("", head.line, head.end)
+            raise at(UdecError(7, f"nothing follows {quoted(head.text)}", FORM), place)
         for name, value in zip(rest[::2], [*rest[1::2], None], strict=False):
             if not NAME.fullmatch(name.text):
                 advice = "write the name without $ here" if name.text.startswith("$") else FORM
@@ -137,9 +131,9 @@ class Variables:
         return filled if put_in else line
 
     def _check_numbers(self, line: Line) -> None:
-        """Error 10 where a value and what stands beside it make another number: 0.5$KN would be 0.51E8.
+        """Error 10 if a value and the text beside it make another number: 0.5$KN would be 0.51E8.
 
-        Braces, as in 0.5${KN}, say that this is wanted.
+        With braces, as in 0.5${KN}, this is accepted.
         """
         for token in tokens(line):
             for put in line.put_in:
@@ -155,11 +149,9 @@ class Variables:
                     raise at(UdecError(10, detail, advice), Token(use, written, put.at))
 
     def _value(self, line: Line, use: re.Match[str]) -> str:
-        """What stands for the variable at a place of `line`."""
-        name, place = (
-            (use[1] if use[2] is None else use[2]).strip().upper(),
-            Token(use[0], line, use.start() + 1),
-        )
+        """The value of the variable at a place of `line`."""
+        name = (use[1] if use[2] is None else use[2]).strip().upper()
+        place = Token(use[0], line, use.start() + 1)
         if not NAME.fullmatch(name):
             raise at(UdecError(10, f"{quoted(use[0])} is not a variable", IS_NAME), place)
         self.used[name] = None
@@ -173,7 +165,7 @@ class Variables:
 
 
 def _end_of(text: str, command: Command | None) -> int:
-    """Where the obeyed part of a line ends: a name of a file may hold what else begins a comment."""
+    """The end of a line without its comment; a file name may contain characters that begin comments."""
     whole = obeyed(text)
     if not whole or command is None or not command.text:
         return len(whole)

@@ -1,8 +1,7 @@
 """Commands typed at a terminal: a prompt, a history, and errors that do not end the session.
 
-Each command is obeyed when its line ends. A line that ends with `+` asks for more behind a prompt `+`. So do
-the commands that take a list, BLOCK and GENERATE among them, by themselves: they are obeyed at an empty line
-or at the next command, as in a deck, and a deck can be pasted in unless it continues other commands.
+A command is obeyed when its line ends. A line that ends with `+` is continued behind a prompt `+`. A command
+with a list, such as BLOCK or GENERATE, is obeyed at an empty line or at the next command, as in a deck.
 """
 
 from __future__ import annotations
@@ -10,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from platformdirs import user_state_dir
 
 from udec_ia.deck.command_forms import Command, match
-from udec_ia.deck.command_monitor import CommandTarget, Monitor
+from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, obeyed
 from udec_ia.deck.deck_variables import Values
@@ -30,13 +29,12 @@ HISTORY_LENGTH = 1000
 
 
 def converse(
-    model: CommandTarget, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
+    model: Any, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
 ) -> None:
-    """Obey what is typed until STOP, END or the end of input. ask: shows a prompt and returns a line.
+    """Obey typed commands on `model`, a Model, until STOP, END or the end of input.
 
-    values: of variables.
-
-    Raises UdecError if STOP itself fails, and Terminated, after the state has been saved as in a run.
+    ask: shows a prompt and returns a line. values: of variables. Raises UdecError if STOP itself fails, and
+    Terminated after the state has been saved.
     """
     monitor, typed = Monitor(model, out, echo=False, values=values), Typed()
     complete: list[Statement] = []
@@ -66,9 +64,9 @@ def converse(
 
 
 class Typed:
-    """Puts typed lines together to statements.
+    """Joins typed lines to statements.
 
-    command: the one that is pending. asked: its last line ended with `+`, and any line continues it.
+    command: the pending command. asked: its last line ended with `+`, so that any line continues it.
     """
 
     def __init__(self) -> None:
@@ -78,11 +76,11 @@ class Typed:
 
     @property
     def prompt(self) -> str:
-        """What to ask the next line with."""
+        """The prompt for the next line."""
         return PROMPT if self.reader.pending is None else MORE
 
     def read(self, line: str) -> list[Statement]:
-        """The commands that are complete with `line`, in order."""
+        """The commands that `line` completes, in order."""
         word = WORD.search(obeyed(line))
         if word is None:
             self.reader.feed(line)
@@ -102,32 +100,32 @@ class Typed:
         return complete + self.flush()
 
     def flush(self) -> list[Statement]:
-        """The command that is pending, if there is one: no line will continue it."""
+        """The pending command, if any: no line will continue it."""
         self.asked = False
         last = self.reader.flush()
         return [] if last is None else [last]
 
     def _continued_by(self, word: str) -> bool:
-        """True if a line that begins with `word` is no command of its own, but more of the pending one."""
+        """True if a line that begins with `word` continues the pending command."""
         if self.command is None or match(COMMANDS, word) is not None:
             return False
         return word[0] in NUMERIC or match(self.command.words, word) is not None
 
     def _asks(self, line: str) -> bool:
-        """True if `line` ends with a `+` that is not part of a text, such as the name of a file."""
+        """True if `line` ends with a `+` that is not part of a file name or another text."""
         if self.command is not None and self.command.text:
             return False
         return obeyed(line).rstrip().endswith(CONTINUATION) and obeyed(line).strip() != CONTINUATION
 
 
 def history_file() -> Path:
-    """Where the lines typed in earlier sessions are kept."""
+    """The file with the lines typed in earlier sessions."""
     return Path(user_state_dir("udec_ia", appauthor=False)) / "history"
 
 
 @contextmanager
 def history(path: Path) -> Iterator[None]:
-    """Let the arrow keys bring back earlier lines, where Python has the readline module."""
+    """Let the arrow keys bring back earlier lines, if Python has the readline module."""
     try:
         import readline
     except ImportError:

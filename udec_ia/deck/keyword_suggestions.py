@@ -1,8 +1,7 @@
 """Suggestions for words that the deck language does not have: `did you mean PROPERTY?`.
 
-A keyword is suggested if it is what other programs call the typed word, if the typed word is its beginning or
-one letter too long, or if both begin with the same letter and agree in most others; and only if what follows
-on the line fits it (`fits`).
+A keyword is suggested if other programs call it by the typed word, if the typed word is its beginning or one
+letter too long, or if both have the same first letter and most others; and only if the rest of the line fits.
 """
 
 from __future__ import annotations
@@ -11,83 +10,56 @@ import difflib
 from collections.abc import Callable, Iterable
 
 SUGGESTED = 3  # keywords that begin with what was typed
-ALIKE = 0.75  # share of two words that must agree for one to be taken for the other
+ALIKE = 0.75  # least share of common letters
 
-# Names in other programs and in common use. The parser does not take them.
-ALSO_CALLED = {
-    "?": "HELP",
-    "ANGLE": "FRICTION",
-    "BEGIN": "START",
-    "BYE": "STOP",
-    "CONTINUE": "CYCLE RESTART",
-    "CRACK": "SPLIT",
-    "CUT": "SPLIT",
-    "DEFINE": "DEFAULT",
-    "DEFORMABLE": "SDEF FDEF",
-    "DRAW": "PLOT",
-    "DT": "FRACTION",
-    "E": "BULK G",
-    "ERASE": "DELETE",
-    "EXIT": "STOP",
-    "FORCE": "BOUNDARY CONTACTS KCFN KBFX",
-    "GO": "CYCLE",
-    "INFO": "PRINT HELP",
-    "JFRICTION": "FRICTION",
-    "JKN": "KN",
-    "JKS": "KS",
-    "JMAT": "MATERIAL",
-    "JOINT": "SPLIT",
-    "JSET": "SPLIT",
-    "KILL": "DELETE",
-    "LET": "DEFAULT",
-    "LIST": "PRINT",
-    "LOAD": "BOUNDARY RESTART",
-    "LOG": "HISTORY",
-    "MAN": "HELP",
-    "MAT": "PROPERTY",
-    "MATERIAL": "PROPERTY",
-    "MESH": "GENERATE",
-    "MU": "FRICTION",
-    "NEW": "START",
-    "NU": "BULK G",
-    "OPEN": "RESTART",
-    "PARAMETER": "DEFAULT",
-    "PHI": "FRICTION",
-    "POISSON": "BULK G",
-    "POLYGON": "BLOCK",
-    "QUIT": "STOP",
-    "RECORD": "HISTORY",
-    "REMOVE": "DELETE",
-    "RESTORE": "RESTART",
-    "RHO": "DENSITY",
-    "RUN": "CYCLE",
-    "SHEAR": "G",
-    "SHOW": "PRINT",
-    "STEP": "CYCLE",
-    "STRESS": "BOUNDARY INSITU KZS11 KS111",
-    "SXX": "STRESS",
-    "TABLE": "FUNCTION",
-    "TENSION": "BTENSION",
-    "TIMESTEP": "FRACTION",
-    "VARIABLE": "DEFAULT",
-    "VELOCITY": "BOUNDARY XVEL YVEL KXD KYD",
-    "VIEW": "PLOT",
-    "WRITE": "SAVE",
-    "X": "KX KXG",
-    "XVEL": "KXD KXDG",
-    "Y": "KY KYG",
-    "YOUNG": "BULK G",
-    "YVEL": "KYD KYDG",
-    "ZONE": "GENERATE",
+OTHER_NAMES = {  # our keywords, and their names in other programs and in common use
+    "BLOCK": "POLYGON",
+    "BOUNDARY CONTACTS KCFN KBFX": "FORCE",
+    "BOUNDARY INSITU KZS11 KS111": "STRESS",
+    "BOUNDARY RESTART": "LOAD",
+    "BOUNDARY XVEL YVEL KXD KYD": "VELOCITY",
+    "BTENSION": "TENSION",
+    "BULK G": "E NU POISSON YOUNG",
+    "CYCLE": "GO RUN STEP",
+    "CYCLE RESTART": "CONTINUE",
+    "DEFAULT": "DEFINE LET PARAMETER VARIABLE",
+    "DELETE": "ERASE KILL REMOVE",
+    "DENSITY": "RHO",
+    "FRACTION": "DT TIMESTEP",
+    "FRICTION": "ANGLE JFRICTION MU PHI",
+    "FUNCTION": "TABLE",
+    "G": "SHEAR",
+    "GENERATE": "MESH ZONE",
+    "HELP": "? MAN",
+    "HISTORY": "LOG RECORD",
+    "KN": "JKN",
+    "KS": "JKS",
+    "KX KXG": "X",
+    "KXD KXDG": "XVEL",
+    "KY KYG": "Y",
+    "KYD KYDG": "YVEL",
+    "MATERIAL": "JMAT",
+    "PLOT": "DRAW VIEW",
+    "PRINT": "LIST SHOW",
+    "PRINT HELP": "INFO",
+    "PROPERTY": "MAT MATERIAL",
+    "RESTART": "OPEN RESTORE",
+    "SAVE": "WRITE",
+    "SDEF FDEF": "DEFORMABLE",
+    "SPLIT": "CRACK CUT JOINT JSET",
+    "START": "BEGIN NEW",
+    "STOP": "BYE EXIT QUIT",
+    "STRESS": "SXX",
 }
+ALSO_CALLED = {name: ours for ours, names in OTHER_NAMES.items() for name in names.split()}
 
 
 def with_suggestion(
     typed: str, keywords: Iterable[str], advice: str, fits: Callable[[str], bool] = lambda keyword: True
 ) -> str:
-    """`advice`, behind `did you mean PROPERTY?` if one of `keywords` was probably meant by `typed`.
+    """`advice`, behind `did you mean PROPERTY?` if `typed` is probably one of `keywords`.
 
-    fits: whether the rest of the line goes with a keyword, given in upper case.
+    fits: True if the rest of the line fits a keyword, which is given in upper case.
     """
     word, known = typed.upper(), [keyword.upper() for keyword in keywords]
     names = (ALSO_CALLED.get(word) or ALSO_CALLED.get(word.removesuffix("S"), "")).split()
@@ -100,7 +72,7 @@ def with_suggestion(
 
 
 def _alike(word: str, known: Iterable[str]) -> list[str]:
-    """Those of `known` that are spelt much like `word`, whole or as far as `word` goes; nearest first."""
+    """Words of `known` that are spelt like `word`, or begin like it; nearest first."""
     same = [name for name in known if name[:1] == word[:1]]
     begun = {name[: len(word)]: name for name in reversed(same)} | {name: name for name in same}
     alike = difflib.get_close_matches(word, begun, n=SUGGESTED, cutoff=ALIKE)

@@ -1,7 +1,7 @@
-"""From a statement to a call of the model: numbers, words and lists by the table (VAR, IVAR and RVAR, III-3).
+"""Conversion of a statement to a call of the model, by the table (VAR, IVAR and RVAR, III-3), and back.
 
-An integer is accepted where a real is wanted, and not the other way round. A number that is missing is
-reported where it should stand: just after the last parameter that was read.
+An integer is accepted as a real, but not a real as an integer. A missing number is reported at the place
+after the last parameter.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from udec_ia.errors import ADVICE, UdecError
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
 QUOTED = re.compile(rf"""((['"]).*?\2)\s*([A-Za-z]*)\s*({REMARK.pattern}.*)?$""")
-LAST = re.compile(r"(?:(.*\S)\s+)?(\S+)\s*")  # a text, and the word that stands last in it
+LAST = re.compile(r"(?:(.*\S)\s+)?(\S+)\s*")  # a text, and its last word
 APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
 INTEGER_NAMES = "ijklmn"
 INTEGER_DIGITS = 18  # an integer of so many digits fits in 64 bits
-RESTART_FILE = ["udec_ia", "restart", "file"]  # the words that such a file begins with
+RESTART_FILE = ["udec_ia", "restart", "file"]  # the first words of such a file
 NO_DECK = "this is a restart file: udec info shows its contents, RESTART in a deck continues from it"
 ALONE = "there is no command before this line to continue; at a terminal, end the line of the command with +"
 NO_COMMENT = "a comment after a command begins with ; # or !; one with * needs a line of its own"
 NO_WORD = "a line begins with a command, or with + if it continues the one before"
-CUT_SHORT = {2: 8, 3: 26}  # error for a pair and for a triple that lacks a number
+INCOMPLETE = {2: 8, 3: 26}  # error for an incomplete pair and triple
 
 
 @dataclass
 class Call:
-    """A command ready to be obeyed: what the method of Model gets, and where each argument stands."""
+    """The arguments for the method of Model that obeys a command, and the place of each argument."""
 
     command: Command
     head: Token
@@ -50,35 +50,34 @@ class Call:
     places: dict[str, Token] = field(default_factory=dict)
 
     def place_of(self, error: UdecError) -> Token:
-        """Where the argument that `error` blames stands; a text is a command's only one, else the command."""
+        """The place of the argument that `error` is about, else of the command's text or of the command."""
         return self.places.get(error.parameter or self.command.text, self.head)
 
 
 def command_of(statement: Statement) -> Command | None:
-    """The command that `statement` begins with; None for comments and for what is no command."""
+    """The command that `statement` begins with; None for comments and unknown words."""
     return match(COMMANDS, statement.tokens[0].text) if statement.tokens else None
 
 
 def parse(statement: Statement) -> Call:
-    """The call that `statement` asks for. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the fault."""
+    """The call of a statement. Raises UdecError 2, 7, 8, 10, 22, 26 or 28 at the place of the fault."""
     head = statement.tokens[0]
     command = match(COMMANDS, head.text)
-    if command is None and head.text.startswith(CONTINUATION):
-        raise at(UdecError(2, quoted(head.text), ALONE), head)
-    if command is None and NUMBER.fullmatch(head.text):
-        raise at(UdecError(2, quoted(head.text), NO_WORD), head)
-    if command is None and [token.text for token in statement.tokens] == RESTART_FILE:
-        raise at(UdecError(2, quoted(head.text), NO_DECK), head)
-    if command is None:
-        raise at(UdecError(2, quoted(head.text), _which_command(statement.tokens)), head)
-    return _Parser(command, statement.tokens).parse()
+    if command is not None:
+        return _Parser(command, statement.tokens).parse()
+    if head.text.startswith(CONTINUATION):
+        advice = ALONE
+    elif NUMBER.fullmatch(head.text):
+        advice = NO_WORD
+    elif [token.text for token in statement.tokens] == RESTART_FILE:
+        advice = NO_DECK
+    else:
+        advice = _which_command(statement.tokens)
+    raise at(UdecError(2, quoted(head.text), advice), head)
 
 
 def _which_command(tokens: list[Token]) -> str:
-    """Advice on an unknown command: one that is spelt alike, or stands after the first word.
-
-    The whole line must be readable as that command.
-    """
+    """Advice on an unknown command: one that is spelt alike, or the second word, if the line fits it."""
     if len(tokens) > 1 and (command := match(COMMANDS, tokens[1].text)) and _reads_as(command, tokens[1:]):
         return f"did you mean {command.name.upper()}? {ADVICE[2]}"
     by_name = {command.name.upper(): command for command in COMMANDS}
@@ -86,7 +85,7 @@ def _which_command(tokens: list[Token]) -> str:
 
 
 def _reads_as(command: Command, tokens: list[Token]) -> bool:
-    """True if `tokens` have the form of `command`, whatever their first word is."""
+    """True if `tokens` but the first have the form of `command`."""
     try:
         text = str(_Parser(command, tokens).parse().named.get(command.text, ""))
     except UdecError:
@@ -99,14 +98,13 @@ def _reads_as(command: Command, tokens: list[Token]) -> bool:
 
 
 def number(token: Token, name: str, advice: str) -> int | float:
-    """The value of the number `name` that is spelt by `token`. Raises UdecError 10 or 28 there."""
+    """The value of `token`, which is the number `name`. Raises UdecError 10 or 28 there."""
     if not NUMBER.fullmatch(token.text):
         raise at(UdecError(10, f"{quoted(token.text)} is not a number", advice), token)
     if name[0] in INTEGER_NAMES:
         if not INTEGER.fullmatch(token.text):
-            raise at(
-                UdecError(10, f"{quoted(token.text)} is not an integer", f"{name} must be an integer"), token
-            )
+            detail = f"{quoted(token.text)} is not an integer"
+            raise at(UdecError(10, detail, f"{name} must be an integer"), token)
         digits = token.text.lstrip("+-0") or "0"
         if len(digits) > INTEGER_DIGITS:
             raise at(UdecError(28, f"{quoted(token.text)} has more than {INTEGER_DIGITS} digits"), token)
@@ -118,7 +116,7 @@ def number(token: Token, name: str, advice: str) -> int | float:
 
 
 class _Parser:
-    """Walks once over the tokens of a command."""
+    """Reads the tokens of a command in one pass."""
 
     def __init__(self, command: Command, tokens: list[Token]) -> None:
         self.command = command
@@ -127,7 +125,7 @@ class _Parser:
         self.call = Call(command, tokens[0])
 
     def parse(self) -> Call:
-        """The call that the tokens spell: numbers, then words, then the list."""
+        """The call: numbers, then words, then the list."""
         command = self.command
         if command.text:
             self._text()
@@ -166,7 +164,7 @@ class _Parser:
         return f"the form is: {self.command.form}"
 
     def _surplus(self, token: Token) -> str:
-        """What is wrong with `token`, at which the command should have ended."""
+        """The detail of the error for `token`, at which the command should have ended."""
         if NUMBER.fullmatch(token.text):
             return f"{quoted(token.text)} is one number too many"
         if match(self.command.words, token.text):
@@ -174,7 +172,7 @@ class _Parser:
         return f"{quoted(token.text)} is not a number"
 
     def _text(self) -> None:
-        """Take the rest of the line as it stands: names of files may hold separators."""
+        """Take the rest of the line unchanged: names of files may contain separators."""
         line, end = self.tokens[0].line, self.tokens[0].end - 1
         rest = line.text[end:].lstrip(" \t=")
         text, last = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
@@ -194,7 +192,7 @@ class _Parser:
             self.call.places[self.command.text] = place
 
     def _quoted(self, rest: str) -> tuple[str | None, Word | None]:
-        """A name with its quotes, and the word behind it; no name if something else is there."""
+        """A name with its quotes, and the word behind it; no name if anything else follows."""
         whole = QUOTED.match(rest)
         last = match(self.command.words, whole[3]) if whole and whole[3] else None
         return whole[1] if whole and (last or not whole[3]) else None, last
@@ -207,7 +205,7 @@ class _Parser:
         return found[1] or "" if found and last else text, last
 
     def _number(self, name: str, missing: int = 7, line: Line | None = None, advice: str = "") -> int | float:
-        """Read the number `name`; error `missing` if there is none, and with `advice` on the same `line`."""
+        """Read the number `name`, on `line` if given. Error `missing` with `advice` if it is missing."""
         token = self._next()
         if token is None or match(self.command.words, token.text) or line not in (None, token.line):
             last = self.tokens[self.read - 1].text
@@ -221,7 +219,7 @@ class _Parser:
         self.call.places[name] = self.tokens[self.read - 1]
 
     def _list(self, names: str) -> None:
-        """Read the tuples that end the command: x1, y1, x2, y2, ... are the names of their numbers."""
+        """Read the tuples at the end of the command. The names of their numbers are x1, y1, x2, y2, ..."""
         first = self.read
         values = [value for values in self._tuples(names) for value in values]
         self.call.positional += values
@@ -230,13 +228,13 @@ class _Parser:
             self.call.places[f"{name}{k // n + 1}"] = token
 
     def _tuples(self, names: str) -> list[tuple[int | float, ...]]:
-        """Read one tuple and all that follow; the numbers of a tuple stand on one line."""
+        """Read one tuple or more; the numbers of a tuple must be on one line."""
         first, *others = names.split()
         found: list[tuple[int | float, ...]] = []
         while not found or self._at_number():
             values = [self._number(first)]
             line = self.tokens[self.read - 1].line
-            missing = CUT_SHORT[len(names.split())]
+            missing = INCOMPLETE[len(names.split())]
             advice = f"{first} and {others[0]} must stand on one line" if missing == 8 else ""
             values += [self._number(name, missing, line, advice) for name in others]
             found.append(tuple(values))
@@ -283,7 +281,7 @@ class _Parser:
         self.call.named[word.argument] = self._value(word)
 
     def _value(self, word: Word) -> Any:
-        """What `word` sets its argument to, read from the tokens after it."""
+        """The value that `word` gives to its argument, read from the tokens after it."""
         if word.repeated:
             return self._tuples(word.values)
         names = word.values.split()
@@ -294,29 +292,26 @@ class _Parser:
         return word.keyword.lower() if word.sets else True
 
 
-# ---- What was done in Python, said as a deck says it: the way back from a call to its lines
+# ---- From a call in Python back to the lines of a deck
 
 WIDTH = 79  # of a line
-WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-# Commands of the session are no part of what has made a state.
+# Commands of the session do not change the state.
 BY_NAME = {one.name: one for one in COMMANDS if one.kind is not SESSION}
 
 
 def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]) -> list[str]:
-    """The lines of a deck that have done what method(model, *args, **named) does; none if no deck can.
-
-    method: of Model, by its name a command.
-    """
+    """The lines of a deck for method(model, *args, **named), a method of Model; none if it is no command."""
     command = BY_NAME.get(method.__name__)
     if command is None:
         return []
     given = _signature(method).bind(None, *args, **named).arguments
-    if command.text:
-        return [
-            " ".join([command.keyword.upper(), *given[command.text].split()])
-        ]  # which no line may be cut in
-    parts = [command.keyword.upper(), *_parts(command, _signature(method), given)]
-    return textwrap.wrap(" ".join(parts), WIDTH, subsequent_indent=f"{CONTINUATION} ", **WHOLE_WORDS)
+    if command.text:  # must be on one line
+        return [" ".join([command.keyword.upper(), *given[command.text].split()])]
+    line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
+    indent = f"{CONTINUATION} "
+    return textwrap.wrap(
+        line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
 
 
 @cache
@@ -325,7 +320,7 @@ def _signature(method: Callable[..., Any]) -> inspect.Signature:
 
 
 def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]) -> Iterator[str]:
-    """The parameters of `command` in the order of a deck: numbers, words, and the list that ends it."""
+    """The parameters of `command` in the order of a deck: numbers, words, list."""
     _, *parameters = signature.parameters.values()
     numbers = len(command.numbers.split() + command.optional.split())
     for parameter in parameters[:numbers]:
@@ -336,7 +331,7 @@ def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]
         value = given.get(parameter.name, parameter.default)
         if parameter.kind is parameter.VAR_POSITIONAL:
             several = given.get(parameter.name, ())
-        elif parameter.name == command.first or not _by_itself(value, parameter.default):
+        elif parameter.name == command.first or not _is_default(value, parameter.default):
             yield from _word(command, parameter.name, value)
     if any(word.argument == SEVERAL for word in command.words):
         yield from (str(one).upper() for one in several)
@@ -344,14 +339,16 @@ def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]
         yield from _tuples(several, command.list)
 
 
-def _by_itself(value: Any, default: Any) -> bool:
-    """True if a parameter has this value, or one that says as little, when it is left off."""
+def _is_default(value: Any, default: Any) -> bool:
+    """True if a parameter with this value can be omitted."""
     return value is None or value is False or np.array_equal(value, default)
 
 
 def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
-    """The word that sets `argument` to `value`, and what follows it."""
-    word = next(word for word in command.words if word.argument == argument and _says(word, value))
+    """The word that sets `argument` to `value`, and its numbers."""
+    named = str(value).lower()
+    words = [word for word in command.words if word.argument == argument]
+    word = next(one for one in words if one.values or not one.sets or one.keyword.lower() == named)
     yield word.keyword.upper()
     if word.repeated:
         yield from _tuples(value, word.values)
@@ -362,17 +359,13 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
 
 
 def _tuples(values: Any, names: str) -> Iterator[str]:
-    """Numbers in tuples, each of which stays on one line."""
+    """Tuples of numbers, without a blank in a tuple."""
     for row in np.reshape(np.asarray(values), (-1, len(names.split()) or 1)).tolist():
         yield ",".join(map(_number, row))
 
 
-def _says(word: Word, value: Any) -> bool:
-    return bool(word.values) or not word.sets or word.keyword.lower() == str(value).lower()
-
-
 def _number(value: Any) -> str:
-    """A number, as short as it is read as the same."""
+    """The shortest text that is read as the same number."""
     if isinstance(value, int | np.integer):
         return str(int(value))
     short = f"{float(value):g}"

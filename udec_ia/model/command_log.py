@@ -1,7 +1,7 @@
 """The log of a session: the commands that were obeyed, which can be written as the lines of a deck.
 
-A command given in Python is kept as it was called, and becomes lines on request; one of a deck is kept as its
-lines. Successive CYCLEs are one line.
+The log has the calls of commands given in Python, which become lines on request, and the lines of decks.
+Successive CYCLEs are one line.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Step(NamedTuple):
         return spell(*self)
 
     @property
-    def lasts(self) -> bool:
-        """True if nobody can change what it was given."""
+    def has_constants_only(self) -> bool:
+        """True if its arguments cannot be changed from outside."""
         return all(map(_is_plain, (*self.args, *self.named.values())))
 
 
@@ -52,7 +52,7 @@ class CommandLog:
             self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
             return
         step = Step(method, tuple(args), named)
-        self.add_lines([step] if step.lasts else step.lines)
+        self.add_lines([step] if step.has_constants_only else step.lines)
 
     def add_lines(self, lines: Sequence[str | Step]) -> None:
         """Lines of a deck were obeyed."""

@@ -13,7 +13,7 @@ from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
 
 if TYPE_CHECKING:
-    from udec_ia.output.history_files import Files
+    from udec_ia.output.history_files import HistoryFiles
 
 
 class HistoryRecorder:
@@ -23,11 +23,11 @@ class HistoryRecorder:
         self.series: list[Series] = []
         self.solutions: list[Solution] = []
         self.pictures = 0
-        self._files: Files | None = None
+        self._files: HistoryFiles | None = None
 
-    def __getstate__(self) -> dict[str, Any]:
-        """For pickle and copy: open files stay with the original."""
-        return vars(self) | {"_files": None}
+    def replace(self, series: list[Series]) -> None:
+        """Go on with the numbers of `series`, which the files do not have."""
+        self.series, self._files = series, None
 
     def add(
         self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
@@ -48,20 +48,14 @@ class HistoryRecorder:
         """Write what was recorded to base.csv and base.h5, and report which groups have gone."""
         if not self.series:
             return []
-        from udec_ia.output.history_files import Files
+        from udec_ia.output.history_files import HistoryFiles
 
         recording.look()
         for one in recording.lost:
             tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
         if self._files is None or self._files.place != base.absolute():
-            self.close()
-            self._files = Files(base)
+            self._files = HistoryFiles(base)
         return self._files.write(self.series)
-
-    def close(self) -> None:
-        """The files of the histories are done."""
-        if self._files is not None:
-            self._files.close()
 
     def plot(self, name: str, folder: Path, after: int = 0) -> list[Path]:
         """Draw all histories, with a number greater than `after`; returns the files.

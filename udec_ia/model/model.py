@@ -16,10 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
-from udec_ia.advice.input_warnings import (
-    check_properties,
-    check_tension,
-)
+from udec_ia.advice.input_warnings import check_properties
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unjudged
 from udec_ia.deck.command_monitor import run_deck
@@ -109,9 +106,9 @@ class Model:
     def h(self) -> Memory:
         """The array itself: IA() as integers and reals, h.ia and h.ra, and the common block, h.ci and h.cr.
 
-        To be read freely. What is assigned to its words, as in h.cr[3] = 1.0, is proved sound before the next
-        command that follows addresses, as after RSET. It is another object after commands that let the
-        array grow: take it anew.
+        After assignments to its words, as in h.cr[3] = 1.0, the state is proved sound before the next command
+        that follows addresses, as after RSET. Commands that let the array grow replace it: get it again after
+        them.
         """
         return self.session.h
 
@@ -243,9 +240,7 @@ class Model:
         """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-        many = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
-        self.session.remark(check_tension((s11, s12, s22), (*xgrad, *ygrad)))
-        return many
+        return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
 
     @changes_array
     def round(self, d: float) -> None:
@@ -415,8 +410,8 @@ class Model:
     ) -> list[Path]:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
-        contour: a key of field.CONTOURS. window: range x1, x2, y1, y2 (m) that is shown, or all blocks. With
-        `history`, which stands alone, what was recorded is drawn instead. A frame of more than ten states is
+        contour: a key of drawn_outlines.CONTOURS. window: range x1, x2, y1, y2 (m) that is shown, or all
+        blocks. history, without the others: histories are drawn instead. A frame of more than ten states is
         written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
         """
         from udec_ia.output.plot_frames import What
@@ -438,8 +433,8 @@ class Model:
     def view(self, path: str | Path) -> Path:
         """Write the page `path` that shows the array beside the blocks, in a browser. Returns its name.
 
-        Of several states make a `udec_ia.view.Page`. Error 31 if something else stands there, or it cannot be
-        written.
+        Of several states make a `udec_ia.view.Page`. Error 31 if it cannot be written, or would replace
+        another kind of file.
         """
         from udec_ia.view import Page
 
@@ -455,7 +450,7 @@ class Model:
         """Run a deck, given as text or as the path of a file. Output goes to `stream` or is returned.
 
         values: of the variables of the deck, by name, numbers or words; they go before those of DEFAULT.
-        FileNotFoundError if there is no file of that name, and it cannot be meant as a command either.
+        FileNotFoundError if there is no file of that name, and it is no command either.
         """
         out = io.StringIO() if stream is None else stream
         run_deck(self, text_or_path, out, values)

@@ -70,14 +70,14 @@ def _solve_statically(session: Session, ratio: float, limit: int, criterion: str
     session.inform(STATIC)
     named = {"static": True} | ({"criterion": criterion} if criterion == MEAN else {})
     undo = session.undo
-    begun = undo.before
+    former = undo.former
     try:
         with statically(session.array):
             return _run_to_rest(
                 session, ratio, limit, criterion, lambda done: session.log.add(solve, (ratio, done), named)
             )
     finally:
-        if undo.before is not begun:  # cycles are to stay, and with them what stood before
+        if undo.former is not former:  # cycles are final, and the settings from before the command are back
             undo.confirm_run(session)
 
 
@@ -114,7 +114,7 @@ def _run_cycles(
     if moved is not None:
         session.renumber(moved)
     monitors.friction_until_rest(array)
-    report = session.report(n)
+    progress = session.run_progress(n)
     before = int(array.h.ci[MCTOT])
 
     def confirm_piece() -> None:
@@ -130,7 +130,7 @@ def _run_cycles(
             recording=recording,
             observers=(*observers, *session.observers, monitors),
             laws=session.laws,
-            report=report,
+            report=progress,
             every=max(1, n // PICTURES) if session.animate else None,
             prepared=lambda: _warn(session),
             settled=confirm_piece,
@@ -142,7 +142,7 @@ def _run_cycles(
             session.write_histories(recording)
         raise
     finally:
-        report.close()
+        progress.close()
     undo.confirm_run(session)
     session.write_histories(recording)
     return done

@@ -45,7 +45,7 @@ from udec_ia.running.solve_result import in_short
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
     from udec_ia.output.plot_frames import Plots, What
-    from udec_ia.output.run_progress import Report
+    from udec_ia.output.run_progress import RunProgress
 
 log = logging.getLogger("udec_ia")
 
@@ -59,7 +59,7 @@ NOT_COPIED = (
     "undo",
     "writes",
     "_tracked",
-    "_clock",
+    "_start",
     "_compiled",
 )
 
@@ -78,7 +78,7 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it are kept.
+    restart file, and pictures of the run before it stay.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class Session:
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     def _set_process(self) -> None:
-        """What belongs to this process: where messages go, the undo copy, the clock."""
+        """What belongs to this process: where messages go, the undo copy, the time."""
         self.progress: TextIO | None = None
         self.tell: Callable[[str], None] = warn_in_log
         self.inform: Callable[[str], None] = log.info
@@ -118,7 +118,7 @@ class Session:
         self.undo = Undo()
         self.writes = Writes()
         self._tracked: tuple[Memory, Memory] | None = None  # memory of IA(), and its tracked arrays
-        self._clock, self._compiled = perf_counter(), compile_seconds()
+        self._start, self._compiled = perf_counter(), compile_seconds()
 
     def __getstate__(self) -> dict[str, Any]:
         """For pickle and copy: all but what belongs to this process."""
@@ -149,8 +149,8 @@ class Session:
     def parts(self) -> Iterator[object]:
         """The objects that hold what is not in the main array."""
         frame = None if self.plots is None else self.plots.frame
-        held = self.log, self.recorder, self.plots, frame, self.animation, self.laws
-        for part in (self, *held, *self.recorder.series, self.monitors, self.monitors.energy):
+        parts = self, self.log, self.recorder, self.plots, frame, self.animation, self.laws
+        for part in (*parts, *self.recorder.series, self.monitors, self.monitors.energy):
             if part is not None:
                 yield part
 
@@ -185,7 +185,8 @@ class Session:
 
     def continue_from(self, lines: Sequence[str], series: list[Series]) -> None:
         """The state is that of a run that has logged `lines` and recorded `series`."""
-        self.log, self.recorder.series, self.continued = CommandLog(lines), series, True
+        self.log, self.continued = CommandLog(lines), True
+        self.recorder.replace(series)
         if self.plots is not None:
             self.plots.count = max(self.plots.count, self._last_picture("-plot"))
 
@@ -193,7 +194,7 @@ class Session:
         """Words were written through `h`: commands that follow them prove them first."""
         self.array.h.ci[g.LREADY] = 0
         self.forget_boxes()
-        self.undo.array = None  # commands obeyed once more would not give these words
+        self.undo.release()  # repeated commands would not give these words
         self.written = True
 
     def forget_boxes(self) -> None:
@@ -209,7 +210,7 @@ class Session:
         if not self.started:
             self.start()
             self.log_lines(["START"])
-        if self.writes.pending:  # by the function that runs as one command; it stays if that is taken back
+        if self.writes.pending:  # by the function that runs as one command; these writes are not undone
             self.note_writes()
         if (sound and self.written) or (shapes and self.unproved):
             self.prove()
@@ -285,7 +286,7 @@ class Session:
             int(h.ci[g.NCON]),
             float(forces.max(initial=0)),
             self.files,
-            perf_counter() - self._clock,
+            perf_counter() - self._start,
             compile_seconds() - self._compiled,
             in_short(self.recorder.solutions),
         )
@@ -297,22 +298,22 @@ class Session:
         self.files += [path for path in files if path not in self.files]
 
     def _last_picture(self, kind: str) -> int:
-        """The last number of a picture to be kept: of the run that this one continues, or 0."""
+        """The last number of a picture of the run that this one continues, or 0."""
         return last_number(self.out, self.name + kind) if self.continued else 0
 
     def write_histories(self, recording: Recording) -> None:
         """Write what was recorded."""
         self.add_files(self.recorder.write(recording, self.out / f"{self.name}-history", self.tell))
 
-    def report(self, n: int) -> Report:
+    def run_progress(self, n: int) -> RunProgress:
         """Shows the progress of `n` cycles, and takes pictures of them on request."""
-        from udec_ia.output.run_progress import Report
+        from udec_ia.output.run_progress import RunProgress
 
         if self.animate and self.animation is None:
             from udec_ia.output.animation import Animation
 
             self.animation = Animation(self.name)
-        return Report(lambda: self.array.h, n, self.progress, self.animation)
+        return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
         """Groups have new addresses: those of the open frame follow them."""
@@ -347,7 +348,6 @@ class Session:
                 path = self.out / f"{self.name}-{max(self._last_picture(''), 1) + 1}.gif"
             self.add_files([self.animation.save(path, self.array.h)])
             self.animation = None
-        self.recorder.close()
 
 
 def _words(mtop: SupportsIndex) -> int:

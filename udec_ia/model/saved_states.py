@@ -18,8 +18,8 @@ def save(session: Session, path: str | Path | None = None, *, force: bool = Fals
     """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
 
     Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
-    It may replace a restart file; error 31 if anything else stands there, or if it cannot be written. A
-    folder is created within `out` only.
+    It may replace a restart file only. Error 31 if it cannot be written. Folders are created within `out`
+    only.
     force: also a state that is unsound, whatever has made it so; the file is marked with the result of
     `check`, and RESTART takes it only by force.
     """
@@ -49,7 +49,7 @@ def restart(
     """RESTART: continue from the restart file `path`, by default restart.h5 in the folder `out`.
 
     The words are those of the file's scheme; `mtop` limits them, whatever the limit was when they were
-    saved. Existing pictures are kept: new ones take the next numbers. Error 29 if the file cannot be used
+    saved. Existing pictures stay: new ones take the next numbers. Error 29 if the file cannot be used
     or `check` finds its state unsound, 1 if it holds more than `mtop`; the model is then as it was. A
     state of which an error has ended a run is proved in its links and codes only.
     force: take an unsound state, too, to inspect and to mend it through `h`; commands that follow

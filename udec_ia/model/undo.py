@@ -1,30 +1,30 @@
 """Undo: a command is obeyed as a whole or not at all, whatever ends it.
 
-An interrupt, lack of memory, an exception in a user's function or a bug may end a command at any step. What
-it has done until then is taken back: the common block and what the session holds in Python from copies that
-cost nothing, the words of IA() from a copy that costs as much as the whole model. For a short command not to
-pay for that, the copy is kept from one command to the next, with a list of the commands obeyed since. To
-take one back the copy is put back and they are obeyed again, which gives the same words bit for bit. The copy
-is made anew when they have taken as long as a hundred copies. So copying adds one or two per cent to the time
-of many commands, and to take one back takes little more than a hundred copies do.
+An interrupt, lack of memory, an exception in a user's function or a bug may end a command at any step. Its
+changes are then undone: the common block and what the session holds in Python are restored from copies, which
+cost nothing, and the words of IA() from a copy that costs as much as the whole model. So this copy serves
+many commands: it comes with a list of the commands obeyed since. To undo one, the copy is restored and they
+are repeated, which gives the same words bit for bit. A new copy is made when they have taken as long as a
+hundred copies. So copying adds one or two per cent to the time of many commands, and undoing one takes little
+more than a hundred copies do.
 
 A command that raises a numbered error has changed no word: ops check before their first change, or go back
-themselves. If groups were made or given back all the same, their words are taken back, too, and so are those
-of the commands before it where several are obeyed as one.
+themselves. If groups were made or given back all the same, their words are restored too, and so are those of
+the commands before it where several are obeyed as one.
 
-CYCLE and SOLVE may end between two cycles, and what they have done until then stays (`confirm_piece`). What
-follows them is taken back as far as to their end (`confirm_run`). Compiled passes stop by themselves for lack
-of memory only, at a place from which the next CYCLE goes on (JPHASE). Interpreted and checked ones stop at
-any place: there the words are copied between the pieces of a run, too.
+CYCLE and SOLVE may end between two cycles, and what they have done until then is final (`confirm_piece`).
+What follows them is undone as far as to their end (`confirm_run`). Compiled passes end only for lack of
+memory, at a place from which the next CYCLE goes on (JPHASE). Interpreted and checked ones end at any place:
+there the words are copied between the pieces of a run, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
 from time import perf_counter
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -33,7 +33,6 @@ from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError, WrongAddress
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.write_tracking import Writes
 from udec_ia.interrupt_signals import hold, passing
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
@@ -43,8 +42,9 @@ from udec_ia.printable_text import counted
 P = ParamSpec("P")
 R = TypeVar("R")
 Method = Callable[Concatenate[Any, P], R]
+Session = Any  # model_session.Session, which imports this module
 
-REPEATED = 100.0  # a copy is made anew when the commands since then have taken as long as so many copies
+REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
 
 
@@ -52,7 +52,7 @@ COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a
 class Undoable:
     """Decorator of a method of Model, which is then obeyed as a whole or not at all, and logged.
 
-    words: it may change words of IA(). new_step: the next CYCLE finds masses and time-step anew; with
+    words: it may change words of IA(). new_step: the next CYCLE calculates masses and time-step again; with
     `words`, blocks may change, too, and what was made of them for the last CYCLE is given back. recorded:
     undoing a later command has to repeat it; repeatable: that gives the same state.
     """
@@ -66,34 +66,34 @@ class Undoable:
         """The method that is obeyed as a whole."""
 
         @wraps(method)
-        def work(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        def step(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
             if self.new_step:
-                self._forget_step(model.session)
+                self._reset_step(model.session)
             return method(model, *args, **named)
 
         @wraps(method)
-        def obeyed(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+        def command(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
             session = model.session
 
-            def obey() -> R:
+            def action() -> R:
                 if self.recorded:
-                    session.undo.add_step(Step(work, args, named) if self.repeatable else None)
+                    session.undo.add_step(Step(step, args, named) if self.repeatable else None)
                 if self.words:
                     session.undo.save_words(session.array)
-                result = work(model, *args, **named)
-                session.log_call(work, args, named)
+                result = step(model, *args, **named)
+                session.log_call(step, args, named)
                 return result
 
-            done: R = session.undo.run_whole(model, obey)
+            done: R = session.undo.run_whole(model, action)
             return done
 
-        return obeyed
+        return command
 
-    def _forget_step(self, session: Any) -> None:
-        """Let the next CYCLE find masses and time-step anew.
+    def _reset_step(self, session: Session) -> None:
+        """Let the next CYCLE calculate masses and time-step again.
 
-        In a heap that is unsound the list of relaxations may lead anywhere: it stays, and the method refuses
-        to follow lists, or mends some word.
+        In an unsound heap the list of relaxations may lead anywhere: it stays, and the method refuses to
+        follow lists, or repairs some word.
         """
         h = session.array.h
         h.ci[g.LREADY] = 0
@@ -119,98 +119,79 @@ def shows(method: Method[P, R]) -> Method[P, R]:
     return outside_array(shown)
 
 
-class UndoSession(Protocol):
-    """What undo needs of a session."""
-
-    array: MainArray
-    writes: Writes
-    tell: Callable[[str], None]
-    inform: Callable[[str], None]
-
-    def parts(self) -> Iterator[object]:
-        """The objects that hold what is not in the main array."""
-
-    def note_writes(self) -> None:
-        """Words were written through tracked arrays."""
-
-    def forget_boxes(self) -> None:
-        """Blocks are not where they were."""
-
-
 class FormerState:
-    """Everything but the words of IA(): what a session holds in Python, and the common block.
+    """A former state but for the words of IA(): what a session holds in Python, and the common block.
 
-    A list of the session is put in place of another, or grows at its end: its length says how it was.
+    A list of the session is replaced by another, or grows at its end: its length restores it.
     """
 
-    def __init__(self, session: UndoSession) -> None:
+    def __init__(self, session: Session) -> None:
         self.array: MainArray = session.array
         self.h: Memory = session.array.h
-        self.numbers = [part.copy() for part in common(self.h)]
-        self.parts = [(one, vars(one).copy()) for one in session.parts()]
+        self.common = [part.copy() for part in common_block(self.h)]
+        self.parts = [(part, vars(part).copy()) for part in session.parts()]
         self.lengths = [
-            (value, len(value)) for _, held in self.parts for value in held.values() if type(value) is list
+            (value, len(value)) for _, own in self.parts for value in own.values() if type(value) is list
         ]
 
-    def put_back(self, session: UndoSession) -> None:
+    def restore(self, session: Session) -> None:
         """Make the session as it was."""
-        for one, held in self.parts:
-            vars(one).clear()
-            vars(one).update(held)
+        for part, own in self.parts:
+            vars(part).clear()
+            vars(part).update(own)
         for value, length in self.lengths:
             del value[length:]
-        put_common(self.h, self.numbers)
+        set_common_block(self.h, self.common)
         session.array.h = self.h
         session.forget_boxes()
 
     def same_groups(self, h: Memory) -> bool:
         """True if `h` has as many groups of every kind as there were."""
-        return bool((h.ci[COUNTS] == self.numbers[0][COUNTS]).all())
+        return bool((h.ci[COUNTS] == self.common[0][COUNTS]).all())
 
     def same_common(self, h: Memory) -> bool:
         """True if `h` is the memory that was there, and its common block as it was, bit for bit."""
-        return h is self.h and image(h) == b"".join(part.tobytes() for part in self.numbers)
+        return h is self.h and common_bits(h) == b"".join(part.tobytes() for part in self.common)
 
 
-def common(h: Memory) -> tuple[Any, ...]:
+def common_block(h: Memory) -> tuple[Any, ...]:
     """The common block: its integers, reals and doubles."""
     return h.ci, h.cr, h.cd
 
 
-def put_common(h: Memory, numbers: Sequence[Any]) -> None:
-    """Give the common block other numbers, in the order of `common`."""
-    for part, kept in zip(common(h), numbers, strict=True):
-        part[:] = kept
+def set_common_block(h: Memory, numbers: list[Any]) -> None:
+    """Give the common block other numbers, in the order of `common_block`."""
+    for part, former in zip(common_block(h), numbers, strict=True):
+        part[:] = former
 
 
-def image(h: Memory) -> bytes:
+def common_bits(h: Memory) -> bytes:
     """The bits of the common block."""
-    return b"".join(part.tobytes() for part in common(h))
+    return b"".join(part.tobytes() for part in common_block(h))
 
 
 class Undo:
-    """What it takes to take back the command that is being obeyed.
+    """Undoes what is being done with a model.
 
-    words, ci, cr: those of `array` at some time. since: the commands obeyed since then, which took `seconds`;
-    `cost` is how long the copy took. left: the common block at the end of the last of them.
-    before: all but the words at the beginning of what is being done; None if that is to stay.
-    settled: a part of it is to stay, of a run that passes may end at any place.
-    doing: the commands of which that consists, None for one that cannot be repeated. covered: the words can
-    be had again as they were then.
+    array: whose words were copied, None if there is no copy. words, common: the copy, which took
+    `copy_seconds`. steps: obeyed since then, in `step_seconds`; they left the common block as `common_after`.
+    active: something is being done. former: the state before it, None if nothing of it is undone. current:
+    the steps of which it consists, None for one that cannot be repeated. words_saved: copy and steps give the
+    words before it. partly_final: a part of it stays, as of a run whose passes may end at any place.
     """
 
     def __init__(self) -> None:
         self.array: MainArray | None = None
         self.words: Any = np.zeros(0, np.int64)
-        self.since: list[Step] = []
-        self.seconds = self.cost = 0.0
-        self.busy = self.covered = self.settled = False
-        self.before: FormerState | None = None
-        self.doing: list[Step | None] = []
+        self.steps: list[Step] = []
+        self.step_seconds = self.copy_seconds = 0.0
+        self.active = self.words_saved = self.partly_final = False
+        self.former: FormerState | None = None
+        self.current: list[Step | None] = []
 
     def run_whole(self, model: Any, action: Callable[[], R]) -> R:
         """Call `action`, and undo all that it did with `model` if it raises."""
-        if self.busy:
+        if self.active:
             return action()
         with hold():
             try:
@@ -219,118 +200,118 @@ class Undo:
                 self._end(model.session)
             except BaseException as error:
                 with hold(firm=True):
-                    self._take_back(model, error)
+                    self._undo(model, error)
                 raise
             finally:
-                self.busy, self.before = False, None
+                self.active, self.former = False, None
         return result
 
     def add_step(self, step: Step | None) -> None:
         """A command begins, `step` if it can be repeated. One that is obeyed within another cannot."""
-        self.doing.append(step if step is not None and step.lasts and not self.doing else None)
+        repeatable = step is not None and step.has_constants_only and not self.current
+        self.current.append(step if repeatable else None)
 
     def save_words(self, array: MainArray) -> None:
-        """See to it that the words of `array` can be had again as they were before what is being done.
+        """Ensure that the words of `array` before the present action can be restored.
 
-        Those of an array that has come in its course, by START or RESTART, are not needed again.
+        Those of an array that the action has made, by START or RESTART, are not needed again.
         """
-        if not self.covered and (self.before is None or self.before.array is array):
-            follows = self.array is array and image(array.h) == self.left
-            if not follows or self.seconds > REPEATED * self.cost:
+        if not self.words_saved and (self.former is None or self.former.array is array):
+            follows = self.array is array and common_bits(array.h) == self.common_after
+            if not follows or self.step_seconds > REPEATED * self.copy_seconds:
                 self._copy(array)
-            self.covered = True
+            self.words_saved = True
 
-    def confirm_piece(self, session: UndoSession) -> None:
-        """What was done until now stays: between two cycles."""
-        self.before = None
+    def confirm_piece(self, session: Session) -> None:
+        """What was done until now is final: between two cycles."""
+        self.former = None
         if mode.python or CHECKED:
             self._copy(session.array)
-            self.covered, self.settled, self.before = True, True, FormerState(session)
+            self.words_saved, self.partly_final, self.former = True, True, FormerState(session)
         else:
             self.release()
 
-    def confirm_run(self, session: UndoSession) -> None:
-        """What was done until now stays, and what follows is taken back to here: a run has ended."""
+    def confirm_run(self, session: Session) -> None:
+        """What was done until now is final, and what follows is undone to here: a run has ended."""
         self.release()
-        self.covered, self.settled, self.doing, self.before = False, False, [], FormerState(session)
+        self.words_saved, self.partly_final, self.current = False, False, []
+        self.former = FormerState(session)
 
     def release(self) -> None:
-        """Let go of the copy, and of its memory."""
-        self.array, self.since, self.words = None, [], np.zeros(0, np.int64)
+        """Discard the copy."""
+        self.array, self.steps, self.words = None, [], np.zeros(0, np.int64)
 
-    def _begin(self, session: UndoSession) -> None:
+    def _begin(self, session: Session) -> None:
         if session.writes.pending:
             session.note_writes()
             session.writes.pending = False
-        self.doing, self.covered, self.settled, self._start = [], False, False, perf_counter()
-        self.before = FormerState(session)
-        self.busy = True
+        self.current, self.words_saved, self.partly_final, self._start = [], False, False, perf_counter()
+        self.former = FormerState(session)
+        self.active = True
 
-    def _end(self, session: UndoSession) -> None:
-        """Record what was done, or that the copy is of no use any more.
+    def _end(self, session: Session) -> None:
+        """Add what was done to the steps, or discard the copy if it is of no use any more.
 
-        It is confirmed before it is recorded: an end in between costs the copy and no more.
+        It is final before it is added: an exception in between costs the copy and no more.
         """
         array, self.array = self.array, None
-        self.before = None
-        if array is session.array and None not in self.doing:
-            self.seconds += perf_counter() - self._start if self.doing else 0.0
-            self.left = image(session.array.h)
-            self.since += [step for step in self.doing if step is not None]
-            if self.seconds > REPEATED * self.cost:
-                self.since = []
+        self.former = None
+        if array is not None and array is session.array and None not in self.current:
+            self.step_seconds += perf_counter() - self._start if self.current else 0.0
+            self.common_after = common_bits(array.h)
+            self.steps += [step for step in self.current if step is not None]
+            if self.step_seconds > REPEATED * self.copy_seconds:
+                self.steps = []
             else:
                 self.array = array
 
     def _copy(self, array: MainArray) -> None:
-        self.array, self.since = None, []
+        self.array, self.steps = None, []
         start, used = perf_counter(), int(array.h.ci[g.MFREE]) - 1
         if len(self.words) < used or self.words.dtype != array.h.ia.dtype:
             self.words = np.empty(2 * used, array.h.ia.dtype)
         self.words[:used] = array.h.ia[:used]
-        # what is being done may have changed numbers before it came to words
-        self.numbers = [part.copy() for part in (self.before.numbers if self.before else common(array.h))]
-        self.left = image(array.h)
-        self.seconds, self.cost = 0.0, perf_counter() - start
+        # the action may have changed numbers before its first change of words
+        self.common = [part.copy() for part in (self.former.common if self.former else common_block(array.h))]
+        self.common_after = common_bits(array.h)
+        self.step_seconds, self.copy_seconds = 0.0, perf_counter() - start
         self.array = array
 
-    def _take_back(self, model: Any, error: BaseException) -> None:
-        """Make everything as it was before what is being done."""
-        before, session = self.before, model.session
-        if before is None:
+    def _undo(self, model: Any, error: BaseException) -> None:
+        """Restore everything as it was before the present action."""
+        former, session = self.former, model.session
+        if former is None:
             return
         refused = isinstance(error, UdecError) and not isinstance(error, WrongAddress)
-        if refused and self.settled and not mode.python:  # compiled passes have stopped where they may
+        if refused and self.partly_final and not mode.python:  # compiled passes have ended where they may
             return
-        changed = self.covered and not (
-            len(self.doing) == 1 and refused and before.same_groups(session.array.h)
+        changed = self.words_saved and not (
+            len(self.current) == 1 and refused and former.same_groups(session.array.h)
         )
-        before.put_back(session)
-        if changed and not self._repeat(model, before):
-            self._put_words(before.h)
-            session.tell(
-                f"lost: the last {counted(len(self.since), 'command')}, which could not be obeyed once more"
-            )
+        former.restore(session)
+        if changed and not self._repeat(model, former):
+            self._restore_words(former.h)
+            session.tell(f"lost: the last {counted(len(self.steps), 'command')}, which could not be repeated")
             self.array = None
 
-    def _repeat(self, model: Any, before: FormerState) -> bool:
-        """Put the copy back and obey the commands since then once more; False if that gives another state."""
+    def _repeat(self, model: Any, former: FormerState) -> bool:
+        """Restore the copy and repeat the steps since then; False if that does not give the former state."""
         session = model.session
-        self._put_words(before.h)
+        self._restore_words(former.h)
         session.tell = session.inform = lambda _: None
         try:
-            for step in self.since:
+            for step in self.steps:
                 step.method(model, *step.args, **step.named)
-            return before.same_common(session.array.h)
+            return former.same_common(session.array.h)
         except Exception:
             return False
         finally:
-            before.put_back(session)
+            former.restore(session)
 
-    def _put_words(self, h: Memory) -> None:
-        """Put the copy back, into an array that may have grown since."""
-        size, used = int(h.ci[g.MTOP]), int(self.numbers[0][g.MFREE]) - 1
+    def _restore_words(self, h: Memory) -> None:
+        """Restore the copy, into an array that may have grown since."""
+        size, used = int(h.ci[g.MTOP]), int(self.common[0][g.MFREE]) - 1
         h.ia[:used] = self.words[:used]
         forget_kinds(h.ia)
-        put_common(h, self.numbers)
+        set_common_block(h, self.common)
         h.ci[g.MTOP] = size

@@ -1,7 +1,7 @@
 """An animated GIF of a run: one picture for each state that was collected, all in the same frame.
 
-A run may be of any length, a GIF should not: when there are more than MAX_STATES, every second one is
-dropped and from then on only every second one is kept, so the pictures stay evenly spaced in cycles.
+With more than MAX_STATES states every second one is dropped, and from then on only every second one is taken,
+so the pictures are evenly spaced in cycles.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from udec_ia.output.drawn_outlines import State, snapshot
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
-MAX_STATES = 150  # states that are kept
+MAX_STATES = 150
 SHRINK = 0.8  # size against that of a plot
 DPI = 100
 TICK = 60  # milliseconds for each picture
@@ -39,7 +39,7 @@ class Animation:
         self.offered = 0
 
     def add(self, h: Memory) -> None:
-        """Offer the present state: it is kept if it is the stride's turn."""
+        """Take the present state, if it is its turn."""
         if self.offered % self.stride == 0:
             self.states.append(snapshot(h))
         self.offered += 1

@@ -1,7 +1,7 @@
-"""Drawing on paper: blocks, contacts, domains and addresses, each on the axes of a matplotlib figure.
+"""Blocks, contacts, domains and addresses are drawn on the axes of a matplotlib figure.
 
-What stands still has the colour of its material, hatched if it is fixed; what moves from state to state
-gets a shade for each state, the darker the later.
+Blocks that do not move have the colour of their material, hatched if they are fixed. Those that move get a
+shade for each state, the darker the later.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ ROOMY = 90.0  # points that it must measure to be given those of its corners
 def limits(states: list[State], margin: float = 0.04) -> tuple[float, float, float, float]:
     """x and y range over all states, with a margin as a share of the size.
 
-    What is thrown further than the whole first state is wide must not shrink the rest to a dot: the range
-    ends there.
+    The range reaches beyond the first state by its size at most: a block that flies away must not shrink the
+    rest to a dot.
     """
     lows = np.array([state.outlines.corner.min(axis=0) for state in states if len(state.outlines.corner)])
     highs = np.array([state.outlines.corner.max(axis=0) for state in states if len(state.outlines.corner)])
@@ -91,9 +91,9 @@ def style_frame(axes: Axes) -> None:
 
 
 def title(axes: Axes, name: str, when: str = "") -> None:
-    """Write the name of the run over the picture, as it stands: a $ in it begins no formula.
+    """Write the name of the run over the picture; a $ in it begins no formula.
 
-    when: what stands at the right of it, or below it if there is no room for both.
+    when: text at the right of it, or below it if there is no room for both.
     """
     inches = axes.bbox.width / axes.figure.dpi
     above = "\n" if when and inches < LETTER * (len(name) + len(when)) else ""
@@ -190,7 +190,7 @@ def _still(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
 def draw_outlines(
     axes: Axes, o: Outlines, chosen: Any, face: Any, edge: Any, inches: float, hatched: bool = False
 ) -> None:
-    """The chosen blocks in one colour, with their centroids: as few compound paths as the renderer bears.
+    """The chosen blocks in one colour, with their centroids: as few compound paths as possible.
 
     The range of the axes is given: add_patch would look for that of the paths, and take longer than to draw.
     """
@@ -270,24 +270,11 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
     )
     for domain, tint in inner:
         if np.ptp(domain.polygon, axis=0).max() * inches / POINT > LEGIBLE:
-            axes.annotate(str(domain.address), _middle(domain.polygon), color=tint, **style)
-
-
-def _middle(polygon: Any) -> tuple[float, float]:
-    """Where to name a domain: its centroid, or the middle of its points when it is a closed joint."""
-    x, y = (polygon - polygon[0]).T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    if abs(cross.sum()) < 1e-3 * np.ptp(x) * np.ptp(y) or cross.sum() == 0.0:
-        return tuple(polygon.mean(axis=0))
-    weighted = [(cross * (v + np.roll(v, -1))).sum() / (3.0 * cross.sum()) for v in (x, y)]
-    return float(polygon[0, 0] + weighted[0]), float(polygon[0, 1] + weighted[1])
+            axes.annotate(str(domain.address), tuple(domain.polygon.mean(axis=0)), color=tint, **style)
 
 
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
-    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read.
-
-    Those outside of the picture are left out: what is damaged may lie where no letter can be drawn.
-    """
+    """Addresses of blocks at their centroids, and of corners inside them, wherever there is room to read."""
     middles = np.repeat(o.centroid, np.diff(o.first), axis=0)
     room = np.maximum.reduceat(np.abs(o.corner - middles).max(axis=1), o.first[:-1]) * 2.0 * inches / POINT
     style: dict[str, Any] = {"ha": "center", "color": INK, "zorder": 6}
@@ -326,10 +313,9 @@ def write_as(figure: Figure, path: Path) -> None:
     put_in_place(path, image.getvalue(), force=False)
 
 
-def picture_path(name: str | Path, more: tuple[str, ...] = ()) -> Path:
+def picture_path(name: str | Path) -> Path:
     """The path of a picture that is to be written. ValueError unless it ends as the type of one does."""
     path = Path(name)
-    if path.suffix.lower() not in (*TYPES, *more):
-        ends = " or ".join((*TYPES, *more))
-        raise ValueError(f"{printable(str(name))}: the name of a picture ends in {ends}")
+    if path.suffix.lower() not in TYPES:
+        raise ValueError(f"{printable(str(name))}: the name of a picture ends in {' or '.join(TYPES)}")
     return path

@@ -44,11 +44,11 @@ def field(h: Memory) -> Field:
     points = [ig for ib in blocks for ig in members(h, ib, "gridpoint")]
     zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
     simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
-    place = np.concatenate([_reals(h, hard, g.KX, g.KY), _reals(h, points, g.KXG, g.KYG)])
-    velocity = np.concatenate([_reals(h, hard, g.KXD, g.KYD), _reals(h, points, g.KXDG, g.KYDG)])
+    place = np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points, g.KXG, g.KYG)])
+    velocity = np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points, g.KXDG, g.KYDG)])
     at = {address: i for i, address in enumerate(hard + points)}
     rows = np.array([[at[iget(h, iz, g.KZG, i)] for i in range(3)] for iz in zones], int).reshape(-1, 3)
-    zone_stress = _reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
+    zone_stress = reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
     centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
     return Field(
         np.array(hard + points, np.int64),
@@ -56,11 +56,12 @@ def field(h: Memory) -> Field:
         velocity,
         place[rows],
         np.concatenate([place[rows].mean(axis=1), np.array(centres).reshape(-1, 2)]),
-        np.concatenate([zone_stress, _reals(h, simple, g.KS111, g.KS112, g.KS122)]),
+        np.concatenate([zone_stress, reals(h, simple, g.KS111, g.KS112, g.KS122)]),
     )
 
 
-def _reals(h: Memory, addresses: Any, *names: Offset) -> Any:
+def reals(h: Memory, addresses: Any, *names: Offset) -> Any:
+    """Fields of the groups at some addresses, as reals of 64 bits; names: along the last axis."""
     at = np.array(addresses, np.int64)
     return np.stack([_real(h, at, k) for k in names], axis=-1)
 
@@ -167,13 +168,13 @@ def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
     lists = [list(reverse(h, block))[::-1] for block in blocks]
     corners = np.array([corner for one in lists for corner in one], np.int64)
     return Outlines(
-        corner=_reals(h, corners, g.KXP, g.KYP),
-        centre=_reals(h, corners, g.KXCP, g.KYCP),
+        corner=reals(h, corners, g.KXP, g.KYP),
+        centre=reals(h, corners, g.KXCP, g.KYCP),
         radius=_real(h, corners, g.KRAD),
         rounding=float(h.cr[g.DTOL]),
         corner_address=corners,
         first=np.cumsum([0, *map(len, lists)]),
-        centroid=_reals(h, np.array(blocks, np.int64), g.KX, g.KY),
+        centroid=reals(h, np.array(blocks, np.int64), g.KX, g.KY),
         fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
         material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
         address=np.array(blocks, np.int64),
@@ -240,8 +241,7 @@ def apex(corner: Any, centre: Any, radius: Any) -> Any:
 def beside_corners(o: Outlines, i: int) -> Any:
     """Places inside block i beside its corners, each on the bisector of the corner's angle: (n, 2) in m.
 
-    Their distance is a tenth of that to the centroid, and at most a third of that to the edge opposite and
-    to the next corner.
+    Their distance is a tenth of that to the centroid, and at most a third of that to the next corner.
     """
     part = slice(o.first[i], o.first[i + 1])
     corner = o.corner[part]
@@ -249,25 +249,13 @@ def beside_corners(o: Outlines, i: int) -> Any:
     along = _unit(ahead) + _unit(behind)
     inwards = _unit(np.stack([along[:, 1], -along[:, 0]], axis=-1))  # clockwise: the inside is on the right
     start = apex(corner, o.centre[part], o.radius[part])
-    others = [np.roll(corner, -k - 1, axis=0)[:-1] for k in range(len(corner))]
-    free = list(map(_reach, start, inwards, others))
-    room = np.min([free, np.hypot(*ahead.T), np.hypot(*behind.T)], axis=0)
+    room = np.minimum(np.hypot(*ahead.T), np.hypot(*behind.T))
     step = np.minimum(0.1 * np.hypot(*(o.centroid[i] - start).T), room / 3.0)
     return start + step[:, None] * inwards
 
 
-def _reach(start: Any, way: Any, line: Any) -> float:
-    """How far it is from `start` in the direction `way`, a unit vector, to the line through points, in m."""
-    edge, to = np.diff(line, axis=0), line[:-1] - start
-    across = way[0] * edge[:, 1] - way[1] * edge[:, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        far = (to[:, 0] * edge[:, 1] - to[:, 1] * edge[:, 0]) / across
-        share = (to[:, 0] * way[1] - to[:, 1] * way[0]) / across
-    return float(far[(far > 0.0) & (share >= 0.0) & (share <= 1.0)].min(initial=np.inf))
-
-
 def _apex(h: Memory, corners: Any) -> Any:
-    points = _reals(h, corners, g.KXP, g.KYP), _reals(h, corners, g.KXCP, g.KYCP)
+    points = reals(h, corners, g.KXP, g.KYP), reals(h, corners, g.KXCP, g.KYCP)
     return apex(*points, _real(h, corners, g.KRAD))
 
 
@@ -291,7 +279,7 @@ def contact_forces(h: Memory) -> Contacts:
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
     fn, fs = _real(h, iads, g.KCFN)[:, None], _real(h, iads, g.KCFS)[:, None]
     return Contacts(
-        place=_reals(h, iads, g.KXC, g.KYC),
+        place=reals(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
         virtual=np.array([code == g.VIRTUAL for code in codes], bool),
         link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
@@ -302,19 +290,19 @@ def contact_forces(h: Memory) -> Contacts:
 def domain_polygons(h: Memory) -> Iterator[Domain]:
     """All domains, as polygons along the rounded outlines of the blocks around them."""
     for domain in groups(h, "domain"):
-        yield Domain(domain, np.array(list(_loop_reals(h, domain))), domain == h.ci[g.IODPNT])
+        yield Domain(domain, np.array(list(_loop_points(h, domain))), domain == h.ci[g.IODPNT])
 
 
-def _loop_reals(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
-    """Points along the loop of a domain. A corner stands for the end of its arc (Fig. 7).
+def _loop_points(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
+    """Points along the loop of a domain. A corner is the end of its arc (Fig. 7).
 
     Each step begins where the last one ended, but for a virtual contact: there the loop crosses to the other
     block, and back by the same way.
     """
     steps = list(loop(h, domain))
     for (before, block), (item, _) in zip([steps[-1], *steps[:-1]], steps, strict=True):
-        previous, start = _stand(h, before, block)
-        corner, place = _stand(h, item, block)
+        previous, start = _place_on_block(h, before, block)
+        corner, place = _place_on_block(h, item, block)
         yield start
         if corner:
             yield from _arc(
@@ -324,10 +312,10 @@ def _loop_reals(h: Memory, domain: int) -> Iterator[tuple[float, float]]:
             yield place
 
 
-def _stand(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
-    """The corner on whose arc the item stands on its `block` (0 if on none), and the item's place.
+def _place_on_block(h: Memory, item: int, block: int) -> tuple[int, tuple[float, float]]:
+    """The corner on whose arc the item is on its `block` (0 if on none), and the place of the item.
 
-    Where a virtual contact stands means nothing: it is taken to the middle of its corner's arc.
+    The position of a virtual contact means nothing: the middle of its corner's arc is returned.
     """
     if kind_of(h, item) == "corner":
         rounded = getr(h, item, g.KRAD) > 0.0

@@ -1,4 +1,4 @@
-"""Drawing on paper what a Field holds: the sides of zones, colours for stresses, crosses and arrows."""
+"""The contents of a Field are drawn: sides of zones, colours for stresses, crosses and arrows."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def draw_zones(axes: Axes, now: Field, o: Outlines) -> None:
 def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float = 0.0) -> None:
     """Zones and simply-deformable blocks in the colour of one of their stresses, with a key on the right.
 
-    beyond: width of what stands between picture and key, as a share of the picture. Stresses of both signs
-    are red and blue about 0, others have the whole range of a palette.
+    beyond: width of the other key, between picture and this one, as a share of the picture. Stresses of both
+    signs are red and blue about 0, others have the whole range of a palette.
     """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable

@@ -7,12 +7,14 @@ group with the largest share of it. Of a damaged heap the blocks that hang toget
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from udec_ia.checker import check_links
+from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.memory_use import FINE, cover, stretch
 from udec_ia.layout import offsets as g
@@ -29,8 +31,7 @@ from udec_ia.output.block_drawing import (
     title,
     write_as,
 )
-from udec_ia.output.drawn_outlines import Outlines, State, apex, domain_polygons
-from udec_ia.output.place_picture import is_near, outlines_left, points
+from udec_ia.output.drawn_outlines import Outlines, State, apex, domain_polygons, outlines, reals
 from udec_ia.printable_text import counted
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.printed_listing import Listing
@@ -46,6 +47,8 @@ GAP = 0.95  # inches between blocks and heap
 KEY, BELOW = 0.6, 0.55  # inches for the key to the colours, and from the blocks down to it
 MANY = 3000  # domains beyond which they are not drawn: they could not be seen
 PALE = "55"  # opacity of areas
+FAR = 100.0  # times the median distance of corners from their middle: nothing sound is further away
+BEYOND = 1e30  # m: no arc is there
 
 
 def draw(array: MainArray, out: str | Path, name: str = "") -> Listing:
@@ -111,8 +114,8 @@ def _dots(atlas: Atlas, o: Outlines) -> Iterator[tuple[str, Any]]:
     """Places of corners, grid-points and contacts (n, 2) in m, as far as they are any."""
     yield "corner", apex(o.corner, o.centre, o.radius)
     for kind, kx, ky in (("gridpoint", g.KXG, g.KYG), ("contact", g.KXC, g.KYC)):
-        places = points(atlas, atlas.groups[kind], kx, ky)
-        yield kind, places[is_near(places, o.corner)]
+        places = reals(atlas.h, atlas.groups[kind], kx, ky)
+        yield kind, places[_is_near(places, o.corner)]
 
 
 def _triangles(atlas: Atlas, o: Outlines) -> Iterator[Any]:
@@ -120,9 +123,46 @@ def _triangles(atlas: Atlas, o: Outlines) -> Iterator[Any]:
     corners = [word for word in atlas.shapes["zone"] if word.field.role == "triple"]
     at = np.stack([atlas.gather(word, atlas.groups["zone"]) for word in corners], axis=-1)
     at = at[atlas.holding("gridpoint", at).all(axis=1)]
-    places = points(atlas, at, g.KXG, g.KYG)
-    good = is_near(places.reshape(-1, 2), o.corner).reshape(-1, 3).all(axis=1)
+    places = reals(atlas.h, at, g.KXG, g.KYG)
+    good = _is_near(places.reshape(-1, 2), o.corner).reshape(-1, 3).all(axis=1)
     yield from places[good]
+
+
+def outlines_left(atlas: Atlas) -> tuple[Outlines, int]:
+    """The outlines of all blocks that are whole and near, and the number of the others."""
+    every = atlas.groups["block"].tolist()
+    with np.errstate(all="ignore"):
+        whole = outlines(atlas.h, [ib for ib in every if _is_whole(atlas, ib)])
+        arcs = np.abs(np.concatenate([whole.centre, whole.radius[:, None]], axis=1)) < BEYOND
+        good = _is_near(whole.corner, whole.corner) & arcs.all(axis=1)
+        near = _is_near(whole.centroid, whole.corner)
+        near[near] = np.logical_and.reduceat(good, whole.first[:-1])[near] if len(good) else False
+        left = outlines(atlas.h, whole.address[near].tolist())
+    rounding = left.rounding if 0.0 <= left.rounding < BEYOND else 0.0
+    return replace(left, rounding=rounding), len(every) - len(left.address)
+
+
+def _is_whole(atlas: Atlas, ib: int) -> bool:
+    """True if the reverse list of a block comes round, and all its corners are those of the block."""
+    starts, corner = memoryview(atlas.starts), KINDS.index("corner") + 1
+    first = ip = iget(atlas.h, ib, g.KP)
+    seen: set[int] = set()
+    while ip not in seen:
+        if not 0 < ip < len(starts) or starts[ip] != corner or iget(atlas.h, ip, g.KNB) != ib:
+            return False
+        seen.add(ip)
+        ip = iget(atlas.h, ip, g.KR)
+    return ip == first and len(seen) > 2
+
+
+def _is_near(places: Any, corners: Any) -> Any:
+    """True for each of `places` (n, 2) in m that is finite and not far from where corners (m, 2) are."""
+    finite = corners[np.isfinite(corners).all(axis=1)]
+    if not len(finite):
+        return np.zeros(len(places), bool)
+    middle = np.median(finite, axis=0)
+    reach = FAR * np.median(np.abs(finite - middle).max(axis=1))
+    return np.isfinite(places).all(axis=1) & (np.abs(places - middle).max(axis=1, initial=0.0) <= reach)
 
 
 def _page_axes(picture: Figure, axes: Axes, height: float) -> Axes:

@@ -3,8 +3,7 @@
 PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
 picture is written at once, PLOT 1 writes it anew. A frame of many states is written whenever it has grown by
 a quarter, and when it ends: so that a frame of n states takes a time in proportion to n. A block is drawn
-again only when it has moved visibly: what stands still has the colour of its material, what moves gets a
-shade for each state, the darker the later.
+again only when it has moved visibly (block_drawing.py).
 """
 
 from __future__ import annotations
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
 
 NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
 KEY_WIDTH = 1.55  # inches for the key on the right
-SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # what a picture's own reals can tell apart, with room to spare
+SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # limits that the reals of a picture resolve
 AT_ONCE = 10  # states up to which each one is drawn at once
 RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
 GROWTH = 1.25  # of a frame that has more
@@ -89,7 +88,7 @@ BARE = What()
 
 
 def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
-    """Error 28 unless there is something in the window, and it can be drawn. reach: of blocks from 0."""
+    """Error 28 unless the window is not empty and can be drawn. reach: largest coordinate of a block, m."""
     if window is None:
         return
     x1, x2, y1, y2 = window
@@ -136,15 +135,15 @@ class Plots:
 
     def remarks(self, h: Memory, what: What) -> list[str]:
         """Why something that the last PLOT asked for (`what`) cannot be seen."""
-        said = []
+        remarks = []
         if self.frame is not None and self.frame.written < len(self.frame.states):
             many = counted(len(self.frame.states), "state")
-            said.append(f"{many} to be drawn with later ones or when the frame ends")
+            remarks.append(f"{many} to be drawn with later ones or when the frame ends")
         if what.displacements and self.frame is not None and len(self.frame.states) == 1:
-            said.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
+            remarks.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
         if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
-            said.append(RIGID)
-        return said
+            remarks.append(RIGID)
+        return remarks
 
     def renumber(self, moved: Any) -> None:
         """Groups have moved (heap.main_array): the open frame goes on with their new addresses."""

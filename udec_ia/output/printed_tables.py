@@ -110,7 +110,7 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
 
 
 def _state(h: Memory) -> str:
-    """One line: where the run stands and how large the map is."""
+    """One line: cycle, time, and the size of the map."""
     virtual = f" ({h.ci[g.NVIRT]} virtual)" if h.ci[g.NVIRT] else ""
     return (
         f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {counted(h.ci[g.NBLK], 'block')}, "
@@ -284,7 +284,7 @@ def _one_list(h: Memory, kind: str, owner: int) -> str:
 
 
 def _item_columns(h: Memory, items: list[int]) -> list[Column]:
-    """OUTCP: where each item is; of a contact also what it joins and what it stands on."""
+    """OUTCP: the place of each item; of a contact also its blocks, code, corners and domains."""
     rows = []
     for item in items:
         if kind_of(h, item) == "corner":

@@ -25,73 +25,79 @@ if TYPE_CHECKING:
 
 LINES = 10  # plain lines for one CYCLE command, at most
 QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
-SHOWN = 0.05  # seconds of compiling, from which on the summary tells them
+SHOWN = 0.05  # seconds of compiling from which the summary reports them
 NAMED_FILES = 4  # files that the summary names; of more, their number
 
 
-class Progress:
-    """Progress of one CYCLE command.
+class RunProgress:
+    """Shows the progress of one CYCLE, which calls it now and then with the number of cycles done.
 
-    stream: where it shows; a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
-    total: cycles of the command. tdel: time-step in s. share: which part it is, and of what.
-    started: reading of `working_time` when the command began; None for now.
+    memory: returns the memory of the model as it is now. total: cycles of the command. stream: where progress
+    shows, or None: a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
+    animation: takes pictures, or None.
     """
 
     def __init__(
-        self, stream: TextIO, total: int, tdel: float, share: str, started: float | None = None
+        self, memory: Callable[[], Memory], total: int, stream: TextIO | None, animation: Animation | None
     ) -> None:
-        self.stream = stream
-        self.total = total
-        self.step = f"dt {tdel:.3g} s ({share})"
-        self.started = working_time() if started is None else started
-        self.lines = 0
+        self.memory, self.total, self.stream, self.animation = memory, total, stream, animation
+        self.before = int(memory().ci[g.MCTOT])
+        self.started = working_time()
+        self.shown = 0  # cycles done when progress was shown last
+        self.lines = 0  # tenths of the command for which a line was printed
         self.last = ""  # line on how far the command is
-        self.shown = ""  # line that was printed last
+        self.printed = ""  # line that was printed last
         columns = BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn()
         self.bar = Bar(*columns, expand=True, get_time=working_time)
         self.task = self.bar.add_task("cycles", total=total)
         self.live: Live | None = None
+
+    def __call__(self, done: int) -> None:
+        if self.animation is not None:
+            self.animation.add(self.memory())
+        if self.stream is not None:
+            self._show(done, self.stream)
+
+    def _show(self, done: int, stream: TextIO) -> None:
+        state = self._state(done)
+        self.shown, self.last = done, f"cycle {done} of {self.total}: {state}"
         if stream.isatty():
-            self.live = Live(
-                self._view(self.step), console=Console(file=stream, highlight=False), transient=True
-            )
-            self.live.start()
-
-    def _view(self, state: str) -> Group:
-        """The bar, and below it the numbers, on as many lines as the terminal needs."""
-        return Group(self.bar, Text(state))
-
-    def update(self, done: int, time: float, unbalanced: float, made: int, broken: int) -> None:
-        """`done` cycles of the command are over.
-
-        time: in s since the first cycle; unbalanced: largest force sum of a free block in N/m; made, broken:
-        contacts made and broken so far.
-        """
-        elapsed = working_time() - self.started
-        rate = done / elapsed if elapsed > 0.0 else 0.0
-        state = (
-            f"{rate:,.0f} cycles/s, t = {time:.4g} s, {self.step}, unbalanced force {unbalanced:.3g} N/m, "
-            f"contacts +{made} -{broken}"
-        )
-        self.last = f"cycle {done} of {self.total}: {state}"
-        if self.live is not None:
+            if self.live is None:
+                self.live = Live(console=Console(file=stream, highlight=False), transient=True)
+                self.live.start()
             self.bar.update(self.task, completed=done)
-            self.live.update(self._view(state))
-        elif elapsed >= QUIET and done * LINES >= (self.lines + 1) * self.total:
+            self.live.update(Group(self.bar, Text(state)))
+        elif working_time() - self.started >= QUIET and done * LINES >= (self.lines + 1) * self.total:
             self.lines = done * LINES // self.total
-            self._print()
+            self._print(stream)
+
+    def _state(self, done: int) -> str:
+        """Speed, time, time-step, largest force sum of a free block, and contacts made and broken so far."""
+        h, elapsed = self.memory(), working_time() - self.started
+        rate = done / elapsed if elapsed > 0.0 else 0.0
+        force = float(unbalanced(h, soft_or_loaded_in(h))[0])
+        return (
+            f"{rate:,.0f} cycles/s, t = {h.cd[g.TIME]:.4g} s, "
+            f"dt {h.cr[g.TDEL]:.3g} s ({fraction_in_words(h)}), "
+            f"unbalanced force {force:.3g} N/m, contacts +{h.ci[g.NMADE]} -{h.ci[g.NBROKE]}"
+        )
+
+    def _print(self, stream: TextIO) -> None:
+        if self.last != self.printed:
+            self.printed = self.last
+            print(self.last, file=stream, flush=True)
 
     def close(self) -> None:
-        """Take the bar away and leave the last line; safe to call again."""
+        """Remove the bar and print the last line, also of a command that ended early; safe to call again."""
+        if self.stream is None:
+            return
+        done = int(self.memory().ci[g.MCTOT]) - self.before
+        if done != self.shown:
+            self._show(done, self.stream)
         if self.live is not None:
             self.live.stop()
             self.live = None
-        self._print()
-
-    def _print(self) -> None:
-        if self.last != self.shown:
-            self.shown = self.last
-            print(self.last, file=self.stream, flush=True)
+        self._print(self.stream)
 
 
 def summary(
@@ -120,48 +126,3 @@ def summary(
         f"{counted(contacts, 'contact')}, largest normal force {force:.4g} N/m{solve}; {written}; "
         f"{wall:.1f} s{compiled}"
     )
-
-
-class Report:
-    """Called by CYCLE now and then with the number of cycles done.
-
-    memory: gives the memory of the model as it is now. total: cycles of the command. stream: where progress
-    shows; None for nowhere. animation: where pictures go; None for nowhere.
-    """
-
-    def __init__(
-        self, memory: Callable[[], Memory], total: int, stream: TextIO | None, animation: Animation | None
-    ) -> None:
-        self.memory = memory
-        self.total = total
-        self.stream = stream
-        self.animation = animation
-        self.progress: Progress | None = None
-        self.shown = 0  # cycles done when progress was shown last
-        self.before = int(memory().ci[g.MCTOT])
-        self.started = working_time()
-
-    def __call__(self, done: int) -> None:
-        if self.animation is not None:
-            self.animation.add(self.memory())
-        if self.stream is not None:
-            self._show(done, self.stream)
-
-    def _show(self, done: int, stream: TextIO) -> None:
-        h = self.memory()
-        if self.progress is None:
-            tdel = float(h.cr[g.TDEL])
-            self.progress = Progress(stream, self.total, tdel, fraction_in_words(h), self.started)
-        self.shown = done
-        made, broken = int(h.ci[g.NMADE]), int(h.ci[g.NBROKE])
-        self.progress.update(
-            done, float(h.cd[g.TIME]), float(unbalanced(h, soft_or_loaded_in(h))[0]), made, broken
-        )
-
-    def close(self) -> None:
-        """Take the progress off the screen; the last line tells how far a command came that was cut short."""
-        done = int(self.memory().ci[g.MCTOT]) - self.before
-        if self.stream is not None and done != self.shown:
-            self._show(done, self.stream)
-        if self.progress is not None:
-            self.progress.close()

@@ -90,8 +90,8 @@ def _span_lines(atlas: Atlas, span: Span, n: int, m: int, texts: Sequence[str]) 
         begin, stop = max(start, first), min(start + step - 1, last)
         raw = " ".join([f"{word:{digits}}" for word in words[begin - 1 : stop].tolist()])
         low, high = begin - span.first, stop - span.first
-        told = [
+        fields_here = [
             text for one, text in zip(fields, texts, strict=True) if one.first <= high and one.last >= low
         ]
         label = _label(span) if start <= first else ""
-        yield f"{begin:8} | {raw:{width}} | {label:14} {' '.join(told)}".rstrip()
+        yield f"{begin:8} | {raw:{width}} | {label:14} {' '.join(fields_here)}".rstrip()

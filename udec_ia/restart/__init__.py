@@ -1,9 +1,9 @@
 """SAVE and RESTART: the whole state in one file that describes itself.
 
-The state of a run is the heap up to MFREE and the common block, so that is what a restart file holds,
-bit for bit, next to the table that says what every word means. A restart file is an HDF5 file behind a
-seal, a short text that holds the checksum of the rest: a file that is foreign, cut short or changed in
-any byte is refused before a word of it is believed. `docs/restart-format.md` is the full description.
+The state of a run is the heap up to MFREE and the common block. A restart file holds these, bit for bit, and
+the table that defines every word. It is an HDF5 file behind a seal, a short text with the checksum of the
+rest: a file that is foreign, cut short or changed in any byte is refused before a word of it is used.
+docs/restart-format.md is the full description.
 """
 
 from udec_ia.restart.file_summary import info

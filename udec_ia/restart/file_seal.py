@@ -1,11 +1,11 @@
 """The seal of a restart file, its first 512 bytes, and how a file is refused: as error 29, with its name.
 
-HDF5 leaves a "user block" at the front of a file to its users. Ours is a text that a person can read
-(`head -c 512 FILE`) and that holds length and SHA-256 of all that follows. It is checked before the HDF5
-library sees the file, because that library trusts what it reads: damaged metadata can make it crash.
+HDF5 leaves a "user block" at the front of a file to its users. That of a restart file is a readable text
+(`head -c 512 FILE`) with the length and SHA-256 of all that follows. It is checked before the HDF5 library
+sees the file, because that library trusts what it reads: damaged metadata can make it crash.
 
-Code that reads a file reports what is wrong by RefusedError; `refusing` makes error 29 of that, and of
-anything else that can go wrong between the disk and the array.
+Code that reads a file raises RefusedError; `refusing` turns this into error 29, and also all other exceptions
+between the disk and the array.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def read_sealed(file: BinaryIO, file_size: int) -> tuple[bytes, tuple[int, int]]
     """The whole file, seal included, and its format version.
 
     RefusedError unless every byte is as it was when it was sealed; the version is left to be compared
-    with the one inside, since the checksum does not cover it.
+    with the one in the HDF5 part, since the checksum does not cover it.
     """
     front = file.read(SIZE)
     version = read_front(front, file_size)

@@ -6,16 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from udec_ia.checker.invariants import unfinished
 from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.heap.main_array import MainArray, variable
+from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.written_state import Words
 from udec_ia.layout.field_table import read_table
 from udec_ia.printable_text import counted, printable
-from udec_ia.reader.group_tables import table
-from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart.file_seal import OTHER_TABLE, RefusedError, refusing
 from udec_ia.restart.file_tables import shorten
 from udec_ia.restart.hdf5_contents import Contents
@@ -45,8 +41,6 @@ def info(path: str | Path) -> str:
         lines = [("file", str(path)), ("format", _format(file)), ("written", _written(file))]
         lines += [("words", f"{scheme.name}: {scheme.int_bits}-bit integers, {scheme.real_bits}-bit reals")]
         lines += [("layout", layout), *(_state(file, values) if values else [])]
-        if front.table is read_table() and values["NSOFT"]:
-            lines += _inertia(read_state(file, front).array)
         lines += [("unsound", f"saved by force: {shorten(mark)}")] if (mark := read_mark(file)) else []
         lines += [("deck", counted(len(read_deck(file)), "command line"))]
         lines += [("law", f"{name} of {origin}, sha256 {d}") for name, (origin, d) in read_laws(file).items()]
@@ -94,40 +88,5 @@ def _state(file: Contents, values: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("model", f"{blocks}, {contacts} ({values['NVIRT']} virtual), {domains}"),
         ("run", f"{cycles}, time {values['TIME']:.6g} s, time-step {values['TDEL']:.6g} s"),
         *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
-        *(("check", said) for said in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
+        *(("check", text) for text in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),
     ]
-
-
-def _inertia(array: MainArray) -> list[tuple[str, str]]:
-    """A line on the zoned block whose masses at grid-points turn most slowly; none if no block has zones.
-
-    A zone of the mass m with the corners r1, r2, r3 from the centroid of its block has the moment of inertia
-    m (r1 r1 + r2 r2 + r3 r3 + s s)/12 there, with s = r1 + r2 + r3.
-    """
-    try:
-        blocks, meshes, points, zones = (
-            table(array, kind) for kind in ("block", "fdef", "gridpoint", "zone")
-        )
-    except Unsound:  # kept by FORCE, for inspection
-        return []
-    many = meshes["KFNG"]
-    if not len(zones) or (many < 0).any() or many.sum() != len(points) or not len(points):
-        return []
-    centre = {int(row["KBEX"]): (float(row["KX"]), float(row["KY"])) for row in blocks}
-    owner = np.repeat(np.arange(len(meshes)), many)
-    order = np.argsort(points["address"])
-    corner = order[np.searchsorted(points["address"], zones["KZG"], sorter=order) % len(order)]
-    if (points["address"][corner] != zones["KZG"]).any():
-        return []
-    middle = np.array([centre[int(ie)] for ie in meshes["address"]]).reshape(-1, 2)
-    arm = np.stack([points["KXG"], points["KYG"]], axis=1) - middle[owner]
-    at_points = np.bincount(owner, points["KGPM"] * (arm**2).sum(axis=1), len(meshes))
-    square = (arm[corner] ** 2).sum(axis=(1, 2)) + (arm[corner].sum(axis=1) ** 2).sum(axis=1)
-    of_body = np.bincount(owner[corner[:, 0]], zones["KZM"] * square / 12, len(meshes))
-    ratio = np.divide(at_points, of_body, out=np.ones(len(meshes)), where=of_body > 0)
-    if not (ratio > 1).any():
-        return []
-    ie = int(meshes["address"][ratio.argmax()])
-    block = int(blocks["address"][blocks["KBEX"] == ie][0])
-    text = f"that of block@{block} is {ratio.max():.2f} times that of a body, its masses being at grid-points"
-    return [("inertia", f"{text}; smaller zones have less of this")]

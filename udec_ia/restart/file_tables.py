@@ -1,7 +1,7 @@
-"""What the words mean, as a restart file tells it.
+"""The meaning of the words, in a restart file.
 
-The text of the field table goes into the file as it is, and for each kind of group a table with one row
-per field: the same facts as `offsets/` holds, laid out for the word scheme of the file.
+The file has the text of the field table, and for each kind of group a table with one row per field: the facts
+of `offsets/`, for the word scheme of the file.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def field_rows(group: Group, ratio: int) -> Any:
 
 
 def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
-    """Each variable of the common block, and where it stands among those of its type."""
+    """Each variable of the common block, and its place among those of its type."""
     end = dict.fromkeys(COMMON_TYPES, 0)
     for field in table.common:
         start = end[field.type]
@@ -65,7 +65,7 @@ def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
 
 
 def table_faults(table: Table) -> list[str]:
-    """What keeps a table that came with a file from being used: names that mean two things, mad sizes."""
+    """Why a table that came with a file cannot be used: names with two meanings, impossible sizes."""
     names, fields = [group.name for group in table.groups], list(table.common)
     found = [f"two kinds of group are called {name}" for name in _double(names)]
     for heads in ([one.name for one in table.heads], [one.value for one in table.heads]):
@@ -94,5 +94,5 @@ def _is_head(head: HeadCode, kinds: list[str]) -> bool:
 
 
 def _double(names: list[Any]) -> list[Any]:
-    """Those that are there more than once."""
+    """Names that occur more than once."""
     return [name for name, times in Counter(names).items() if times > 1]

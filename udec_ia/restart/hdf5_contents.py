@@ -1,11 +1,11 @@
-"""What is in a restart file: each object is judged by its header before a byte of it is read.
+"""The contents of a restart file: the header of each object is checked before a byte of it is read.
 
 A checksum detects accidents, not intent: anybody who makes a file can seal it. An HDF5 file can point to
-other files and to itself, and can hold numbers that take no room until they are read. A restart file needs
-none of that. Only what a restart file is known to have is ever opened, by the name that it is known by, and
-it must stand there itself, not a link; what is read must have the type and shape that are expected and lie in
-the file as it is, unpacked; and all of it together is no more than the file. So reading takes memory and
-time in proportion to the size of the file, whatever is in it, and opens no other.
+other files and to itself, and can declare numbers that take no room until they are read. A restart file needs
+none of that. So only objects that a restart file has are opened, by name. They must be in the file itself,
+not links, have the expected type and shape, be stored unpacked, and together be no larger than the file.
+Reading takes memory and time in proportion to the size of the file, whatever it contains, and opens no other
+file.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CHUNK = 65536  # words of the heap in one piece
 CHECKSUM = 4  # bytes of Fletcher-32 behind each piece; a SHA-256 covers all of them
 MAX_TEXT = 4096  # bytes of an attribute
 # How the HDF5 part begins: version 2, addresses and lengths of 8 bytes, written to its end, byte SIZE is its
-# first, and no extension, which could describe other ways of storage.
+# first, and no extension, which could describe other forms of storage.
 SUPERBLOCK = HDF5_SIGNATURE + bytes((2, 8, 8, 0)) + SIZE.to_bytes(8, "little") + b"\xff" * 8
 
 
@@ -156,7 +156,7 @@ class Contents:
         return found
 
     def _read(self, place: str, node: Any, kind: Any, shape: tuple[int, ...]) -> Any:
-        """What stands in the file in one piece."""
+        """Numbers or text stored in one piece."""
         plist, size = node.get_create_plist(), prod(shape) * kind.itemsize
         inside = plist.get_layout() in (h5d.COMPACT, h5d.CONTIGUOUS) and plist.get_external_count() == 0
         if not inside or node.get_storage_size() != size:

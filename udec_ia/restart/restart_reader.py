@@ -1,8 +1,8 @@
-"""RESTART: the state of a run out of a restart file, or a refusal that says why not.
+"""RESTART: the state of a run is read from a restart file, or the file is refused with the reason.
 
-Nothing in the file is believed before it is tested: seal, format, completeness, field table, word
-widths, types and shapes, checksums, bounds, and at last the lists and pointers of the heap itself.
-A file that was written with another field table is read by the names of that table (field_translation.py).
+Everything in the file is tested before it is used: seal, format, completeness, field table, word widths,
+types and shapes, checksums, limits, and at last the lists and pointers of the heap itself. A file that was
+written with another field table is read by the names of that table (field_translation.py).
 """
 
 from __future__ import annotations
@@ -86,9 +86,11 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
             known = has_readable_histories(seen.array)
             series = read_histories(file, seen.array, bool(seen.mark)) if known else []
             deck, laws = read_deck(file), read_laws(file)
-        faults = _faults(seen.array, unchecked)  # takes memory, and that of the file is given back by now
-        if not force:
-            _refuse_unsound(seen.mark, faults)
+        faults = _faults(seen.array, unchecked)  # takes memory, when that of the file is free again
+        if seen.mark and not force:
+            raise RefusedError(f"was saved by force, being unsound: {shorten(seen.mark)}", FORCE)
+        if faults and not force:
+            raise RefusedError(f"holds an unsound heap: {shorten(faults)}", FORCE)
         return Restored(seen.array, deck, laws, series, seen.notes, faults)
 
 
@@ -258,20 +260,12 @@ def _array(state: Words) -> MainArray:
 def _faults(array: MainArray, unchecked: bool) -> list[str]:
     """What is wrong with a state.
 
-    Compiled routines follow links, and codes such as materials or the pass, without a further test: these
-    are always proved. The rest is not, if the user cannot wait, or if an error has ended a run of the state:
-    forces and overlaps have then run away, and the state is there to be inspected.
+    Compiled routines follow links and codes, such as materials or the pass, without a further test: these are
+    always proved. The rest is not with `unchecked`, or if an error has ended a run of the state: its forces
+    and overlaps may have any value, and it is there to be inspected.
     """
     proof = check_links if unchecked or array.h.ci[g.NSPOIL] else check
     return [violation.message for violation in proof(array)]
-
-
-def _refuse_unsound(mark: list[str], faults: list[str]) -> None:
-    """Refuse a file that is marked as unsound, or whose heap is."""
-    if mark:
-        raise RefusedError(f"was saved by force, being unsound: {shorten(mark)}", FORCE)
-    if faults:
-        raise RefusedError(f"holds an unsound heap: {shorten(faults)}", FORCE)
 
 
 def read_mark(file: Contents) -> list[str]:

@@ -2,7 +2,7 @@
 
 The HDF5 part is made in memory and sealed there, so that neither a full disk nor a kill can leave HDF5
 with half a file. It then goes to a temporary file in the same folder, is forced to the disk and renamed:
-whatever happens, the name stands for the old file or the new one, never for a part of either.
+whatever happens, the file is the old one or the new one, never a part of either.
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ def save(
 ) -> Path:
     """Write `array`, the command lines that led to it and what was recorded to the restart file `path`.
 
-    laws: file and SHA-256 of each of the user's constitutive laws that the state was calculated with.
+    laws: file and SHA-256 of each law of the user that the state was calculated with.
     unsound: what is wrong with the state, if anything is known to be: the file is marked with that.
     The folder is made if it is not there. Two files of one state differ in /volatile only, and in the
-    checksum of the seal. Raises UdecError 31 if the file cannot be written, or if something stands there that
-    is no restart file; that is then untouched.
+    checksum of the seal. Raises UdecError 31 if the file cannot be written, or would replace
+    another kind of file.
     """
     path = Path(path)
     put_in_place(path, _image(array, deck, laws, series, unsound), _judge)

@@ -1,7 +1,7 @@
-"""What the histories have recorded, in HDF5: a group for each, by its number, with all that explains it.
+"""The numbers of histories in HDF5: a group for each history, by its number, with what explains it.
 
-It stands so in NAME-history.h5 and, under /recorded, in the restart file, so that a run that is restarted
-anywhere goes on with the numbers that it had.
+NAME-history.h5 has these groups, and so has a restart file, under /recorded: a run that is restarted anywhere
+continues with the numbers that it had.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from udec_ia.restart.hdf5_contents import Contents
 from udec_ia.running.history_series import Series
 
 TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in the order of Series.numbers
-CHUNK = 512  # numbers that stand together in a dataset that grows
+CHUNK = 512  # numbers in one piece of a dataset that grows
 RECORDED = "recorded"  # group of the restart file
 ADDRESS = re.compile(r"[0-9]{1,19}")
 PLACE = re.compile(r"|\([-+.0-9a-z]{1,12}, [-+.0-9a-z]{1,12}\)")

@@ -1,8 +1,8 @@
 """The critical time-step: the 1980 estimate, and a bound that no mode exceeds (report 4.6).
 
-Estimate: 2 sqrt(M/K), smallest over the blocks (least mass, greatest joint stiffness), the internal modes of
-simply-deformable blocks and the grid-points (kernels.drive.critical_stiffness). It is only approximate: a
-mass on several springs has a shorter period than on one.
+Estimate: the smallest 2 sqrt(M/K) of the blocks (least mass, greatest joint stiffness), the internal modes of
+simply-deformable blocks and the grid-points (kernels.drive.critical_stiffness). It is approximate: a mass on
+several springs has a shorter period than on one.
 
 Bound: 2 min sqrt(m_i d_i / sum_j |K_ij| d_j), by the rows of the stiffness matrix (running.stiffness_bound).
 """
@@ -33,7 +33,7 @@ def bound(array: MainArray) -> StepLimit:
 
 @OVERFLOWS
 def estimate(array: MainArray) -> StepLimit:
-    """The 1980 estimate of the critical time-step. Errors 11 and 12 for what is not defined."""
+    """The 1980 estimate of the critical time-step. Errors 11 and 12 for undefined properties."""
     h = array.h
     mass, at, massless = smallest_mass(h)
     if massless:
@@ -50,12 +50,12 @@ def estimate(array: MainArray) -> StepLimit:
         smallest, soft = soft_step(h, stiffness)
         if float(smallest) < ratio:
             ratio, at = float(smallest), soft
-    limit = StepLimit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # a block squashed flat has no mass left in it
+    limit = StepLimit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # the inertia of a flat block may be below 0
     return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
 
 
 def _drag_limit(h: Memory, stiffness: Array, joints: float) -> StepLimit:
-    """The least step of what viscous boundaries hold; stiffness: of the grid-points, by address."""
+    """The least step of blocks and points on viscous boundaries; stiffness: of grid-points, by address."""
     bounds = addresses(h, int(h.ci[g.IBNPNT]), g.KU)
     if not len(bounds):
         return StepLimit(math.inf, 0)
@@ -71,7 +71,7 @@ def _drag_limit(h: Memory, stiffness: Array, joints: float) -> StepLimit:
 
 
 def _stiffness(h: Memory) -> float:
-    """Greatest joint stiffness of any contact; of a lone block the one that its contacts would have."""
+    """Greatest joint stiffness of all contacts; without contacts that of the first block's material."""
     if h.ci[g.NCON] == 0:
         m = iget(h, int(h.ci[g.IBPNT]), g.KMAT)
         joint = joints_of_materials(h, m)
@@ -88,7 +88,7 @@ def _stiffness(h: Memory) -> float:
 
 
 def time_step(array: MainArray) -> float:
-    """FRAC times the estimate, or times the safe bound if asked for; error 28 if reals cannot hold it."""
+    """FRAC times the estimate or, with SAFE, the bound. Error 28 if reals cannot hold it."""
     critical = estimate(array).step
     if array.h.ci[g.LSAFE]:
         safe = scale(array) if array.h.ci[g.LSCALE] else bound(array).step
@@ -101,5 +101,5 @@ def time_step(array: MainArray) -> float:
 
 
 def fraction_in_words(h: Memory) -> str:
-    """The share of the critical time-step that is taken, and of which one."""
+    """The fraction of the estimate or of the safe bound, in words."""
     return f"{h.cr[g.FRAC]:.3g} of the {'safe bound' if h.ci[g.LSAFE] else 'estimate'}"

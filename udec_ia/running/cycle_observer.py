@@ -1,7 +1,7 @@
-"""What looks on while cycles run: a debugger, a study, the monitors of a run, the diagnosis of a SOLVE.
+"""The interface of observers of a run: debugger, studies, monitors, diagnosis of a SOLVE.
 
-A run asks each of its observers how far it may go, runs as many cycles in one piece, and shows them what it
-has come to. How a run is cut into pieces changes no digit of it.
+A run asks its observers for the number of cycles until their next look, and runs these in one piece. The
+division into pieces does not change a digit.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from udec_ia.layout import offsets as g
 
 
 class Observer(Protocol):
-    """Looks on at a run. By itself it asks for nothing and does nothing."""
+    """An observer of a run. Its methods do nothing until they are overridden."""
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """The run is prepared, and its first cycle follows. solves: it is a SOLVE."""
+        """Called before the first cycle. solves: the run is a SOLVE."""
         return
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """Cycles until the observer has to look, from 1 to the `n` that are to come."""
+        """Cycles until the next look, from 1 to the `n` that follow."""
         return n
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """`cycles` more have been completed. The last cycle may have left an error: see between_cycles."""
+        """Called after `cycles` more cycles. The last one may have left an error: see between_cycles."""
         return
 
     def is_over(self) -> bool:
@@ -33,7 +33,7 @@ class Observer(Protocol):
         return False
 
     def end(self, array: MainArray) -> None:
-        """The run has ended, whatever ended it."""
+        """Called at the end of the run, also after an error."""
         return
 
 

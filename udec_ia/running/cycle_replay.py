@@ -1,7 +1,6 @@
-"""The cycles of a run that was prepared, repeated cycle by cycle: the same words, bit for bit.
+"""Repetition of the cycles of a prepared run, bit for bit, without preparation, warnings and recording.
 
-CYCLE prepares, warns, records and reports. Nothing of that is done here. Whatever the run stopped for, its
-replay stops for as well.
+A replay stops at the same errors as the run.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from udec_ia.running.safe_step_update import cycles_to_update, update_step
 
 
 class Replay:
-    """Cycles of `array`, which is in the midst of a run. laws: those of that run."""
+    """Repeats cycles of `array`, which is a state within a run. laws: of that run."""
 
     def __init__(self, array: MainArray, laws: LawBook) -> None:
         self.array = array

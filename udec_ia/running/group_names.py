@@ -1,4 +1,4 @@
-"""How messages name a block, a grid-point, a zone or a contact, and its place."""
+"""Names and places of blocks, grid-points, zones and contacts for messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def name_of(h: Memory, address: int) -> str:
 
 
 def name_and_place(h: Memory, address: int) -> str:
-    """The same, with the centroid of the block."""
+    """The name of a group with the centroid of its block."""
     ib, what = owner(h, address)
     at = f" at ({getr(h, ib, g.KX):.4g}, {getr(h, ib, g.KY):.4g})" if what != NOBODY else ""
     return name_of(h, address) + at
@@ -36,7 +36,7 @@ def strained_name(h: Memory, iz: int) -> str:
 
 
 def contact_name(h: Memory, ic: int) -> str:
-    """Contact `ic`, its blocks and its place."""
+    """Name of contact `ic` with its blocks and its place."""
     return (
         f"contact@{ic} of block@{iget(h, ic, g.KB1)} and block@{iget(h, ic, g.KB2)} at "
         f"({getr(h, ic, g.KXC):.4g}, {getr(h, ic, g.KYC):.4g})"

@@ -1,8 +1,7 @@
 """The series of numbers that histories record, and the runs of cycles that fill them.
 
-A compiled loop fills a block of rows (kernels.drive.cycle); between two pieces of a run the rows are handed
-on to the series. Rows that were handed on before are passed over, so nothing is lost or doubled when Ctrl-C
-comes between the two.
+A compiled loop fills an array of rows (kernels.drive.cycle). Between two pieces of a run the rows are added
+to the series. Rows that a series has already are ignored, so Ctrl-C in between loses and doubles nothing.
 """
 
 from __future__ import annotations
@@ -21,31 +20,27 @@ from udec_ia.ops.commands.history_definitions import Definition, definitions, pl
 
 ROWS = 1024  # rows that a compiled piece can fill
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
-NEVER = -1.0  # force ratio that is never reached
+NEVER = -1.0  # a force ratio that no run reaches
 NO_MARKS = np.zeros(0, np.uint8)
 NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 
 
 def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-    """Up to `n` cycles of which nothing is recorded, by the same machine code; returns how many were done.
-
-    laws, marks: see kernels.drive.cycle.run_watched.
-    """
+    """Up to `n` cycles without recording; returns their number. laws, marks: see drive.cycle.run_watched."""
     called = passes(h, laws[0], (), NEVER, False, marks)
     return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
 
 
 def nothing_recorded() -> tuple[Any, Any, Any]:
-    """What run_watched is given where nothing is recorded: places, rows and count."""
+    """Arguments of run_watched for a run without recording: places, rows and count."""
     return NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
 
 
 class Series:
     """The numbers of one history.
 
-    number: of the history. name, unit, text: of the field. group: kind and last address of its group, "" if
-    it has none. place: where the group was when it was chosen by a point, else "". lost: True once the
-    group has disappeared and the user was warned.
+    name, unit, text: of the field. group: kind and last address of its group, or "". place: of the group when
+    it was selected by a point, else "". lost: the group has disappeared, and the user was warned.
     """
 
     def __init__(self, number: int, definition: Definition, place: str = "") -> None:
@@ -61,13 +56,13 @@ class Series:
         self.follow(definition)
 
     def follow(self, definition: Definition) -> None:
-        """Take the address that the group has now; one that has gone keeps its last name."""
+        """Take the present address of the group; a group that has gone keeps its last name."""
         if definition.address:
             self.group = f"{definition.what.group}@{definition.address}"
 
     @property
     def title(self) -> str:
-        """What is recorded, in a few words."""
+        """The history in a few words."""
         return f"{self.number}: {self.name}" + (f" of {self.group}" if self.group else "")
 
     def __str__(self) -> str:
@@ -77,12 +72,12 @@ class Series:
 
     @property
     def numbers(self) -> Any:
-        """All that was recorded, one row each: cycle, time in s, value."""
+        """Shape (n, 3): cycle, time in s, value."""
         self._parts = [np.concatenate(self._parts)]
         return self._parts[0]
 
     def since(self, n: int) -> Any:
-        """What was recorded after the first `n` numbers, as rows of `numbers`."""
+        """The rows of `numbers` after the first `n`, without joining the earlier ones."""
         parts, missing = [np.zeros((0, 3))], self.count - n
         for part in reversed(self._parts):
             if missing <= 0:
@@ -98,29 +93,28 @@ class Series:
         return -1 if last is None else int(last[-1, 0])
 
     def until(self, cycle: int) -> None:
-        """Forget what was recorded after that cycle."""
+        """Remove the rows after that cycle."""
         self._parts = [self.numbers[self.numbers[:, 0] <= cycle]]
         self.count = len(self._parts[0])
 
     def add(self, rows: Any) -> None:
-        """Take in rows of cycle, time and value that were recorded later than all others."""
+        """Add rows of cycle, time and value that are later than the last one."""
         new = rows[rows[:, 0] > self.last_cycle]
         if len(new):
             self._parts.append(new)
             self.count += len(new)
 
 
-Marks = Callable[[Memory, int], Any]  # bytes for the marks of contacts, of a run of so many cycles to come
+Marks = Callable[[Memory, int], Any]  # returns the marks of contacts for a run of so many cycles
 
 
 class Recording:
-    """Runs cycles of `array` and adds what is recorded to `series`.
+    """Runs cycles of `array` and records histories in `series`.
 
-    ratio: to within which the model must be at rest to stop. mean: the mean unbalanced force counts, not the
-    greatest. marks: of contacts that open and close (kernels.drive.cycle).
-    reached: True when the model was at rest after a cycle of this run: forces are those of the present
-    properties, loads and laws only when the contacts have been passed through with them.
-    lost: those of `series` whose groups have disappeared since they were last looked at.
+    ratio: force ratio at which the run ends. mean: of the mean unbalanced force, not of the greatest. marks:
+    of contacts that open and close (kernels.drive.cycle). reached: the model was at rest after a cycle of
+    this run; before the first one forces are not yet those of the present properties, loads and laws. lost:
+    histories whose groups have disappeared.
     """
 
     def __init__(
@@ -133,16 +127,16 @@ class Recording:
     ) -> None:
         self.array = array
         self.series = series
-        self.ratio = float(ratio)  # a kernel is compiled for one type
+        self.ratio = float(ratio)  # the kernel is compiled for a float
         self.mean = mean
         self.reached = False
         self.lost: list[Series] = []
         self._marks = marks
-        self._last = 0  # cycle that the run ends with
+        self._last = 0  # last cycle of the run
         self._rows, self._count = np.empty((0, 2)), np.zeros(1, np.int64)
 
     def begin(self, n: int) -> None:
-        """Record the state before the first of `n` cycles, groups being where they will stay."""
+        """Record the state before the first of `n` cycles."""
         self._last = int(self.array.h.ci[g.MCTOT]) + n
         self.look()
         self._places = places(self.array)
@@ -152,10 +146,7 @@ class Recording:
         self.hand_on()
 
     def run(self, n: int, laws: Any) -> int:
-        """Up to `n` cycles; returns how many were completed. Stops early for an error and at the ratio.
-
-        laws: see kernels.drive.cycle.run_watched.
-        """
+        """Up to `n` cycles, fewer after an error or at the ratio. Returns their number."""
         h, done, full = self.array.h, 0, True
         recorded = self._places, self._rows, self._count
         marks = self._marks(h, self._last - int(h.ci[g.MCTOT]))
@@ -171,7 +162,7 @@ class Recording:
         return done
 
     def look(self) -> None:
-        """Find where the groups are now, and which have disappeared."""
+        """Update the series with the present addresses of their groups, and `lost`."""
         for number, definition in enumerate(definitions(self.array), 1):
             if number > len(self.series):
                 self.series.append(Series(number, definition))
@@ -182,7 +173,7 @@ class Recording:
                 self.lost.append(series)
 
     def hand_on(self) -> int:
-        """Add the rows that are filled to the series; returns the number of rows."""
+        """Add the filled rows to the series; returns the number of rows."""
         if self._count[0] == 0:
             return 0
         rows = self._rows[: self._count[0]].copy()

@@ -1,15 +1,15 @@
-"""Scaled masses: every degree of freedom gets the inertial mass that makes it as quick as the quickest.
+"""Scaled masses: inertial masses with which all degrees of freedom are as quick as the quickest one.
 
 A step dt is stable for a row of the stiffness matrix with the sum k and the dashpots d if its mass is at
-least k dt^2/4 + d dt/2 (running.stiffness_bound). With dt the safe bound of the true masses, that is the mass
-that it gets: all that the step would be needlessly short for becomes lighter, and comes to rest in fewer
-steps. The weight stays that of the true mass. So the state of rest is the same if it does not depend on the
-loading path, and time on the way has no meaning. What nothing holds keeps its mass.
+least k dt^2/4 + d dt/2 (running.stiffness_bound). That is its scaled mass, with dt the safe bound of the true
+masses. So slow parts become lighter and come to rest in fewer steps. The weight remains that of the true
+mass: the state of rest is the same if it does not depend on the loading path. Time has no meaning. A part
+that nothing holds keeps its mass.
 
-A contact that is made on the way makes a row stiffer. Each block and each grid-point at a corner has room for
-one contact more; when contacts have been made, masses are scaled anew, every hundred cycles (MSCALE). What
-has lost its contacts gets its true mass back then; a velocity that it took up as something much lighter would
-be energy from nowhere, so it begins from rest.
+A new contact makes a row stiffer. Each block and each grid-point at a corner has a reserve for one more
+contact. If contacts have formed, masses are scaled again, every hundred cycles (MSCALE). A block that has
+lost its contacts then gets its true mass back. Its velocity would be energy from nowhere, so it begins from
+rest.
 """
 
 from __future__ import annotations
@@ -30,15 +30,13 @@ from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Rows, undamped_step
 
-SHARE = (
-    4  # what a contact adds to a row over its stiffness: on both blocks, along and across, and by its lever
-)
+SHARE = 4  # of a contact in a row over its stiffness: of both blocks, along and across, and by its lever
 RESCALE = 100  # cycles
-HEAVIER = 4  # inertial mass over that of before, from which on a block begins from rest
+HEAVIER = 4  # ratio of new to old inertial mass above which a block begins from rest
 
 
 def relaxations_due(array: MainArray) -> bool:
-    """True if the next CYCLE makes relaxations anew, or gives some back."""
+    """True if the next CYCLE makes relaxations or gives them back."""
     ci = array.h.ci
     return not ci[g.LREADY] and bool(ci[g.IRXPNT] or _needed(array))
 
@@ -49,18 +47,20 @@ def _needed(array: MainArray) -> bool:
 
 
 def renew_relaxations(array: MainArray) -> None:
-    """Have one relaxation for each block or grid-point if something needs them, else none."""
+    """Make one relaxation for each block or grid-point if they are needed, else none."""
     h = array.h
     if h.ci[g.IRXPNT]:
         lose_relaxations(h)
     if _needed(array):
-        points = int(integers(h, _meshes(array), g.KFNG).sum())
+        blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
+        meshes = integers(h, blocks[integers(h, blocks, HEAD) == g.MFDEF], g.KBEX)
+        points = int(integers(h, meshes, g.KFNG).sum())
         require(array, size_of(h, g.NVRX) * (int(h.ci[g.NBLK]) + points))
         make_relaxations(array.h)
 
 
 def scale(array: MainArray) -> float:
-    """Scale all masses from what holds them now; returns the time-step that is safe with these, in s."""
+    """Scale all masses; returns the time-step (s) that is safe with these."""
     rows = Rows(array.h, even=True)
     step = rows.limit().step
     if math.isfinite(step) and step > 0:
@@ -69,7 +69,7 @@ def scale(array: MainArray) -> float:
 
 
 def scale_anew(array: MainArray) -> None:
-    """The same for the time-step as it is, if contacts have been made since."""
+    """Scale all masses again for the present time-step, if contacts have formed since."""
     h = array.h
     if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
         step = undamped_step(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
@@ -88,7 +88,7 @@ def _factors(h: Memory, relaxations: Array) -> Array:
 
 @OVERFLOWS
 def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
-    """Mass over inertial mass of all relaxations, for a time-step that would be just stable."""
+    """Set mass over inertial mass in all relaxations, so that `step` is just stable."""
     h = array.h
     relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
     blocks, points = (integers(h, relaxations, k) for k in (g.KRXB, g.KRXG))
@@ -110,7 +110,7 @@ def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
 
 
 def scaled(array: MainArray, rows: Rows) -> Rows:
-    """`rows` with the inertial masses of all that has a relaxation."""
+    """`rows` with scaled masses."""
     h = array.h
     relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
     blocks, points = (integers(h, relaxations, k) for k in (g.KRXB, g.KRXG))
@@ -118,10 +118,3 @@ def scaled(array: MainArray, rows: Rows) -> Rows:
     m, i, e = _factors(h, relaxations).T
     rows.mass[at] /= np.stack([m, m, np.where(i > 0, i, 1.0), *[np.where(e > 0, e, 1.0)] * 3], axis=1)
     return rows
-
-
-def _meshes(array: MainArray) -> Array:
-    """The extensions of all fully-deformable blocks."""
-    h = array.h
-    blocks = addresses(h, int(h.ci[g.IBPNT]), g.KB)
-    return integers(h, blocks[integers(h, blocks, HEAD) == g.MFDEF], g.KBEX)

@@ -1,7 +1,7 @@
-"""CYCLE: prepare (INI), then run the calculation cycle in pieces (report 2.6).
+"""CYCLE: preparation (INI), then the calculation cycle in pieces (report 2.6).
 
-Between two pieces the observers of the run look on, its progress is reported, and a safe time-step is
-updated. The pieces are as long as fits a few reports a second. They have no influence on the results.
+Between two pieces observers are called, progress is reported, and a safe time-step is updated. Pieces allow a
+few reports a second, and have no influence on the results.
 """
 
 from __future__ import annotations
@@ -37,9 +37,8 @@ Action = Callable[[], None]
 def prepare(array: MainArray) -> None:
     """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
 
-    Nothing is found anew unless a command has come since the last CYCLE: how many cycles a CYCLE has does not
-    change the digits of any.
-    Errors 11, 12, 13, 14, 16, 26 and 28.
+    Nothing is done unless a command has come since the last CYCLE, so that the number of cycles of a CYCLE
+    does not change a digit. Errors 11, 12, 13, 14, 16, 26 and 28.
     """
     h = array.h
     if h.ci[g.NBLK] == 0:
@@ -85,13 +84,11 @@ def cycle(
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
-    recording: of `array`; it may end the run at its force ratio. observers: look on after each piece.
-    laws: the user's laws; error 9 if a constitutive number without a law is in use.
-    report: called with the number of cycles done so far, every `every` cycles or a few times a second.
-    prepared: called before the first cycle, when the time-step is known.
-    settled: called after every piece of the run, before its errors are raised: what was computed is to stay.
-    Error 15 when a contact's overlap has become too great, 36 when a block has flown to where the reals are
-    too coarse for contacts, or a force has grown beyond them: the cycle in which it did is completed.
+    recording: of `array`; may end the run at its force ratio. laws: error 9 if one in use is missing. report:
+    called with the number of cycles done, every `every` cycles or a few times a second. prepared: called
+    before the first cycle, when the time-step is known. settled: called after every piece, before its errors
+    are raised, as its cycles stay. Errors 15 for a too great overlap, 36 for reals that are too coarse or too
+    small; the cycle with the error is completed.
     """
     prepare(array)
     if prepared is not None:
@@ -99,7 +96,7 @@ def cycle(
     bound = (laws or LawBook()).bind(array)
     keep_spare(array)
     array.h.ci[g.NCYC] = n
-    # a run that was interrupted may have left an error behind, or a wish for memory
+    # an interrupted run may have left an error or a request for memory
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = array.h.ci[g.NWANT] = 0
     energy_account.begin(array)
     recording = recording or Recording(array, [])
@@ -119,7 +116,7 @@ def cycle(
 
 
 def finish(array: MainArray, recording: Recording) -> None:
-    """Complete the sums and series of a run that ends, whatever ended it. A repetition does no harm."""
+    """Complete the sums and series of a run that ends, also after an error. May be called twice."""
     energy_account.end(array)
     recording.hand_on()
 

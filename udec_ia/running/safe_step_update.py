@@ -1,13 +1,12 @@
-"""A safe time-step in a run: it is updated when contacts have been made, and shortened if need be.
+"""Updates of a safe time-step in a run: it is shortened if new contacts require it.
 
-FRACTION f SAFE takes f of a bound that holds for the present contacts. The bound is found anew in the very
-cycle in which more contacts have been made, still open (in large models a few cycles later:
-kernels.drive.cycle), and every 1000 cycles, as blocks turn, slide and strain. A step that is longer than f of
-it becomes f of it, for the rest of the run: a step that only ever shrinks does not go to and fro as contacts
-come and go. When an update is due depends on the number of the cycle and the state alone, so that it does not
-matter how cycles are cut into CYCLEs.
+FRACTION f SAFE uses f of a bound for the present contacts. The bound is calculated again in the cycle in
+which contacts form, while they are open (in large models a few cycles later: kernels.drive.cycle), and every
+1000 cycles, as blocks turn, slide and strain. A step above f of it is reduced to f of it for the rest of the
+run: it never grows, so it does not vary as contacts come and go. Updates depend only on the number of the
+cycle and the state, not on the division of a run into CYCLEs.
 
-Masses that are scaled are scaled anew instead, every hundred cycles (running.mass_scaling).
+Scaled masses are scaled again instead, every hundred cycles (running.mass_scaling).
 """
 
 from __future__ import annotations
@@ -26,14 +25,14 @@ JUDGE = 1000  # cycles
 
 
 def cycles_to_update(array: MainArray, n: int) -> int:
-    """Cycles, at most `n`, until the step or the masses may be due for an update."""
+    """Cycles, at most `n`, until the next possible update of the step or the masses."""
     ci = array.h.ci
     every = RESCALE if ci[g.LSCALE] else JUDGE if ci[g.LSAFE] else n
     return min(n, every - int(ci[g.MCTOT]) % every)
 
 
 def update_step(array: MainArray) -> None:
-    """Shorten a safe time-step, or scale masses anew, if that is due between two cycles."""
+    """Shorten a safe time-step or scale masses again between two cycles, if this is due."""
     h = array.h
     if h.ci[g.LSCALE]:
         if h.ci[g.MCTOT] % RESCALE == 0:
@@ -46,18 +45,13 @@ def update_step(array: MainArray) -> None:
 
 
 def put_step(array: MainArray, step: float) -> None:
-    """Set the time-step to `step`, and the factors of damping that follow from it.
-
-    Errors 13 and 16 if damping is too strong for it.
-    """
+    """Set the time-step and the factors of damping. Errors 13 and 16 if damping is too strong for it."""
     h = array.h
     h.cr[g.TDEL] = step
     for alpha, con1, con2, number in ((g.ALPHA, g.CON1, g.CON2, 13), (g.ALPB, g.C1B, g.C2B, 16)):
         half = h.cr[alpha] * h.cr[g.TDEL] / 2
         if half >= 1:
-            detail = (
-                f"the damping coefficient {h.cr[alpha]:g} times the time-step {h.cr[g.TDEL]:g} is not below 2"
-            )
+            detail = f"damping coefficient {h.cr[alpha]:g} times time-step {h.cr[g.TDEL]:g} is not below 2"
             raise UdecError(number, detail, "take less damping, a lower frequency or a smaller FRACTION")
         h.cr[con1] = 1 - half
         h.cr[con2] = 1 / (1 + half)

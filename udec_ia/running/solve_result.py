@@ -23,7 +23,7 @@ from udec_ia.printable_text import counted
 from udec_ia.remark_key import Remark
 from udec_ia.running.group_names import name_of
 
-MAX, MEAN = "max", "mean"  # what SOLVE judges by: the greatest unbalanced force, or the mean of all
+MAX, MEAN = "max", "mean"  # criterion of SOLVE: the greatest unbalanced force, or the mean of all
 
 
 def criterion_of(word: str) -> str:
@@ -36,11 +36,10 @@ def criterion_of(word: str) -> str:
 class Solution(NamedTuple):
     """How a SOLVE ended.
 
-    wanted: force ratio asked for; criterion: of which of the two, "max" or "mean". largest, mean: greatest
-    and mean unbalanced force over the mean of what is carried, at the end. cycles: how many it took. worst:
-    what is farthest from balance, "" if nothing is out of it. motion: kinetic over strain energy at the end;
-    liveliest: what has most of the kinetic energy, "" if nothing moves. remarks: what the diagnosis has
-    found, each with a key (advice.rest_diagnosis). fallen: addresses of the blocks that have fallen.
+    wanted: the given force ratio; criterion: "max" or "mean". largest, mean: greatest and mean unbalanced
+    force over the mean force carried. worst: name of the group with the largest, or "". motion: kinetic over
+    strain energy; greatest_energy: name of the group with most kinetic energy, or "". remarks: with keys
+    (advice.rest_diagnosis). fallen: addresses of the blocks that have fallen.
     """
 
     reached: bool
@@ -49,7 +48,7 @@ class Solution(NamedTuple):
     cycles: int
     worst: str
     motion: float
-    liveliest: str
+    greatest_energy: str
     criterion: str = MAX
     mean: float = 0.0
     remarks: tuple[Remark, ...] = ()
@@ -60,7 +59,7 @@ class Solution(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """The force ratio that was asked for, at the end."""
+        """The force ratio of the criterion."""
         return self.mean if self.criterion == MEAN else self.largest
 
     @property
@@ -81,34 +80,20 @@ class Solution(NamedTuple):
             return f"{name} {self.wanted:g} reached: it is {ratio}{greatest} after {cycles}"
         found = f"{name} {self.wanted:g} NOT REACHED: it is {ratio} after {cycles}"
         if self.ratio > self.wanted:
-            return f"{found}, most out of balance is {self.worst}{self._in_mean}{self._advice}"
+            found += f", most out of balance is {self.worst}"
+            if self.criterion == MAX and self.mean <= self.wanted:
+                found += f" (mean ratio {self.mean:.3g}: SOLVE {self.wanted:g} MEAN would accept this state)"
+            return found + ("; see DAMPING ... INTERNAL" if "strain" in self.worst else "")
         if self.motion > self.wanted:
-            motion = (
-                f"is {self.motion:.3g}"
-                if np.isfinite(self.motion)
-                else "has no bound, nothing being strained"
-            )
             return (
-                f"{found}, but there is no rest: kinetic over strain energy {motion}, and {self.liveliest} "
-                "has most of it"
+                f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
+                f"{self.greatest_energy} has most of it"
             )
         return f"{found}, and at least one cycle must show it"
 
     @property
-    def _in_mean(self) -> str:
-        """That only few things are out of balance, if so."""
-        if self.criterion == MEAN or not self.mean <= self.wanted < self.largest:
-            return ""
-        return f" (the mean ratio is {self.mean:.3g}: SOLVE {self.wanted:g} MEAN would accept this state)"
-
-    @property
-    def _advice(self) -> str:
-        """What else to look at: strains that only DAMPING ... INTERNAL brings to rest."""
-        return "; see DAMPING ... INTERNAL" if "strain" in self.worst else ""
-
-    @property
     def short(self) -> str:
-        """The same for the last line of a run; "" for rest without a blemish."""
+        """The same for the last line of a run; "" for rest without remarks."""
         asked = f"SOLVE {self.wanted:g}" + (" MEAN" if self.criterion == MEAN else "")
         found = []
         if not self.reached:
@@ -124,36 +109,27 @@ class Solution(NamedTuple):
 
 
 def solution_of(array: MainArray, wanted: float, criterion: str, cycles: int) -> Solution:
-    """How a SOLVE ended that has taken `cycles` cycles, from the state that it left."""
+    """The result of a SOLVE of `cycles` cycles, from the state at its end."""
     h, kinds, mean = array.h, soft_or_loaded_in(array.h), criterion == MEAN
     reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(wanted)))
     largest, average = map(float, force_ratios(h, kinds))
-    worst, lively = (
-        name_of(h, int(at)) if at else "" for at in (unbalanced(h, kinds)[1], liveliest(h, kinds)[2])
-    )
+    groups = unbalanced(h, kinds)[1], liveliest(h, kinds)[2]
+    worst, greatest_energy = (name_of(h, int(at)) if at else "" for at in groups)
     motion = float(motion_ratio(h, kinds))
-    return Solution(reached, wanted, largest, cycles, worst, motion, lively, criterion, average)
+    return Solution(reached, wanted, largest, cycles, worst, motion, greatest_energy, criterion, average)
 
 
 def in_short(solutions: Sequence[Solution]) -> list[str]:
-    """What SOLVEs have to report in a few words, each once, with how often it has been so."""
+    """The short reports of SOLVEs, each once with its count."""
     texts = Counter(one.short for one in worth_reporting(solutions))
     return [text + (f", {times} times" if times > 1 else "") for text, times in texts.items()]
 
 
 def worth_reporting(solutions: Sequence[Solution]) -> list[Solution]:
-    """Those that came to their limit, but for one before a SOLVE that asked for as much: that one reports.
+    """Solutions with a short report, except one not reached before a SOLVE for the same ratio or less."""
 
-    And those that reached their ratio with something to report.
-    """
-    return [
-        one
-        for i, one in enumerate(solutions)
-        if (one and one.short)
-        or (
-            not one
-            and all(
-                later.wanted > one.wanted or later.criterion != one.criterion for later in solutions[i + 1 :]
-            )
-        )
-    ]
+    def is_repeated(i: int, one: Solution) -> bool:
+        later = solutions[i + 1 :]
+        return any(two.wanted <= one.wanted and two.criterion == one.criterion for two in later)
+
+    return [one for i, one in enumerate(solutions) if one.short and (one.reached or not is_repeated(i, one))]

@@ -1,9 +1,8 @@
-"""SOLVE ... STATIC: what leads to rest in few cycles, for one run; then all is as it was.
+"""SOLVE ... STATIC: damping, masses and time-step that lead to rest in few cycles, for one run.
 
-ADAPTIVE damping is near critical for whatever still moves, without a frequency to be guessed; scaled masses
-let all of the model answer within the same number of cycles; and the step is the greatest that is safe, but
-for what contacts that are yet to be made need. There is no other damping. What a model passes through on the
-way is not what it would pass through: friction and plastic strain may remember it.
+ADAPTIVE damping is near critical for all motion that is left. With scaled masses the whole model responds
+within the same number of cycles. The step is the greatest safe one, with a reserve for new contacts. There is
+no other damping. The path to rest is not the physical one: friction and plastic strain may remember it.
 """
 
 from __future__ import annotations
@@ -30,9 +29,9 @@ REALS = (g.RESTF, g.ALPHA, g.ALPB, g.BETA, g.FRAC)
 
 @contextmanager
 def statically(array: MainArray) -> Iterator[None]:
-    """A run to rest of `array`. Error 26 while an account of the energy is kept."""
+    """The settings of STATIC within this context. Error 26 with an account of the energy."""
     ci, cr = array.h.ci, array.h.cr
-    kept = [int(ci[k]) for k in INTEGERS], [cr[k] for k in REALS], float(array.h.cd[g.EMOVES])
+    before = [int(ci[k]) for k in INTEGERS], [cr[k] for k in REALS], float(array.h.cd[g.EMOVES])
     set_fraction(array, SHARE, scaled=True)
     set_damping_mode(array, BY_CODE[g.ADAPTIVE], DAMPED)
     cr[g.BETA] = 0
@@ -41,7 +40,7 @@ def statically(array: MainArray) -> Iterator[None]:
         yield
     finally:
         h = array.h
-        halt_all(h)  # how fast scaled masses were says nothing of true ones
+        halt_all(h)  # velocities of scaled masses have no meaning
         lose_relaxations(h)
-        h.ci[list(INTEGERS)], h.cr[list(REALS)], h.cd[g.EMOVES] = kept
+        h.ci[list(INTEGERS)], h.cr[list(REALS)], h.cd[g.EMOVES] = before
         h.ci[g.LREADY] = 0

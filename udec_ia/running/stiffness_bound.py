@@ -1,14 +1,13 @@
-"""The rows of the stiffness matrix: what bounds the frequency of any mode (report 4.6).
+"""The safe bound of the time-step from the row sums of the stiffness matrix (report 4.6).
 
-The safe bound of the time-step is 2 min sqrt(d_i m_i / sum_j |K_ij| d_j), with the row sums of the stiffness
-matrix over all degrees of freedom (Gershgorin): no mode is faster, whatever weights d > 0 are taken. With
-d = 1/sqrt(m) what is light is not charged for heavy neighbours. Contacts count as closed and sticking
-(kernels.drive.critical_stiffness). Degrees of freedom are x and y of blocks and grid-points, the rotation of
-a block and the three strains of a simply-deformable one along its principal axes, where its Euler tensor has
-no product, both times its radius of gyration. What is fixed has none.
+The bound is 2 min sqrt(d_i m_i / sum_j |K_ij| d_j) over all degrees of freedom (Gershgorin): no mode is
+faster, for any weights d > 0. With d = 1/sqrt(m) heavy neighbours of a light body do not lower the bound.
+Contacts count as closed and sticking (kernels.drive.critical_stiffness). Degrees of freedom are x and y of
+blocks and grid-points, the rotation of a block, and the three strains of a simply-deformable block along the
+principal axes of its Euler tensor, rotation and strains times its radius of gyration. What is fixed has none.
 
-A viscous boundary takes the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
-negative eigenvalue, so that with w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
+A viscous boundary uses the velocity of the step before. A step is stable if M - K dt^2/4 - C dt/2 has no
+negative eigenvalue. With w^2 = K/m and c = C/2m of a row the limit is 2/(sqrt(w^2 + c^2) + c).
 """
 
 from __future__ import annotations
@@ -27,9 +26,9 @@ from udec_ia.kernels.geometry.plane_tensors import ROUND
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 
-Array = Any  # of addresses, or of the reals found there
+Array = Any  # of addresses, or of reals
 ADD_CONTACTS = InterpretWhenSmall(add_contacts, 2e3)
-# A stiffness or a frequency beyond the reals makes a step of 0, and that is error 28: nothing to warn of.
+# A stiffness or a frequency that overflows gives a step of 0, which is error 28.
 OVERFLOWS = np.errstate(over="ignore", divide="ignore", invalid="ignore")
 
 
@@ -42,9 +41,9 @@ class StepLimit:
 
 
 class Rows:
-    """Row sums of the stiffness matrix, one row for each address of a block or grid-point.
+    """Row sums of the stiffness matrix, one row for each block and grid-point.
 
-    even: with equal weights, as is due where the masses are those that the sums ask for; else 1/sqrt(m).
+    even: with equal weights, for masses that are scaled by the sums; else with 1/sqrt(m).
     """
 
     def __init__(self, h: Memory, even: bool = False) -> None:
@@ -53,13 +52,13 @@ class Rows:
         meshed = blocks[integers(h, blocks, HEAD) == g.MFDEF]
         firsts = integers(h, integers(h, meshed, g.KBEX), g.KFG)
         points = [addresses(h, int(first), g.KG) for first in firsts]
-        self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 stands for nothing
+        self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 has no group
         words = len(self.address)
         self.sum = np.zeros((words, DOFS))
-        self.own = np.zeros((words, DOFS, DOFS))  # the matrix of each row by itself
+        self.own = np.zeros((words, DOFS, DOFS))  # the matrix of each row within its group
         self.mass = np.full((words, DOFS), np.inf)
         self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
-        self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 for what is held
+        self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 if it is fixed
         self.frame = np.tile([1.0, 1.0, 0.0], (words, 1))  # radius of gyration, direction of the first axis
         self._enter_blocks(blocks[integers(h, blocks, HEAD) != g.MFDEF])
         if len(meshed):
@@ -77,7 +76,7 @@ class Rows:
         return np.searchsorted(self.address, addresses)
 
     def _enter_blocks(self, blocks: Array) -> None:
-        """Masses of rigid and simply-deformable blocks, and the inner stiffness of the latter."""
+        """Masses of blocks without zones, and the stiffness of simply-deformable ones."""
         h = self.h
         mass = reals(h, blocks, g.KBM)
         rows = self.row(blocks)
@@ -103,7 +102,7 @@ class Rows:
         self.own[rows, 5, 5] = area * 2 * (one - two) / square
 
     def _enter_points(self, blocks: Array, points: list[Array]) -> None:
-        """Masses of the grid-points of `blocks`, those of each block in a row."""
+        """Masses of the grid-points of `blocks`; points: those of each block."""
         h, own = self.h, np.concatenate(points)
         rows, fix = self.row(own), integers(h, own, g.KGFIX)
         held = np.repeat(integers(h, blocks, g.KBFIX) == g.FIXED, [len(row) for row in points])
@@ -146,7 +145,7 @@ class Rows:
         ADD_CONTACTS(int(self.h.ci[g.NCON]), self.h, row, self.frame, self.weight, self.own, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
-        """How far a unit of each degree of freedom of blocks moves the points, shape (2, blocks, DOFS)."""
+        """Displacement of the points (x, y) by a unit of each degree of freedom, shape (2, blocks, DOFS)."""
         length, c, s = self.frame[self.row(blocks)].T
         rx, ry = ((p - reals(self.h, blocks, k)) / length for p, k in ((x, g.KX), (y, g.KY)))
         p, q, one, zero = c * rx + s * ry, c * ry - s * rx, np.ones_like(rx), np.zeros_like(rx)
@@ -165,14 +164,15 @@ class Rows:
             for kp, k in ((g.KXP, g.KX), (g.KYP, g.KY))
         )
         at = self.row(np.where(points > 0, points, blocks))
-        share: Array = np.where((points > 0)[:, None], _point(len(at)), self._body(blocks, x, y))
+        of_point = np.eye(2, DOFS)[:, np.newaxis, :]
+        share: Array = np.where((points > 0)[:, None], of_point, self._body(blocks, x, y))
         total = (share * self.weight[at]).sum(axis=2)
         for axis, (along, across) in enumerate(((cxx, cxy), (cyy, cxy))):
             rows = share[axis] * (along * total[axis] + across * total[1 - axis])[:, None]
             np.add.at(self.drag, at, rows)
 
     def limit(self) -> StepLimit:
-        """The bound, and who sets it: 0 where a mass or a stiffness is not a number."""
+        """The bound and its group; the bound is 0 if a mass or a stiffness is not a number."""
         mass = np.where(self.free > 0, self.mass, 1.0) * self.weight
         rate = np.where(self.free > 0, rate_of(self.sum, self.drag, mass), 0.0)
         rate[np.isnan(rate)] = np.inf
@@ -181,20 +181,13 @@ class Rows:
         return StepLimit(2 / fastest if fastest else math.inf, int(self.address[at]))
 
 
-def _point(n: int) -> Array:
-    """How far a unit of each degree of freedom of a grid-point moves it, shape (2, n, DOFS)."""
-    moves = np.zeros((2, n, DOFS))
-    moves[0, :, 0] = moves[1, :, 1] = 1
-    return moves
-
-
 def _over(total: Array, mass: Array) -> Array:
-    """`total` over `mass`; infinite where something acts on what has been squashed flat, and has no mass."""
+    """`total` over `mass`; infinite for a positive total on a mass of 0, of a zone squashed flat."""
     return np.divide(total, mass, out=np.where(total > 0, np.inf, 0.0), where=mass > 0)
 
 
 def rate_of(stiffness: Array, drag: Array, mass: Array) -> Array:
-    """2 over the greatest stable step (1/s). A negative stiffness, of a zone inside out, makes no wave."""
+    """2 over the greatest stable step (1/s). A negative stiffness, of a zone inside out, counts as 0."""
     square, half = _over(np.maximum(stiffness, 0), mass), _over(drag, mass) / 2
     return np.sqrt(square + half * half) + half
 
@@ -204,11 +197,11 @@ def reals(h: Memory, at: Array, k: Offset) -> Array:
 
 
 def damped_step(h: Memory, step: float) -> float:
-    """The critical time-step with the damping of `h`, `step` being that without it.
+    """The critical time-step with the damping of `h`; step: without damping.
 
-    A dashpot lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is its fraction of critical
-    damping at the frequency w. What swings as fast as the step lets it turns about in each cycle: LOCAL and
-    COMBINED damping then add f times the force that turns it, so that joints are 1 + f times as stiff.
+    Stiffness damping lowers it from 2/w to (2/w)(sqrt(1 + L^2) - L), where L = BETA w/2 is the fraction of
+    critical damping at the frequency w. The fastest motion reverses in each cycle: LOCAL and COMBINED damping
+    then add f times the force, so that joints are 1 + f times as stiff.
     """
     if step == 0:
         return 0.0
@@ -218,12 +211,12 @@ def damped_step(h: Memory, step: float) -> float:
 
 
 def undamped_step(h: Memory, step: float) -> float:
-    """The critical time-step without damping, where `step` is that with it."""
+    """The critical time-step without damping; step: with damping."""
     beta = float(h.cr[g.BETA])
     return math.sqrt((step + beta) ** 2 - beta**2) * _stiffened(h)
 
 
 def _stiffened(h: Memory) -> float:
-    """By how much LOCAL and its kind of damping raise the frequency of what turns about in every cycle."""
+    """Factor by which the damping mode raises the frequency of motion that reverses in every cycle."""
     mode = mode_of(h)
     return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and mode.stiffens else 1.0

@@ -119,7 +119,7 @@ def tables(ratios: set[int]) -> dict[str, Any]:
 
 
 def _field(field: Field, place: int) -> dict[str, Any]:
-    """place: its number in its group, or where it stands among the integers, reals or doubles there."""
+    """place: its number in its group, or among the integers, reals or doubles of the common block."""
     return {
         "place": place,
         "name": field.name,

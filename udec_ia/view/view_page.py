@@ -64,7 +64,7 @@ class Page:
         self.states.append(_State(array.copy(), name, list(lines)))
 
     def write(self, path: str | Path) -> Path:
-        """Write the page as the file `path`, where nothing stands yet or another view. Error 31 if it cannot.
+        """Write the page `path`, which may replace another page only. Error 31 if it cannot be written.
 
         ValueError if there is no state to be shown.
         """
@@ -92,7 +92,7 @@ class Page:
         return re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], template)
 
     def left_out(self) -> list[str]:
-        """What is said of each state that the page has no room for as a whole."""
+        """A sentence on each state that the page has no room for as a whole."""
         used = [(printable(one.name), int(one.array.h.ci[MFREE]) - 1) for one in self.states]
         return [
             f"{name} has {words} words in use: those beyond {self._room} are left out"
@@ -107,13 +107,13 @@ class Page:
 
 
 def script(names: Sequence[str]) -> str:
-    """These files of web/ as one script: they name what they import, which then stands before them."""
+    """These files of web/ as one script: each imports from those before it only."""
     texts = [(WEB / name).read_text("utf-8") for name in names]
     return "\n" + "\n".join(EXPORT.sub("", IMPORT.sub("", text)) for text in texts)
 
 
 def _json(value: Any) -> str:
-    """JSON in which nothing can end the element that it stands in."""
+    """JSON that cannot end the HTML element around it."""
     text = json.dumps(value, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

@@ -1,11 +1,10 @@
-"""CHANGE: type, material and constitutive numbers of blocks (report 4.2, 4.3).
+"""CHANGE and DELETE: type, material and constitutive numbers of blocks, and their removal (report 4.2, 4.3).
 
-What a change of type keeps. Momentum and angular momentum: always. Stress: a rigid block that becomes
-deformable in a run begins with the mean stress of contact forces and loads on it, so that a block at rest
-stays at rest; from one deformable type to the other the mean stress is passed on. The strain rate of a
-simply-deformable block, and what the velocities of grid-points are beside their block's rigid motion, is
-lost, and so are, with its zones or for them, boundary conditions on the block and the corners that GENERATE
-has put on its edges. Masses never change after the first cycle.
+A change of type keeps momentum and angular momentum. A rigid block that becomes deformable in a run gets the
+mean stress of its contact forces and loads, so that a block at rest stays at rest. Between the deformable
+types the mean stress is kept. Strain rates are lost, as is the motion of grid-points relative to the rigid
+motion. With zones, boundary conditions on the block and the corners of GENERATE on its edges are lost. Masses
+do not change after the first cycle.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points,
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, items
 from udec_ia.ops.common.deformable_scene import renew_forces
-from udec_ia.ops.common.groups_of_blocks import lose_hosted
+from udec_ia.ops.common.listed_groups import lose_hosted
 from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
 from udec_ia.reader.list_walks import chain
 
@@ -43,8 +42,8 @@ def change(
 ) -> int:
     """CHANGE: attributes of the blocks in the range. Returns their number.
 
-    A contact has the numbers of its first block (report 4.3) and follows when these change. Block masses
-    follow a new material only before the first cycle. Errors 1, 4, 9, 10, 14 and 28; nothing is changed then.
+    Contacts follow their first block (report 4.3). Masses follow a new material only before the first cycle.
+    Errors 1, 4, 9, 10, 14 and 28; nothing is changed then.
     """
     if kind is not None and kind not in TYPES:
         raise UdecError(10, f"{kind}", ", ".join(TYPES))
@@ -105,9 +104,9 @@ def _change_types(array: MainArray, changing: list[int], kind: int) -> None:
 
 
 def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> None:
-    """Give block `ib` the type `kind`, with the internal stress `stress`, in the place of its present one.
+    """Give block `ib` the type `kind`, with the internal stress `stress`.
 
-    Conditions on a block that is or becomes fully-deformable must have been taken away before.
+    Conditions on a block that is or becomes fully-deformable must have been removed before.
     """
     if iget(h, ib, HEAD) == g.MFDEF:
         _lose_zones(h, ib)
@@ -124,7 +123,7 @@ def become(h: Memory, ib: int, kind: int, stress: Stress = (0.0, 0.0, 0.0)) -> N
 
 
 def _put_stress(h: Memory, ib: int, stress: Stress) -> None:
-    """Internal stress of simply-deformable block `ib`, or that which the zones of `ib` are to begin with."""
+    """Set the internal stress of simply-deformable block `ib`, or the first stress of the zones of `ib`."""
     s11, s12, s22 = stress
     if iget(h, ib, HEAD) == g.MSDEF:
         put_stress(h, iget(h, ib, g.KBEX), *(h.cr.dtype.type(s) for s in stress))
@@ -134,9 +133,9 @@ def _put_stress(h: Memory, ib: int, stress: Stress) -> None:
 
 
 def _lose_zones(h: Memory, ib: int) -> None:
-    """Give back zones and grid-points of block `ib`, which goes on as a rigid body with their momentum.
+    """Give back zones and grid-points of block `ib`, which becomes a rigid body with their momentum.
 
-    Its centroid is that of its area then, no more that of the masses at the grid-points.
+    Its centroid is then that of its area, instead of that of the masses at the grid-points.
     """
     ie = iget(h, ib, g.KBEX)
     turning = float(getr(h, ib, g.KBI)) * float(getr(h, ib, g.KTD))
@@ -158,14 +157,14 @@ def _lose_zones(h: Memory, ib: int) -> None:
 
 
 def applied_stress(h: Memory, ib: int) -> Stress:
-    """Stress in simply-deformable block `ib` that would balance the applied stress."""
+    """Stress of simply-deformable block `ib` that balances the applied stress."""
     ie = iget(h, ib, g.KBEX)
     s11, s12, s21, s22, area = (float(getr(h, ie, k)) for k in (g.KSA11, g.KSA12, g.KSA21, g.KSA22, g.KSAREA))
     return s11 / area, (s12 + s21) / 2 / area, s22 / area
 
 
 def mean_stress(h: Memory, ib: int) -> Stress:
-    """Mean stress by area in deformable block `ib`."""
+    """Mean stress of deformable block `ib`, by area."""
     ie = iget(h, ib, g.KBEX)
     if iget(h, ib, HEAD) == g.MSDEF:
         return float(getr(h, ie, g.KS111)), float(getr(h, ie, g.KS112)), float(getr(h, ie, g.KS122))
@@ -175,7 +174,7 @@ def mean_stress(h: Memory, ib: int) -> Stress:
     return float(s11 / area), float(s12 / area), float(s22 / area)
 
 
-# ---- DELETE: blocks are taken away; what is left stays one connected map
+# ---- DELETE: blocks are removed; the others remain one connected map
 
 
 def delete(array: MainArray, where: Range) -> int:
@@ -187,14 +186,13 @@ def delete(array: MainArray, where: Range) -> int:
     blocks = blocks_in(array, where)
     if not blocks:
         return 0
-    if h.ci[g.NBLK] - len(blocks) < 2:
-        raise UdecError(
-            19, f"only {int(h.ci[g.NBLK]) - len(blocks)} block(s) would be left", "two blocks must remain"
-        )
+    left = int(h.ci[g.NBLK]) - len(blocks)
+    if left < 2:
+        raise UdecError(19, f"only {left} block(s) would be left", "two blocks must remain")
     forget_blocks(h, blocks)
     lose_hosted(h, blocks)
     for ib in blocks:
-        become(h, ib, g.MRIG)  # gives back what only a deformable block has
+        become(h, ib, g.MRIG)  # gives back the groups of a deformable block
         delb(h, ib)
     update_flagged(array)
     if h.ci[g.MCTOT] > 0:

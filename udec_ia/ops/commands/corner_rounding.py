@@ -1,4 +1,4 @@
-"""ROUND: the rounding length, and with it all tolerances (report 4.4)."""
+"""ROUND: the rounding length and all tolerances that follow from it (report 4.4)."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ STRAINED = "strained as it is after cycle"  # in the message of the error that e
 
 def too_short(d: float, shortest: float, x: float, y: float, when: str = "") -> UdecError:
     """Error 14: roundings of length `d` have to share the edge of length `shortest` that ends at (x, y)."""
-    return UdecError(
-        14,
-        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}",
-        "the rounding length must not exceed half the shortest edge or the shortest part of an edge that "
-        "GENERATE has put between a corner and a point",
-        parameter="d",
+    detail = (
+        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}"
     )
+    advice = (
+        "the rounding length must not exceed half the shortest edge, or a part of an edge beside a corner"
+    )
+    return UdecError(14, detail, advice, parameter="d")
 
 
 def check_rounding(d: float, shortest: float, x: float, y: float) -> None:
@@ -47,7 +47,7 @@ def check_all_edges(array: MainArray, d: float) -> None:
 
 
 def check_strained_edges(array: MainArray) -> None:
-    """Error 14 if on an edge the roundings overlap by more than FTOL; by less they may, for blocks deform."""
+    """Error 14 if the roundings of an edge overlap by more than FTOL; less is allowed, as blocks deform."""
     h = array.h
     _, shortest, ip = edges(h)
     if 2 * h.cr[g.DTOL] - shortest > h.cr[g.FTOL]:
@@ -55,7 +55,7 @@ def check_strained_edges(array: MainArray) -> None:
 
 
 def crowded(array: MainArray, ip: int, cycle: int = 0) -> UdecError:
-    """Error 14: the roundings of the edge that ends at corner `ip` overlap by too much, since that cycle."""
+    """Error 14: the roundings of the edge that ends at corner `ip` overlap too much, since that cycle."""
     h = array.h
     shortest = span(h, ip, zcs(h, ip)[0])
     when = f", {STRAINED} {cycle}" if cycle else ""
@@ -65,9 +65,9 @@ def crowded(array: MainArray, ip: int, cycle: int = 0) -> UdecError:
 
 
 def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
-    """Error 14 if two blocks, whose outlines have just changed, overlap by more than contacts may.
+    """Error 14 if two blocks overlap by more than contacts may after a change of their outlines.
 
-    At a contact, or by `reach` at most where a corner has come out in a neighbour that it did not touch.
+    They may overlap at a contact, or by `reach` at most at a corner that did not touch its neighbour before.
     """
     h = array.h
     for ic in chain(h, int(h.ci[g.ICPNT]), g.KC):
@@ -88,7 +88,7 @@ def check_overlaps(array: MainArray, reach: float, advice: str) -> None:
 
 
 def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice: str) -> UdecError:
-    """Error 14: blocks `ib` and `jb` overlap at a place by more than contacts may."""
+    """Error 14: blocks `ib` and `jb` overlap too much at a place."""
     detail = (
         f"{h.cr[g.DTOL]:g} allows overlaps up to {h.cr[g.DTOL2]:g}, but block@{ib} and block@{jb} overlap by "
         f"{overlap:g} at ({place[0]:g}, {place[1]:g})"
@@ -97,14 +97,14 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
 
 
 def refresh(array: MainArray) -> None:
-    """Bring contacts and domains up to date with a changed rounding length, whatever lies in what."""
+    """Update contacts and domains for a changed rounding length."""
     change_map(array.h, NOBODY, ALL)
     flag_all(array.h)
     bring_up(array)
 
 
 def bring_up(array: MainArray) -> None:
-    """Update every flagged domain, finding memory as needed. What it may find is left in NERR and IERAD."""
+    """Update every flagged domain, with more memory if needed. An error is left in NERR and IERAD."""
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = 0
     keep_spare(array)
     while not update_domains(array.h, 0):
@@ -112,7 +112,7 @@ def bring_up(array: MainArray) -> None:
 
 
 def update_flagged(array: MainArray) -> None:
-    """Update every flagged domain. Error 15 if there are blocks in each other that can have no contact."""
+    """Update every flagged domain. Error 15 if a block lies inside another one without a contact."""
     bring_up(array)
     found = _found_without_contact(array)
     if found:
@@ -121,7 +121,7 @@ def update_flagged(array: MainArray) -> None:
 
 
 def _found_without_contact(array: MainArray) -> str:
-    """The block, and where it lies in another one, that updates have found without a contact; "" if none."""
+    """Name and place of a block inside another one without a contact, as found by updates; "" if none."""
     h = array.h
     if h.ci[g.NERR] != OVERLAP_TOO_GREAT or h.ci[g.MCTOT] == 0:  # blocks that have not moved fit
         return ""
@@ -140,14 +140,14 @@ def round_corners(array: MainArray, d: float) -> None:
     with all_or_nothing(array):
         h = array.h
         h.ci[g.LROUND] = 1
-        hidden = 2.5 * float(h.cr[g.DTOL])  # a tip stands out by less than DTOL; two, and DTOL2
+        hidden = 2.5 * float(h.cr[g.DTOL])  # the tips of two corners, each below DTOL, and DTOL2
         set_rounding(h, h.cr.dtype.type(d))
         refresh(array)
         check_overlaps(array, hidden, STIFFER)
 
 
 def settle_default(array: MainArray) -> None:
-    """Before the first cycle: without ROUND, take our own rounding length for the finished block system."""
+    """Before the first cycle, without ROUND: use the default rounding length of the finished block system."""
     h = array.h
     if h.ci[g.LROUND] == 1 or h.ci[g.MCTOT] > 0:
         return

@@ -1,4 +1,4 @@
-"""BLOCK: the single block that everything else is cut from (CREATE)."""
+"""BLOCK: the single block from which SPLIT cuts all others (CREATE)."""
 
 from __future__ import annotations
 
@@ -30,15 +30,12 @@ from udec_ia.ops.common.number_limits import (
 )
 
 Point = tuple[float, float]
-PART = 0.01  # length of the smallest parts that are cut, as a part of the block's
+PART = 0.01  # length of the smallest parts to be cut over that of the block
 CLOCKWISE = "give the corners in clockwise order, along an outline that does not cross itself"
 
 
 def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
-    """Create the block with the given corners (clockwise). Returns its address.
-
-    Errors 4, 5, 6, 9 for what is wrong with it, 18 for a second block.
-    """
+    """Create the block with the given corners (clockwise). Returns its address. Errors 4, 5, 6, 9, 18, 28."""
     h = array.h
     if h.ci[g.NBLK] > 0:
         raise UdecError(18, "", "cut the existing block with SPLIT, remove parts with DELETE")
@@ -68,13 +65,13 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
 
 
 def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
-    """How far the block reaches. Error 28 unless the reals can hold its fourth power."""
+    """The greatest |x| + |y| of the block. Error 28 unless the reals can hold its fourth power."""
     reals = np.finfo(array.scheme.real_type)
     size = max(abs(x) + abs(y) for x, y in corners)
     smallest, largest = float(reals.smallest_normal) ** 0.25 / PART, float(reals.max) ** 0.25 * PART
     if not smallest <= size <= largest:
         bits = array.scheme.real_bits
-        detail = f"a block {size:g} across, where {bits}-bit reals bear {smallest:.0e} to {largest:.0e}"
+        detail = f"a block {size:g} across, where {bits}-bit reals allow {smallest:.0e} to {largest:.0e}"
         raise UdecError(28, detail, "use another unit of length", parameter="x1")
     return size
 
@@ -97,23 +94,23 @@ def _check_outline(array: MainArray, corners: Sequence[Point]) -> None:
     edges = [(corners[k], corners[(k + 1) % n]) for k in range(n)]
     for i, (a, b) in enumerate(edges):
         if a == b:
-            raise _crooked(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
+            raise _wrong_outline(f"the corner ({a[0]:g}, {a[1]:g}) is given twice in a row", (i + 1) % n)
     for i, j in _near(array, edges):
         (a, b), (c, d) = edges[i], edges[j]
         if j - i in (1, n - 1):
             start, shared, end = (a, b, d) if j - i == 1 else (b, a, c)
             if _turn(start, shared, end) == 0 and _along(start, shared, end) < 0:
                 corner = corners.index(shared)
-                raise _crooked(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
+                raise _wrong_outline(f"it turns back on itself at ({shared[0]:g}, {shared[1]:g})", corner)
         elif _meet(a, b, c, d):
-            raise _crooked(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
+            raise _wrong_outline(f"its outline crosses itself near ({a[0]:g}, {a[1]:g})", i)
     x, y = corners[0]  # far from the origin the products of coordinates would lose the area
     if not sum((b[0] - x) * (a[1] - y) - (a[0] - x) * (b[1] - y) for a, b in edges) > 0:
         raise UdecError(6, "its corners are in anticlockwise order", CLOCKWISE)
 
 
 def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[int, int]]:
-    """Numbers of the edges whose boxes meet, two by two, in ascending order."""
+    """Pairs of edges whose bounding boxes meet, in ascending order."""
     ends = np.array(edges, array.scheme.real_type)
     boxes = np.hstack([ends.min(axis=1), ends.max(axis=1)])
     if np.ptp(boxes[:, 1]) > np.ptp(boxes[:, 0]):  # the sweep is along x
@@ -122,7 +119,7 @@ def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[
     return [(i, j) for i, j in pairs[np.lexsort(pairs.T[::-1])].tolist()]
 
 
-def _crooked(detail: str, k: int) -> UdecError:
+def _wrong_outline(detail: str, k: int) -> UdecError:
     """Error 6 at corner `k`, counted from 0."""
     return UdecError(6, detail, CLOCKWISE, parameter=f"x{k + 1}")
 

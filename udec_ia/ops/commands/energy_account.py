@@ -1,11 +1,10 @@
-"""The account of the energy: what was put in, what is there, and what was lost (ENERGY, PRINT ENERGY).
+"""The account of the energy: input, stored energy and losses (ENERGY, PRINT ENERGY).
 
-It begins with ENERGY ON: what the model holds then is the first that was put in, and gravity's potential
-counts from there. Between two CYCLEs commands change a model in ways that no force does: they delete what
-moves, set velocities, change stiffnesses. What they put in or take out is the difference of what is stored,
-kinetic and strain energy, between the end of one CYCLE and the beginning of the next. So the account of the
-cycles themselves has to balance, and its residual is the error of the time-step, of contacts that open and
-close within one, and of forgotten terms.
+It begins with ENERGY ON: the energy of the model is then the first input, and the potential of gravity is 0.
+Between two CYCLEs commands delete moving blocks, set velocities and change stiffnesses. Their input is the
+difference of stored energy, kinetic and strain, between the end of one CYCLE and the beginning of the next.
+So the account of the cycles must balance. Its residual is the error of the time-step, of contacts that open
+and close within a step, and of missing terms.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 
 
 class Balance(NamedTuple):
-    """Energies in J per m of thickness. commands: there at first, and put in by commands since."""
+    """Energies in J per m of thickness. commands: initial energy and input by commands."""
 
     commands: float
     boundary: float
@@ -48,12 +47,12 @@ class Balance(NamedTuple):
 
     @property
     def residual(self) -> float:
-        """What was put in and is neither there nor lost."""
+        """Input that is neither stored nor lost."""
         return self.commands + self.boundary - sum(self[2:])
 
     @property
     def throughput(self) -> float:
-        """What came in from all sources, or went to all sinks: the mean of both."""
+        """The sum of all sources and the sum of all sinks: the mean of both."""
         return sum(map(abs, self)) / 2
 
 
@@ -75,7 +74,7 @@ def switch(array: MainArray, on: bool) -> None:
 
 
 def balance(h: Memory) -> Balance:
-    """The account as it is now. Error 26 if none is kept."""
+    """The present account. Error 26 without ENERGY ON."""
     if not h.ci[g.LENER]:
         raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
     stored = _stored(h)
@@ -85,10 +84,9 @@ def balance(h: Memory) -> Balance:
 
 
 def begin(array: MainArray) -> None:
-    """A CYCLE begins: note what commands have done since the last one.
+    """A CYCLE begins: add the input by commands since the last one.
 
-    Error 28, and nothing is noted, if 64-bit reals cannot hold the energy of the stresses there are, or its
-    change.
+    Error 28, and nothing is changed, if 64-bit reals cannot hold the energy or its change.
     """
     h = array.h
     if h.ci[g.LENER]:
@@ -99,7 +97,7 @@ def begin(array: MainArray) -> None:
 
 
 def end(array: MainArray) -> None:
-    """A CYCLE has ended. What the reals cannot hold becomes infinite."""
+    """A CYCLE has ended. Energies beyond the reals become infinite."""
     h = array.h
     if h.ci[g.LENER]:
         with np.errstate(over="ignore"):
@@ -128,5 +126,5 @@ def _stored(h: Memory) -> tuple[float, float, float]:
 
 
 def _put_in(h: Memory, energy: float) -> float:
-    """What commands have put in so far, where `energy` is what is stored now, and ESTOR was before them."""
+    """Input by commands so far. energy: stored now; ESTOR: stored before the last commands."""
     return float(h.cd[g.EPUT]) + (energy - float(h.cd[g.ESTOR]))

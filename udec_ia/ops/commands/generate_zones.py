@@ -1,11 +1,8 @@
-"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1), here those of MANUAL.
+"""GENERATE: a block is divided into zones (GEN; report 4.2, Appendix I-1).
 
-Grid-points within 0.9 D of a corner are placed on it, others within 0.9 D of an edge on the edge, where
-they become corners of the block; every corner must have one. A flat corner is a point of an edge from then
-on, too. What does not fit is refused before anything is changed, and a grid-point that does not stay where it
-was asked for is reported.
-
-What AUTOMATIC divides a block into is found in generate_automatic.py and put into IA() here, by `divide`.
+MANUAL: grid-points within 0.9 D of a corner are moved to it, others within 0.9 D of an edge to the edge,
+where they become corners of the block; every corner must have one. A flat corner then counts as a point of an
+edge, too. Wrong zones are refused before anything is changed. AUTOMATIC: triangulation.py makes the zones.
 """
 
 from __future__ import annotations
@@ -44,7 +41,7 @@ NEAR = 0.9  # part of the rounding length within which a grid-point is placed on
 
 @dataclass
 class Place:
-    """Where a grid-point goes: at a corner, on the edge that ends at a corner, or inside (corner 0)."""
+    """The place of a grid-point: at a corner, on the edge that ends at a corner, or inside (corner 0)."""
 
     x: float
     y: float
@@ -54,7 +51,7 @@ class Place:
 
 
 class Outline:
-    """Corners of a block, clockwise, as arrays; edge k ends at corner k."""
+    """The corners of a block, clockwise, as arrays; edge k ends at corner k."""
 
     def __init__(self, h: Memory, ib: int) -> None:
         self.corners = [ip for ip in items(h, ib) if is_corner(h, ip)]
@@ -70,12 +67,12 @@ class Outline:
 
     @property
     def where(self) -> str:
-        """Between which coordinates the block lies, in words."""
+        """The ranges of the coordinates of the block, in words."""
         (ax, ay), (bx, by) = self.end.min(axis=0), self.end.max(axis=0)
         return f"x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
 
     def place(self, x: float, y: float, near: float) -> Place:
-        """Where the point (x, y) goes: to a corner or an edge within the distance `near`, or where it is."""
+        """The place of a grid-point at (x, y), moved to a corner or an edge within the distance `near`."""
         away = np.hypot(self.end[:, 0] - x, self.end[:, 1] - y)
         k = int(away.argmin())
         if away[k] <= near:
@@ -110,9 +107,9 @@ def generate(
 ) -> list[str]:
     """Divide block `ib` into zones. Returns remarks on grid-points that were moved.
 
-    points: numbered from the last one, which is number 1. triples: three of these numbers for each zone, in
-    either sense. near: distance within which a point is placed on a corner or an edge. paired: zones 1 and
-    2, 3 and 4 ... are pairs for mixed discretisation. Errors 14, 25, 26, 28 and 33; nothing is changed then.
+    points: the last one is number 1. triples: three of these numbers for each zone, in either sense. near:
+    distance within which a point is moved to a corner or an edge. paired: zones 1 and 2, 3 and 4 ... are
+    pairs for mixed discretisation. Errors 14, 25, 26, 28 and 33; nothing is changed then.
     """
     h = array.h
     outline = Outline(h, ib)
@@ -134,14 +131,12 @@ def generate(
 def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Triple], paired: bool) -> None:
     """Put grid-points at `places` and zones, clockwise triples of their rows, into block `ib`.
 
-    Error 1, and nothing is changed, if there is no memory for all of it and for the contacts that arise.
+    Error 1, and nothing is changed, if there is no memory for all of it and for new contacts.
     """
     h = array.h
     new = sum(place.on_edge for place in places)
     words = new * (size_of(h, g.NVCR) + 2 * size_of(h, g.NVCN) + 2 * size_of(h, g.NVDO))
-    words += size_of(h, g.NVSD) + size_of(
-        h, g.NVFD
-    )  # a rigid block becomes a simply-deformable one on the way
+    words += size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
     require(array, words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO))
     with all_or_nothing(array):
         change_types(array, [ib], g.MFDEF)
@@ -194,21 +189,17 @@ def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
             raise UdecError(26, f"the corner ({x:g}, {y:g}) has no grid-point", "give one for every corner")
         if len(corner) > 1:
             numbers = " and ".join(str(row + 1) for row in corner)
-            raise UdecError(
-                28, f"grid-points {numbers} are both within {NEAR} D of the corner ({x:g}, {y:g})"
-            )
+            raise UdecError(28, f"grid-points {numbers} are within {NEAR} D of the corner ({x:g}, {y:g})")
         found += edge + corner
     for one, two in zip(found, found[1:] + found[:1], strict=True):
         a, b = places[one], places[two]
         need = d * ((not a.on_edge) + (not b.on_edge))
         distance = math.hypot(b.x - a.x, b.y - a.y)
         if distance < need * (1 - 1e-6) or distance == 0:
-            raise UdecError(
-                14,
-                f"grid-points {one + 1} and {two + 1} are {distance:g} apart, which leaves no room for "
-                f"rounding by {d:g}",
-                "move them farther apart, or use a smaller ROUND",
+            detail = (
+                f"grid-points {one + 1} and {two + 1} are {distance:g} apart, too near for rounding by {d:g}"
             )
+            raise UdecError(14, detail, "increase their distance, or use a smaller ROUND")
     return found
 
 
@@ -263,9 +254,8 @@ def _check_pairs(zones: list[Triple]) -> None:
     """Error 33 unless zones 1 and 2, 3 and 4 ... have a common side."""
     advice = "with MIXED, zones 1 and 2, 3 and 4 ... have a common side"
     if len(zones) % 2:
-        raise UdecError(
-            33, f"{counted(len(zones), 'zone')} cannot be made into pairs", advice, parameter="mixed"
-        )
+        detail = f"{counted(len(zones), 'zone')} cannot be made into pairs"
+        raise UdecError(33, detail, advice, parameter="mixed")
     for k in range(0, len(zones), 2):
         if len({*zones[k], *zones[k + 1]}) != 4:
             raise UdecError(33, f"zones {k + 1} and {k + 2} are not a pair", advice, parameter="mixed")
@@ -306,10 +296,9 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
 
 
 def _set_in_motion(h: Memory, ib: int) -> None:
-    """Velocities of the grid-points and corners of block `ib`: those of the block.
+    """Give the grid-points and corners of block `ib` the velocities of the block.
 
-    Masses at grid-points have a greater moment of inertia than the block had. In a run the angular velocity
-    is less by as much, for the angular momentum to stay.
+    In a run the angular velocity decreases as the moment of inertia grows: the angular momentum stays.
     """
     xd, yd, td = (float(getr(h, ib, k)) for k in (g.KXD, g.KYD, g.KTD))
     points = _arms(h, ib)
@@ -325,9 +314,10 @@ def _set_in_motion(h: Memory, ib: int) -> None:
 
 
 def _arms(h: Memory, ib: int) -> list[tuple[int, float, float]]:
-    """Grid-points of block `ib`, and where they are from its centroid."""
+    """Grid-points of block `ib`, and their distances in x and y from its centroid."""
     x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
-    return [(ig, float(getr(h, ig, g.KXG)) - x, float(getr(h, ig, g.KYG)) - y) for ig in _gridpoints(h, ib)]
+    points = chain(h, iget(h, iget(h, ib, g.KBEX), g.KFG), g.KG)
+    return [(ig, float(getr(h, ig, g.KXG)) - x, float(getr(h, ig, g.KYG)) - y) for ig in points]
 
 
 def _lumped_inertia(h: Memory, ib: int) -> float:
@@ -340,10 +330,6 @@ def inertia_ratio(h: Memory, ib: int) -> float:
     area, _, _, jxx, _, jyy = (float(n) for n in geo(h, ib))
     exact = float(getr(h, ib, g.KBM)) * (jxx + jyy) / area
     return _lumped_inertia(h, ib) / exact if exact else 1.0
-
-
-def _gridpoints(h: Memory, ib: int) -> list[int]:
-    return list(chain(h, iget(h, iget(h, ib, g.KBEX), g.KFG), g.KG))
 
 
 def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:
@@ -363,7 +349,7 @@ def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple
 
 # ---- GENERATE ... AUTOMATIC: a block is divided into zones with sides of about a given length
 
-SLACK = 1e-6  # part of a rounding length that a part of an edge may be too short
+SLACK = 1e-6  # share of the rounding length by which the distance to a corner may be too short
 
 
 def generate_automatically(array: MainArray, ib: int, edge: float, paired: bool = False) -> str:
@@ -389,17 +375,13 @@ def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
         distance = float(np.hypot(*(found.points[i] - found.points[j])))
         if (i < corners) != (j < corners) and distance < d * (1 - SLACK):
             x, y = found.points[min(i, j)]
-            detail = f"an edge of {edge:g} sets a grid-point {distance:g} from the corner ({x:g}, {y:g})"
-            raise UdecError(
-                14,
-                f"{detail}, which is rounded by {d:g}",
-                f"use a longer edge, or first ROUND {0.9 * distance:.2g} before",
-                parameter="edge",
-            )
+            detail = f"a grid-point would be {distance:g} from the corner ({x:g}, {y:g}), rounded by {d:g}"
+            advice = f"use an EDGE longer than {edge:g}, or first ROUND {0.9 * distance:.2g}"
+            raise UdecError(14, detail, advice, parameter="edge")
 
 
 def _places(outline: Outline, found: Mesh) -> list[Place]:
-    """Where the points of the mesh, whose first points are the corners, go in the block."""
+    """The places of the points of the mesh, whose first points are the corners."""
     places = [Place(float(x), float(y)) for x, y in found.points]
     for place, ip in zip(places, outline.corners, strict=False):
         place.corner = ip

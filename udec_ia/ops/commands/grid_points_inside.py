@@ -1,14 +1,13 @@
-"""Where the points inside a meshed outline go, and which points form a zone.
+"""The points inside a meshed outline, and the triangulation of all points into zones.
 
-All lengths are in units of the wanted edge. An outline is an array of points, clockwise; the points of a
-mesh are those of the outline, in this order, and then those inside. Side k of a zone runs from its vertex k
-to the next.
+Lengths are in units of the given edge of zones. An outline is an array of points, clockwise. The points of a
+mesh are those of the outline, in this order, then those inside. Side k of a zone runs from vertex k to the
+next.
 
-The package pythoncdt says which points form a zone: its constrained Delaunay triangulation is exact for
-whatever numbers it gets, keeps every edge of the outline, and is fast enough to be made anew whenever
-points have come or moved. Delaunay zones have the greatest least angle that their points allow, so good
-zones are a matter of good points: a lattice of equilateral triangles, as far as it does not come too near
-to the outline; more points in the middle of sides that are still too long; and all of them moved.
+The constrained Delaunay triangulation of the package pythoncdt is exact and keeps every edge of the outline.
+Its zones have the greatest least angle that the points allow. So good zones need good points: a lattice of
+equilateral triangles at some distance from the outline, more points in the middle of sides that are too long,
+and a shift of all points.
 """
 
 from __future__ import annotations
@@ -24,23 +23,23 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROW = 3**0.5 / 2  # distance of the rows of the lattice
-SHORTEST = 0.75  # a lattice is not made finer than this because the outline is
-CLEAR = 0.6  # distance that the lattice keeps from the outline, in its own spacing
+SHORTEST = 0.75  # least spacing of a lattice that follows a fine outline
+CLEAR = 0.6  # distance of the lattice from the outline, in its spacing
 LONGEST = 1.5  # a longer side gets a point in its middle,
-ROOM = 0.45  # if that is no nearer than this to the other sides of its two zones
-EXPONENTS = range(0, 24, 2)  # of the weights in `relax`, one step each
-THIN = 100.0  # thinner zones get no greater weight
+ROOM = 0.45  # if this is its least distance from the other sides of the two zones
+EXPONENTS = range(0, 24, 2)  # of the weights in `relax`, one for each step
+THIN = 100.0  # greatest weight of a zone to the power 1
 
 
 def triangulate(points: Floats, b: int) -> Ints:
-    """The zones of the outline that the first `b` points are, clockwise."""
+    """The zones, clockwise, of points of which the first `b` are the outline; none if it crosses itself."""
     try:
         import pythoncdt as cdt
     except ImportError:
         missing = "the package pythoncdt, which automatic zones need, is not installed"
         raise UdecError(23, missing, parameter="mode") from None
     corner = np.arange(b, dtype=np.uint32)
-    vertices: Any = np.ascontiguousarray(points)  # a Buffer, of which mypy knows in Python 3.12 only
+    vertices: Any = np.ascontiguousarray(points)  # mypy knows Buffer in Python 3.12 only
     edges: Any = np.stack([corner, following(corner)], axis=1)
     order, crossing = cdt.VertexInsertionOrder.AUTO, cdt.IntersectingConstraintEdges.NOT_ALLOWED
     t = cdt.Triangulation(order, crossing, 0.0)
@@ -80,11 +79,11 @@ def common_sides(zones: Ints) -> tuple[Ints, Ints]:
 
 
 def lattice(outline: Floats, parts: Ints) -> Floats:
-    """Points of a lattice of equilateral triangles inside the outline and not too near to it.
+    """Points of a lattice of equilateral triangles inside the outline, at a distance from it.
 
-    Its rows are at right angles to the longest edge of the block. Along the edge, all zones there would
-    point the same way; in a lattice only zones that point different ways can be paired.
-    parts: how many of the outline's edges make an edge of the block.
+    Its rows are at right angles to the longest edge of the block: only zones of different orientation can be
+    paired, and along the edge all zones would have the same. parts: number of parts of each edge of the
+    block.
     """
     start = np.cumsum(parts) - parts
     first = outline[start]
@@ -101,7 +100,7 @@ def lattice(outline: Floats, parts: Ints) -> Floats:
 
 
 def _place(row: Ints, column: Ints) -> Floats:
-    """Coordinates in the frame of the lattice: each row stands half a place further than the last."""
+    """Coordinates in the frame of the lattice: each row is shifted by half a place."""
     return np.stack([column + row / 2, row * ROW], axis=-1)
 
 
@@ -131,10 +130,7 @@ def _inside(ring: Floats) -> tuple[Ints, Ints]:
 
 
 def _near(ring: Floats) -> Ints:
-    """Keys of the lattice points that are nearer than CLEAR to the outline.
-
-    No edge is longer than 2 (1.5 over SHORTEST), so a few rows and columns around its middle are enough.
-    """
+    """Keys of the lattice points nearer than CLEAR to the outline, whose edges are 2 long at most."""
     a, along = ring[:, None], (following(ring) - ring)[:, None]
     middle = ring + along[:, 0] / 2
     rows, columns = np.mgrid[-3:4, -4:5].reshape(2, -1)
@@ -147,10 +143,7 @@ def _near(ring: Floats) -> Ints:
 
 
 def fill(points: Floats, b: int) -> Floats:
-    """The points, and one in the middle of each side that is too long and has room around it.
-
-    The new points keep ROOM from all others, so this ends.
-    """
+    """The points, and one in the middle of each side that is too long and has ROOM around it."""
     while True:
         zones = triangulate(points, b)
         one, other = common_sides(zones)
@@ -178,9 +171,9 @@ def _roomy(lengths: Floats, area: Floats, side: Ints) -> NDArray[np.bool_]:
 
 
 def relax(points: Floats, ring: Ints, zones: Ints | None = None) -> tuple[Floats, Ints]:
-    """The points moved, but for those of the ring, and the zones: the best of all steps.
+    """The best points and zones of several steps that move all points but those of the ring.
 
-    Zones that are given stay as they are, else the ring must be the first points.
+    Given zones stay as they are; without them the ring must be the first points.
     """
     new = triangulate(points, len(ring)) if zones is None else zones
     best, found = _poorest(points, new, ring), (points, new)
@@ -199,17 +192,17 @@ def shapes(points: Floats, zones: Ints) -> Floats:
 
 
 def _poorest(points: Floats, zones: Ints, ring: Ints) -> tuple[float, float]:
-    """The worst shape of any zone, and of the zones with a point inside (the outline may force the first)."""
+    """The worst shape of all zones, and of the zones with a point inside."""
     each = shapes(points, zones)
     inside = each[~np.isin(zones, ring).all(axis=1)]
     return float(each.min()), float(inside.min(initial=1))
 
 
 def _moved(points: Floats, zones: Ints, ring: Ints, exponent: int) -> Floats:
-    """The points, those of the ring apart, moved half the way to where their zones would have them.
+    """The points, except those of the ring, moved half the way to the mean of the targets of their zones.
 
-    No zone turns over. A zone would have each of its vertices where the zone were equilateral. Its word
-    weighs 1 over its shape to the power `exponent`: first all zones count alike, in the end only the worst.
+    The target of a zone for a vertex makes the zone equilateral. Its weight is 1 over its shape to the power
+    `exponent`: with 0 all zones count alike, with a high power only the worst. No zone turns over.
     """
     at = points[zones]
     weight = np.minimum(1 / shapes(points, zones), THIN) ** exponent

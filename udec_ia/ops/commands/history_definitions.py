@@ -1,7 +1,7 @@
-"""HISTORY: what is to be recorded stands in IA(), a group for each history, and so outlives SAVE and RESTART.
+"""HISTORY: each history is a group of IA(), so SAVE and RESTART keep it.
 
-A history points to its group. The pointer moves with the group when groups change places, and becomes 0
-when the group is given back (heap.find_lose.unwatch): it never shows another group's numbers.
+A history points to the group that it records. The pointer follows the group when groups change places, and
+becomes 0 when the group is given back (heap.find_lose.unwatch): it never shows the numbers of another group.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CODES = {"int": INTEGER, "real": REAL, "double": DOUBLE}
 
 
 class Definition(NamedTuple):
-    """One history as IA() holds it. address: of its group; 0 when that has gone, or where there is none."""
+    """One history of IA(). address: of the group that it records; 0 if that has gone or does not exist."""
 
     what: Recordable
     address: int
@@ -39,7 +39,7 @@ class Definition(NamedTuple):
 
 
 def named(name: str) -> Recordable:
-    """What is recorded under `name`, in any case; error 10 if there is nothing of that name."""
+    """The number that is recorded under `name`, in any case. Error 10 for an unknown name."""
     found = recordable().get(name.upper())
     if found is None:
         detail = f"{name} is not a quantity that can be recorded"
@@ -50,13 +50,12 @@ def named(name: str) -> Recordable:
 def define(array: MainArray, what: Recordable, groups: Sequence[int], every: int) -> None:
     """New histories of `what`, one for each of the addresses in `groups`, at the end of the list.
 
-    Error 28 for an interval that is none, error 1 without memory; then nothing is changed.
+    Error 28 for a wrong interval, error 1 without memory; then nothing is changed.
     """
     limit = array.scheme.top_address
     if not 1 <= whole(n=every) <= limit:
-        raise UdecError(
-            28, f"n is {every}", f"a history is recorded every 1 to {limit} cycles", parameter="n"
-        )
+        advice = f"a history is recorded every 1 to {limit} cycles"
+        raise UdecError(28, f"n is {every}", advice, parameter="n")
     require(array, len(groups) * size_of(array.h, g.NVHI))
     h, before = array.h, next(reversed(addresses(array)), 0)
     for group in groups:
@@ -87,7 +86,7 @@ def definitions(array: MainArray) -> list[Definition]:
 
 
 def places(array: MainArray) -> np.ndarray:
-    """For the recording kernel: where in its group each history's number stands, and the code of its type."""
+    """For the recording kernel, per history: offset of the number in its group, and code of its type."""
     which = array.scheme.ratio >> 1
     found = np.zeros((len(addresses(array)), 2), np.int64)
     for row, (what, _, _) in zip(found, definitions(array), strict=True):

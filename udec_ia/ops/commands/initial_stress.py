@@ -1,8 +1,7 @@
 """INSITU: initial stresses in deformable blocks.
 
-Zones and simply-deformable blocks get S(x, y) = S0 + x SX + y SY at their centroids, tension positive. The
-forces at contacts follow from overlaps and cannot be given: they grow while the blocks spread against each
-other, by the small strain that closes the joints.
+Zones and simply-deformable blocks get S(x, y) = S0 + x SX + y SY at their centroids, tension positive.
+Contact forces follow from overlaps and cannot be given: they grow as the blocks expand and close the joints.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from udec_ia.reader.list_walks import chain
 def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:
     """INSITU: stresses (Pa; 11, 12, 22) of the deformable blocks in the range. Returns the number of blocks.
 
-    Error 24 if no deformable block with zones lies in the range; 28, and nothing is changed, if the reals
-    cannot hold the stresses or the forces that they make.
+    Error 24 without a suitable block in the range; 28, and nothing is changed, if the reals cannot hold the
+    stresses or their forces.
     """
     for name, triple in (("s11", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
         for component in triple:
@@ -59,7 +58,7 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
 
 
 def _no_stress(array: MainArray, where: Range) -> UdecError:
-    """Error 24: no block lies in the range, or none that carries stress."""
+    """Error 24: no block in the range, or none that can have stress."""
     blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
     if not blocks:
         return UdecError(24, why_no_block(array, where), parameter="x1")
@@ -72,7 +71,7 @@ def _no_stress(array: MainArray, where: Range) -> UdecError:
 
 
 def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:
-    """What bears stress in block `ib`: its zones or its extension, with the centroid."""
+    """The groups with the stress of block `ib`, its zones or its extension, with their centroids."""
     if iget(h, ib, HEAD) == g.MSDEF:
         yield iget(h, ib, g.KBEX), float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
     elif iget(h, ib, HEAD) == g.MFDEF:

@@ -24,7 +24,7 @@ PROPERTIES = {  # argument of PROPERTY: array of the common block
     one.argument: getattr(g, one.array) for one in read_table().properties if one.keyword
 }
 RANGES = {field.name: field.allowed for field in read_table().common}
-# may be negative: what they mean is the user's
+# numbers for the user's laws, which may be negative
 FREE = [one.argument for one in read_table().properties if not RANGES[one.array]]
 
 
@@ -55,9 +55,8 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     """DAMPING: Rayleigh damping with the fraction `fcrit` of critical at the centre frequency `freq` (Hz).
 
     ALPHA = fcrit 2 pi freq, BETA = fcrit/(2 pi freq). "mass" or "stiffness" drops the other half without
-    rescaling, so the damping at the centre frequency is then fcrit/2. "internal" sets the damping of the
-    internal degrees of freedom of simply-deformable blocks instead. What has mass damping has no other way
-    to rest (set_damping_mode).
+    rescaling: damping at the centre frequency is then fcrit/2. "internal" sets the damping of the internal
+    degrees of freedom of simply-deformable blocks instead. Mass damping ends a mode of set_damping_mode.
     """
     not_negative(array, fcrit=fcrit)
     if fcrit == 0 == freq:
@@ -81,10 +80,10 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 
 
 def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> None:
-    """DAMPING LOCAL f and the other modes of the table: what leads to rest instead of mass damping.
+    """DAMPING LOCAL f and the other modes of the table, which replace mass damping.
 
     f: fraction of the unbalanced force, or of critical damping (kernels.drive.dynamic_relaxation), up to 1.
-    All of them act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
+    The modes act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
     """
     not_negative(array, **{mode.argument: f})
     if f > 1:
@@ -99,24 +98,20 @@ def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> Non
 def _end_damping_mode(h: Memory) -> None:
     mode = mode_of(h)
     if mode and mode.sets_alpha:
-        h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # the program's own
+        h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # calculated by the mode
     h.ci[g.LREST], h.cr[g.RESTF], h.cd[g.EMOVES] = g.UNDAMPED, 0, 0
 
 
 def set_fraction(array: MainArray, f: float, safe: bool = False, scaled: bool = False) -> None:
-    """FRACTION: fraction of the critical time-step to be used: of the estimate, or of the safe bound.
+    """FRACTION: use a fraction of the estimate of the critical time-step, or of the safe bound.
 
     scaled: inertial masses are scaled (running.mass_scaling), and the fraction is of the bound with these.
-    Error 26 while an account of the energy is kept: what scaled masses move with is no energy.
+    Error 26 with an account of the energy: the motion of scaled masses has no true energy.
     """
     positive(array, f=f)
     if (safe or scaled) and f > 1:
-        raise UdecError(
-            28,
-            f"{f:g} of the safe bound is not safe",
-            f"f in FRACTION f {'SCALED' if scaled else 'SAFE'} must not exceed 1",
-            parameter="f",
-        )
+        advice = f"f in FRACTION f {'SCALED' if scaled else 'SAFE'} must not exceed 1"
+        raise UdecError(28, f"{f:g} of the safe bound is not safe", advice, parameter="f")
     if scaled and array.h.ci[g.LENER]:
         advice = "ENERGY OFF, or FRACTION without SCALED"
         raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
@@ -132,10 +127,7 @@ def set_scale(array: MainArray, s: float) -> None:
 
 
 def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
-    """FIX and FREE: hold or release the blocks in the range. Returns their number.
-
-    A block that is fixed stops at once; one that is set free starts from rest.
-    """
+    """FIX and FREE: fix or free the blocks in the range, with velocities of 0. Returns their number."""
     h = array.h
     blocks = blocks_in(array, where)
     given = {} if fixed else given_velocities(h)
@@ -149,7 +141,7 @@ def set_fixity(array: MainArray, where: Range, fixed: bool) -> int:
 
 
 def _stop(h: Memory, ib: int) -> None:
-    """Set all velocities of block `ib` to zero, those of corners and grid-points and strain rates, too."""
+    """Set all velocities and strain rates of block `ib`, its corners and grid-points to 0."""
     for k in (g.KXD, g.KYD, g.KTD):
         putr(h, ib, k, 0.0)
     carry_corners(h, ib)

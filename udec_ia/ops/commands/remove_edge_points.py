@@ -1,8 +1,8 @@
-"""A block that loses its zones loses the corners that GENERATE has put on its edges, too.
+"""Removal of the corners that GENERATE has put on the edges of a block, when the block loses its zones.
 
-Such a corner is not rounded, and only a fully-deformable block stands on it. Its two edges become one, and
-error 14 leaves the block as it is if they are bent too far for that. The contact of another block's arc with
-the corner goes on with the edge; that of another block's edge goes, and its force with it.
+Such a corner is not rounded. Its two edges become one; error 14 leaves the block unchanged if they are bent
+too far. A contact of the corner with another block's arc becomes one of the edge. A contact with another
+block's edge is removed with its force.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def corners_of(h: Memory, ib: int) -> list[int]:
 
 
 def edge_points(h: Memory, ib: int) -> list[int]:
-    """The corners of block `ib` that GENERATE has put on its edges."""
+    """The corners of GENERATE on the edges of block `ib`."""
     return [ip for ip in corners_of(h, ib) if is_edge_point(h, ip)]
 
 
@@ -64,7 +64,7 @@ def _off_line(h: Memory, ip: int, ia: int, iz: int) -> float:
 
 
 def straighten(h: Memory, ib: int) -> None:
-    """Take the points of edges out of the outline of block `ib`, and flag the domains around it."""
+    """Remove the corners of GENERATE from block `ib`, and flag the domains around it."""
     points = edge_points(h, ib)
     if not points:
         return
@@ -76,7 +76,7 @@ def straighten(h: Memory, ib: int) -> None:
 
 
 def renew_reach(h: Memory, ib: int) -> None:
-    """Distance of the farthest corner of block `ib` from its centroid as they are now."""
+    """Calculate the distance of the farthest corner of block `ib` from its centroid again."""
     x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
     away = [math.hypot(getr(h, ip, g.KXP) - x, getr(h, ip, g.KYP) - y) for ip in corners_of(h, ib)]
     putr(h, ib, g.KBRO, max(away))

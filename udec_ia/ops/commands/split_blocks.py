@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -30,12 +29,12 @@ from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.deformable_scene import renew_forces, soft, soft_or_loaded_in
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
 
-CROSSINGS = 64  # of one block that are looked for at first
-ROUNDINGS = 32  # that the distance of a corner from a line may have gone through
+CROSSINGS = 64  # room for the crossings of one block at first
+ROUNDINGS = 32  # last digits by which the distance of a corner from a line may be wrong
 
 
 class Boxes:
-    """The boxes of all blocks, kept from one SPLIT to the next as long as nothing else moved a block."""
+    """The bounding boxes of all blocks, reused by the next SPLIT unless blocks have moved in between."""
 
     def __init__(self) -> None:
         self.boxes = np.zeros((0, 4))
@@ -44,11 +43,11 @@ class Boxes:
         self.size = 0.0  # greatest |x| + |y| that a corner can have
 
     def forget(self) -> None:
-        """Blocks have moved or gone: look at the block list again next time."""
+        """Read the block list again next time, as blocks have moved or gone."""
         self.n = 0
 
     def enter(self, array: MainArray) -> None:
-        """Make sure that all blocks of the list are entered."""
+        """Enter all blocks of the list."""
         count = int(array.h.ci[g.NBLK])
         self.make_room(array, count)
         if self.n != count:
@@ -131,15 +130,13 @@ def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest
     if status == REFUSED_SHORT:
         detail = f"the cut {place} leaves an edge shorter than {shortest:g}"
         raise UdecError(14, detail, "move the line, or first use a smaller rounding length", group=ib)
-    raise UdecError(
-        27,
-        place,
-        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside",
-        group=ib,
+    advice = (
+        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside"
     )
+    raise UdecError(27, place, advice, group=ib)
 
 
-# ---- Why a SPLIT has cut no block: the line passes none, touches one at most, or ends inside
+# ---- Why a SPLIT has cut no block: the line meets none, only touches one, or ends inside
 
 LONGER = "a block is cut where the line crosses it from side to side"
 
@@ -155,11 +152,14 @@ def why_uncut(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y
     slack = ROUNDINGS * (last_digit(array, boxes.size) + last_digit(array, abs(x1) + abs(y1)))  # as SPLIT's
     ends, touched = ["", ""], 0
     for ib in boxes.blocks[met].tolist():
-        inside, touches = _along(Outline(array.h, ib), line, slack)
-        for k in range(2):
-            if inside[k]:
-                ends[k] = f"{('begins', 'ends')[k]} inside block@{ib} at ({line[k, 0]:g}, {line[k, 1]:g})"
-        touched = touched or (ib if touches else 0)
+        block, on_outline = Outline(array.h, ib), False
+        for k, (x, y) in enumerate(line.tolist()):
+            if block.place(x, y, slack).corner:
+                on_outline = True
+            elif block.holds(x, y):
+                ends[k] = f"{('begins', 'ends')[k]} inside block@{ib} at ({x:g}, {y:g})"
+        if not touched and (on_outline or _passes_corner(block, line, slack)):
+            touched = ib
     if any(ends):
         return f"the line {' and '.join(filter(None, ends))}; {LONGER}"
     if touched:
@@ -168,27 +168,10 @@ def why_uncut(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y
     return f"the line meets no block; all blocks lie in x {ax:g} to {bx:g}, y {ay:g} to {by:g}"
 
 
-def _along(block: Outline, line: Any, slack: float) -> tuple[Any, bool]:
-    """Whether the start and the end of the line lie inside the block, and whether the line touches it at all.
-
-    The line is divided where it meets the outline, and the middle of each part is looked at. What is nearer
-    than `slack` to the line is on it.
-    """
+def _passes_corner(block: Outline, line: Any, slack: float) -> bool:
+    """True if the line passes a corner of the block within the distance `slack`."""
     length = math.dist(*line)
-    c, s = unit = (line[1] - line[0]) / length
+    c, s = (line[1] - line[0]) / length
     x, y = (block.end - line[0]).T
     along, off = x * c + y * s, y * c - x * s
-    off[np.abs(off) <= slack] = 0.0
-    next_along, next_off = np.roll(along, -1), np.roll(off, -1)
-    crosses = off * next_off < 0
-    share = off[crosses] / (off[crosses] - next_off[crosses])
-    meets = np.sort([*(along[crosses] + share * (next_along - along)[crosses]), *along[off == 0.0]])
-    flat = (off == 0) & (next_off == 0)  # edges along the line
-    inside = np.zeros(2, bool)
-    for a, b in pairwise(meets.tolist()):
-        middle = (a + b) / 2
-        on_edge = (((along - middle) * (next_along - middle) < 0) & flat).any()
-        if not on_edge and block.holds(*(line[0] + middle * unit)):
-            inside |= a < -slack < slack < b, a < length - slack < length + slack < b
-    beside = flat & (np.minimum(along, next_along) < length) & (np.maximum(along, next_along) > 0)
-    return inside, bool(beside.any() or ((meets >= -slack) & (meets <= length + slack)).any())
+    return bool(((np.abs(off) <= slack) & (along >= -slack) & (along <= length + slack)).any())

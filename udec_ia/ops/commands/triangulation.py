@@ -1,18 +1,13 @@
-"""Zones for GENERATE ... AUTOMATIC: the outline of a block divided into triangles of a wanted size.
+"""Zones for GENERATE ... AUTOMATIC: the outline of a block divided into triangles of a given size.
 
-    m = mesh(corners, edge)      corners clockwise; m.points, m.zones, m.ring, m.smallest_angle, m.worst_ratio
+1. Each edge of the outline is divided evenly into parts as near to the given size as possible.
+2. Points inside form a lattice of equilateral triangles, and are then moved to improve the worst zones
+   (grid_points_inside.py). The zones are the constrained Delaunay triangulation of the package pythoncdt.
+3. For mixed discretisation the zones are made into pairs with a common side. B points on the outline and I
+   inside make 2I + B - 2 triangles, so B must be even: one edge gets one part more or less.
 
-1. Each edge of the outline is divided evenly, into parts as near to `edge` as a whole number of them allows.
-2. Points are laid inside, as a lattice of equilateral triangles, and then moved so that the worst-shaped
-   zones gain most (inside.py). Which points form a zone is decided by the constrained Delaunay
-   triangulation of the package pythoncdt, every time anew.
-3. For mixed discretisation the zones are made into pairs, each pair two zones with a common side
-   (pairs.py). B points on the outline and I inside make 2I + B - 2 triangles, so B must be even: one
-   edge of the outline is divided into one part more or less.
-
-Nothing here knows of IA(). The same input gives the same mesh, bit for bit; what an edge is divided into
-does not depend on the sense in which it is run through, so two blocks with a common edge get the same
-points on it wherever they divide it into the same number of parts.
+The mesh is independent of IA(). The same input gives the same mesh, bit for bit. The points on an edge do not
+depend on its direction: two blocks with a common edge and the same number of parts get the same points on it.
 """
 
 from __future__ import annotations
@@ -63,33 +58,22 @@ class Mesh:
         return np.asarray(np.degrees(np.arcsin(np.minimum(sine, 1))))
 
     @property
-    def ratios(self) -> Floats:
-        """The longest side of each zone over its height on it, 1 for an equilateral triangle."""
-        longest = sides(self.points, self.zones).max(axis=1)
-        return np.asarray(EQUILATERAL * longest**2 / areas(self.points, self.zones))
-
-    @property
     def smallest_angle(self) -> float:
         """The least angle of any zone, degrees."""
         return float(self.angles.min())
-
-    @property
-    def worst_ratio(self) -> float:
-        """The greatest of `ratios`."""
-        return float(self.ratios.max())
 
 
 def mesh(corners: ArrayLike, edge: float, paired: bool = True, real: type = np.float64) -> Mesh:
     """Divide the outline with the given corners (clockwise, m) into zones with sides of about `edge` (m).
 
-    paired: zones are made into pairs. real: type that holds all coordinates of the mesh exactly. Error 23
-    without the package pythoncdt, 28 for an edge or an outline that makes no mesh.
+    paired: zones are made into pairs. real: type of the coordinates. Error 23 without the package pythoncdt,
+    28 for an unsuitable edge or outline.
     """
     given = _checked(corners, edge)
     parts = divisions(np.linalg.norm(following(given) - given, axis=1) / edge, even=paired)
     outline = divide(given, parts)
     b = len(outline)
-    unit = min(edge, float(np.ptp(given, axis=0).max()))  # so that no number becomes too small
+    unit = min(edge, float(np.ptp(given, axis=0).max()))  # keeps numbers from becoming too small
     local = (outline - given[0]) / unit
     if not closed(zones := triangulate(local, b), b):
         raise UdecError(28, "the outline touches or crosses itself", "no block can have such an outline")
@@ -104,14 +88,13 @@ def mesh(corners: ArrayLike, edge: float, paired: bool = True, real: type = np.f
     points = points.astype(real).astype(np.float64)
     if not (areas(points, zones) > 0).all():
         advice = "use a longer edge, put the origin nearer to the block, or use a --build with 64-bit reals"
-        raise UdecError(
-            28, "zones are too small for the precision of their coordinates", advice, parameter="edge"
-        )
+        detail = "zones are too small for the precision of their coordinates"
+        raise UdecError(28, detail, advice, parameter="edge")
     return _corners_first(points, zones, ring, np.concatenate([[0], np.cumsum(parts[:-1])]))
 
 
 def _checked(corners: ArrayLike, edge: float) -> Floats:
-    """The corners as an array. Error 28 for what no mesh can be made of."""
+    """The corners as an array. Error 28 for an unsuitable edge or outline, or too many zones."""
     given = np.array(corners, dtype=np.float64)
     if not edge > 0 or not np.isfinite(edge):
         raise UdecError(28, f"the edge of a zone must be positive, it is {edge:g}", parameter="edge")
@@ -131,10 +114,9 @@ def _checked(corners: ArrayLike, edge: float) -> Floats:
 
 
 def divisions(lengths: Floats, even: bool) -> Ints:
-    """Into how many parts each edge of an outline is divided, so that the parts are about 1 long.
+    """The number of parts of each edge, so that the parts are about 1 long.
 
-    If `even`, the number of all parts is even: where it would be odd, one edge gets a part more or
-    less, the edge whose parts then are nearest to 1.
+    even: the sum is even; if it were odd, the edge whose parts are then nearest to 1 gets one more or less.
     """
     parts = np.maximum(np.rint(lengths), 1).astype(np.int64)
     if even and parts.sum() % 2:
@@ -148,7 +130,7 @@ def divisions(lengths: Floats, even: bool) -> Ints:
 def divide(corners: Floats, parts: Ints) -> Floats:
     """The outline with edge k divided into parts[k] equal parts.
 
-    Each point is reckoned from the nearer end, the middle from both: both senses give the same point.
+    Points are calculated from the nearer end, the middle from both, so that the direction does not matter.
     """
     k = np.repeat(np.arange(len(parts)), parts)
     number = (np.arange(len(k)) - np.repeat(np.cumsum(parts) - parts, parts))[:, None]
@@ -160,7 +142,7 @@ def divide(corners: Floats, parts: Ints) -> Floats:
 
 
 def closed(zones: Ints, b: int) -> bool:
-    """True if the zones of the first `b` points fill their outline and nothing else."""
+    """True if the zones of the first `b` points fill exactly their outline."""
     if len(zones) != b - 2:
         return False
     start, end = zones.ravel(), np.roll(zones, -1, axis=1).ravel()
@@ -168,7 +150,7 @@ def closed(zones: Ints, b: int) -> bool:
 
 
 def _corners_first(points: Floats, zones: Ints, ring: Ints, corners: Ints) -> Mesh:
-    """The mesh with its points in the order corners, others of the outline, inside."""
+    """The mesh with its points in the order: corners, other points of the outline, points inside."""
     old = np.concatenate([corners, ring[~np.isin(ring, corners)]])
     old = np.concatenate([old, np.setdiff1d(np.arange(len(points)), old)])
     new = np.empty_like(old)
@@ -179,18 +161,18 @@ def _corners_first(points: Floats, zones: Ints, ring: Ints, corners: Ints) -> Me
 # ---- Zones made into pairs with a common side: a perfect matching, for mixed discretisation
 
 ALONE, CUT = -1, -2  # instead of a partner
-ENOUGH = 100_000  # zones a search may see before it is content with a cut
+ENOUGH = 100_000  # zones of a search after which a cut is accepted
 
 
 def pair_up(points: Floats, zones: Ints, b: int) -> tuple[Floats, Ints, Ints]:
-    """Points, zones and the ring of the first `b` points, the zones 2i and 2i + 1 now a pair.
+    """Points, zones and ring of a mesh with `b` points on its outline and an even number of zones.
 
-    The number of zones must be even.
+    Zones 2i and 2i + 1 of the result are a pair. A zone without a partner is cut in two.
     """
     outer, middles, halves = _halves(points, zones)
     order = np.argsort(shapes(np.vstack([points, middles]), halves).reshape(-1, 2).min(axis=1), kind="stable")
     best = np.full(len(zones), -1)
-    best[outer[order] // 3] = order  # where a zone has two sides on the outline, the better one
+    best[outer[order] // 3] = order  # of two sides on the outline the better one
     rank = np.full(len(outer), -1)
     rank[order] = np.arange(len(order))
     partner = np.array(match(_neighbours(points, zones), np.where(best < 0, -1, rank[best]).tolist()))
@@ -208,9 +190,9 @@ def pair_up(points: Floats, zones: Ints, b: int) -> tuple[Floats, Ints, Ints]:
 
 
 def _halves(points: Floats, zones: Ints) -> tuple[Ints, Floats, Ints]:
-    """The sides on the outline, their middles, and the two halves of the zone if it is cut from there.
+    """The sides on the outline, their middles, and the two halves of a zone that is cut from the middle.
 
-    A middle is named as if all middles stood behind the points.
+    Middles are numbered after the points.
     """
     outer = np.setdiff1d(np.arange(zones.size), np.concatenate(common_sides(zones)))
     a, b, opposite = (np.roll(zones, -k, axis=1).ravel()[outer] for k in range(3))
@@ -220,7 +202,7 @@ def _halves(points: Floats, zones: Ints) -> tuple[Ints, Floats, Ints]:
 
 
 def _neighbours(points: Floats, zones: Ints) -> list[list[int]]:
-    """The zones that each zone has a side in common with, over its longest side first."""
+    """The neighbours of each zone, in order of decreasing common sides."""
     one, other = common_sides(zones)
     order = np.argsort(-sides(points, zones).ravel()[one], kind="stable")
     neighbours: list[list[int]] = [[] for _ in zones]
@@ -231,7 +213,7 @@ def _neighbours(points: Floats, zones: Ints) -> list[list[int]]:
 
 
 def match(neighbours: list[list[int]], price: list[int]) -> list[int]:
-    """The partner of each zone, or CUT. A zone with a price below 0 cannot be cut; high prices are good."""
+    """The partner of each zone, or CUT. Zones of a high price are cut first, those below 0 never."""
     partner = [ALONE] * len(neighbours)
     _take(neighbours, partner)
     for t in range(len(partner)):
@@ -241,7 +223,7 @@ def match(neighbours: list[list[int]], price: list[int]) -> list[int]:
 
 
 def _take(neighbours: list[list[int]], partner: list[int]) -> None:
-    """Join free neighbours as long as there are any, first the zones that have one free neighbour only."""
+    """Join free neighbours while there are any, beginning with zones that have only one free neighbour."""
     waiting = list(reversed(range(len(partner))))
     waiting += [t for t in waiting if len(neighbours[t]) == 1]
     while waiting:
@@ -257,11 +239,11 @@ def _take(neighbours: list[list[int]], partner: list[int]) -> None:
 
 
 class _Search:
-    """A search for an alternating path from one zone that is alone.
+    """A search for an alternating path from one zone without a partner (Edmonds).
 
-    Reached over a partner, a zone is *outer*: it can be given away. A zone reached from an outer one is
-    *inner* until a circle makes it outer too. `came` is the way back; `base` leads outer zones to that
-    of the circle they have been shrunk to, and has outer zones only.
+    A zone reached from its partner is *outer*: it can lose its partner. A zone reached from an outer one is
+    *inner* until a circle makes it outer, too. came: the path back. base: the base of the circle of each
+    outer zone.
     """
 
     def __init__(self, neighbours: list[list[int]], price: list[int], partner: list[int], root: int) -> None:
@@ -272,7 +254,7 @@ class _Search:
         self.best = root  # the outer zone to cut
 
     def run(self) -> None:
-        """Give the root a partner, at the price of a cut if there is no other way."""
+        """Give the root a partner, or cut a zone if there is no path."""
         while self.queue:
             t = self.queue.popleft()
             for u in self.neighbours[t]:
@@ -305,7 +287,7 @@ class _Search:
         return t
 
     def _common(self, t: int, u: int) -> int:
-        """Where the ways back from two outer zones meet."""
+        """The zone where the paths back from two outer zones meet."""
         passed: set[int] = set()
         while True:
             if t >= 0:
@@ -317,7 +299,7 @@ class _Search:
             t, u = u, t
 
     def _shrink(self, t: int, u: int, common: int) -> None:
-        """Make all zones on the way back from t outer; from them the way back leads over u, too."""
+        """Make all zones on the path back from t outer; their path back may then lead over u."""
         while self._top(t) != common:
             self.came[t] = u
             u = self.partner[t]
@@ -329,7 +311,7 @@ class _Search:
             t = self.came[u]
 
     def _exchange(self, u: int) -> None:
-        """Every zone on the way back from u gets another partner."""
+        """Exchange the partners along the path back from u."""
         while u >= 0:
             t = self.came[u]
             self.partner[u], self.partner[t], u = t, u, self.partner[t]

@@ -1,4 +1,4 @@
-"""Running a kernel that may ask for memory, and going back when something is refused half-way."""
+"""Memory for kernels that stop for lack of it, and undoing a command that fails half-way."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a qu
 
 
 def find_room(array: MainArray) -> None:
-    """Make the room that an interrupted kernel asked for; error 1 if the scheme or --mtop forbids it.
+    """Provide the memory that a kernel has requested; error 1 if the scheme or --mtop forbids it.
 
-    What was asked for may include words to spare, so the array takes all words there are before it refuses.
+    A request may include a reserve, so the array takes all possible words before the error.
     """
     if array.grow():
         return
@@ -30,7 +30,7 @@ def find_room(array: MainArray) -> None:
 
 
 def _overflow(array: MainArray) -> UdecError:
-    """Error 1 for the words that are asked for in vain."""
+    """Error 1 for a request that cannot be met."""
     ci = array.h.ci
     need = int(ci[g.MFREE] + ci[g.NWANT]) - 1
     ci[g.NWANT] = 0
@@ -49,11 +49,10 @@ def _overflow(array: MainArray) -> UdecError:
 
 
 def keep_spare(array: MainArray) -> None:
-    """Have memory to spare for the contacts and domains of the updates to come.
+    """Reserve memory for the contacts and domains of the next updates.
 
-    An array that grew in the midst of an update would make its contacts in another order, and the order of
-    sums is the last bit of a force. So the array grows before: when and how often it does changes nothing.
-    An array of fixed size, or one that has reached its limit, uses its last word instead.
+    An array that grew within an update would make contacts in another order, which changes the last bit of
+    force sums. So it grows before. An array of fixed size, or at its limit, uses its last word instead.
     """
     ci = array.h.ci
     pair = size_of(array.h, g.NVCN) + size_of(array.h, g.NVDO)
@@ -65,7 +64,7 @@ def keep_spare(array: MainArray) -> None:
 
 
 def require(array: MainArray, words: int) -> None:
-    """Make sure that `words` words of fresh memory are there before anything is changed."""
+    """Provide `words` words of new memory before anything is changed. Error 1 without memory."""
     ci = array.h.ci
     if ci[g.MFREE] + words - 1 > ci[g.MTOP]:
         ci[g.NWANT] = words
@@ -74,7 +73,7 @@ def require(array: MainArray, words: int) -> None:
 
 
 def refit(array: MainArray, mtop: int | None) -> None:
-    """Give the array the size that the run fixes, or let it grow; error 1 if it holds more than that."""
+    """Give the array the fixed size `mtop`, or let it grow if None. Error 1 if it holds more than that."""
     if not array.refit(mtop):
         used = int(array.h.ci[g.MFREE]) - 1
         detail = f"{used} words are in use, and --mtop is {mtop}"
@@ -84,7 +83,7 @@ def refit(array: MainArray, mtop: int | None) -> None:
 
 @contextmanager
 def all_or_nothing(array: MainArray) -> Iterator[None]:
-    """Let an error leave the array as it was before the block."""
+    """Restore the array if a UdecError is raised within this context."""
     h, used = array.h, int(array.h.ci[g.MFREE]) - 1
     parts = h.ia[:used], h.ci, h.cr, h.cd
     before = [part.copy() for part in parts]

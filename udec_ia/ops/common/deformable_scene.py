@@ -1,6 +1,6 @@
-"""What kernels need to know of deformable blocks and boundary conditions (report 4.2).
+"""Arguments that tell kernels whether there are deformable blocks and boundary conditions (report 4.2).
 
-What is None here is left out of the machine code: a rigid scene neither compiles nor tests what it has not.
+Code for an argument of None is not compiled.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from udec_ia.layout import offsets as g
 
 
 def soft(array: MainArray) -> Any:
-    """None if all blocks are rigid, else True: what the passes of the cycle look at."""
+    """None if all blocks are rigid, else True."""
     return soft_in(array.h)
 
 
@@ -24,16 +24,10 @@ def soft_in(h: Memory) -> Any:
 
 
 def soft_or_loaded_in(h: Memory) -> Any:
-    """None if no condition acts on blocks either: for what adds up loads, or cuts what they act on."""
+    """None if all blocks are rigid and there are no boundary conditions, else True."""
     return True if h.ci[g.NSOFT] or h.ci[g.IBNPNT] else None
 
 
-# ---- Force sums after SPLIT or DELETE between two cycles
-
-
 def renew_forces(array: MainArray) -> None:
-    """Make every block's force sums the sums of the forces stored in its contacts.
-
-    A block that was cut or has lost a neighbour must not feel in the next cycle what it felt before.
-    """
+    """Sum the forces of all contacts again, after a change of blocks between two cycles."""
     sum_all_forces(array.h, soft(array))

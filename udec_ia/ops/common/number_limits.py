@@ -1,7 +1,6 @@
-"""What numbers may be: the array limits of Appendix III-2 and the widths of the word scheme.
+"""Limits of numbers: the array limits of Appendix III-2 and the widths of the word scheme.
 
-The numbers to be looked at are given by the names that they have in HELP and in Python, so that an error
-names the number, and its caret in a deck stands at it.
+Numbers are passed by their names in HELP and in Python. So an error names the number and has its place.
 """
 
 from __future__ import annotations
@@ -24,9 +23,10 @@ NCONS = next(
 )
 LARGEST = 2**63 - 1  # integer of the common block
 
-# How many last digits of a coordinate long an edge must be, and a rounding length, which without ROUND is
-# at least a twentieth of an edge. FTOL, a twentieth again and the least length that decides about a contact,
-# is then 25 digits, and so is the radius of a corner of 6 degrees; of the sharpest that SPLIT makes, 2.5.
+# Least length of an edge and of a rounding length in last digits of a coordinate. Without ROUND the rounding
+# length is at least a twentieth of an edge. FTOL, a twentieth of that and the least length that decides about
+# a contact, is then 25 digits, as is the radius of a corner of 6 degrees; of the sharpest corner of SPLIT,
+# 2.5.
 EDGE_DIGITS = 1e4
 ROUNDING_DIGITS = EDGE_DIGITS / 20
 
@@ -46,7 +46,7 @@ def constitutive_number(n: int) -> int:
 
 
 def whole(**number: SupportsIndex) -> int:
-    """The only number given, if it is an integer, else error 10: a real is no integer, as in a deck."""
+    """The only number given. Error 10 unless it is an integer, 28 if it is too large."""
     ((name, value),) = number.items()
     try:
         integer = operator.index(value)
@@ -59,7 +59,7 @@ def whole(**number: SupportsIndex) -> int:
 
 
 def real(**number: Any) -> Any:
-    """The only number given, if it is one, else error 10."""
+    """The only number given. Error 10 unless it is a number."""
     ((name, value),) = number.items()
     if not isinstance(value, Real):
         raise UdecError(10, f"{value!r} is not a number", f"{name} takes numbers", parameter=name)
@@ -67,7 +67,7 @@ def real(**number: Any) -> Any:
 
 
 def reals(n: int, **row: Any) -> Any:
-    """The only row given, if it is one of `n` numbers. Error 26 if there are fewer, else 10."""
+    """The only row given. Error 26 if it has fewer than `n` numbers, 10 if it is no row of `n` numbers."""
     ((name, value),) = row.items()
     numbers = _items(name, value, f"{n} numbers")
     if len(numbers) != n:
@@ -77,13 +77,13 @@ def reals(n: int, **row: Any) -> Any:
 
 
 def rows(n: int, **table: Any) -> list[Any]:
-    """The only list given, if it is one of rows of `n` numbers; none is an empty one. Errors as of reals."""
+    """The only list given, of rows of `n` numbers; empty for None. Errors as `reals`."""
     ((name, value),) = table.items()
     return [reals(n, **{name: row}) for row in _items(name, () if value is None else value, "a list")]
 
 
 def _items(name: str, value: Any, what: str) -> list[Any]:
-    """What stands in `value`; error 10 if nothing can."""
+    """The items of `value`; error 10 if it has none."""
     try:
         return list(value)
     except TypeError:
@@ -91,7 +91,7 @@ def _items(name: str, value: Any, what: str) -> list[Any]:
 
 
 def finite(array: MainArray, **numbers: float) -> None:
-    """Error 28 unless the reals of the word scheme can hold all numbers."""
+    """Error 28 unless all numbers are finite reals of the word scheme."""
     largest = float(np.finfo(array.scheme.real_type).max)
     for name, value in numbers.items():
         if not abs(real(**{name: value})) <= largest:
@@ -100,20 +100,16 @@ def finite(array: MainArray, **numbers: float) -> None:
 
 
 def held(array: MainArray, what: str, values: Iterable[float], bits: int | None = None) -> None:
-    """Error 28 unless reals can hold all values, which follow from numbers given.
-
-    bits: of the reals; by default those of the word scheme.
-    """
+    """Error 28 unless reals of so many bits can hold all calculated values; default: of the word scheme."""
     bits = bits or array.scheme.real_bits
     largest = float(np.finfo(f"f{bits // 8}").max)
     if not all(abs(value) <= largest for value in values):
-        raise UdecError(
-            28, f"{what} would be greater than {bits}-bit reals can hold", f"they end at {largest:.2g}"
-        )
+        detail = f"{what} would be greater than {bits}-bit reals can hold"
+        raise UdecError(28, detail, f"they end at {largest:.2g}")
 
 
 def bearable(array: MainArray, density: float, radius: float) -> None:
-    """Error 28 unless the reals can hold mass and moment of inertia of all that fits in such a circle."""
+    """Error 28 unless the reals can hold mass and moment of inertia of a square of side 2 `radius`."""
     mass = density * 4 * radius * radius
     held(array, f"mass or moment of inertia at a density of {density:g}", [mass, mass * radius * radius])
 
@@ -135,7 +131,7 @@ def positive(array: MainArray, **numbers: float) -> None:
 
 
 def last_digit(array: MainArray, size: float) -> float:
-    """What the reals of the word scheme resolve where |x| + |y| is up to `size`."""
+    """The resolution of coordinates where |x| + |y| is up to `size`."""
     return float(np.finfo(array.scheme.real_type).eps) * size
 
 
@@ -145,11 +141,8 @@ def check_resolution(
     """Error 28 at `parameter` if `length` is less than so many last digits where |x| + |y| is `size`."""
     digit = last_digit(array, size)
     if length < digits * digit:
-        bits = array.scheme.real_bits
-        raise UdecError(
-            28,
-            f"{what} {length:g} long, where {bits}-bit reals resolve {digit:g}",
-            f"it must be at least {digits * digit:g}: take the origin nearer to the blocks, or a --build "
-            "with 64-bit reals",
-            parameter=parameter,
+        detail = f"{what} {length:g} long, where {array.scheme.real_bits}-bit reals resolve {digit:g}"
+        advice = (
+            f"it must be at least {digits * digit:g}: move the origin nearer, or use 64-bit reals (--build)"
         )
+        raise UdecError(28, detail, advice, parameter=parameter)

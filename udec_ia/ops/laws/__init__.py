@@ -1,1 +1,1 @@
-"""Laws of the user's: read, compiled, attached (Appendix IV-4)."""
+"""The user's constitutive laws: reading, compiling, and binding to a model (Appendix IV-4)."""

@@ -1,6 +1,6 @@
-"""Laws of the user's: read from plain Python, looked at, and compiled (Appendix IV-4; udec_ia.laws).
+"""The user's laws: read from plain Python, checked and compiled (Appendix IV-4; udec_ia.laws).
 
-Whatever is wrong with a law is error 34, which points at the line of the user's file.
+Every fault of a law is error 34, which points at the line of the user's file.
 """
 
 from __future__ import annotations
@@ -28,13 +28,15 @@ from udec_ia.layout.material import Material
 from udec_ia.printable_text import counted
 
 NUMBERS = range(FIRST, LAST + 1)
-RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {f"clj{n}": 2 for n in NUMBERS}  # how many numbers a law returns
+RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {
+    f"clj{n}": 2 for n in NUMBERS
+}  # count of numbers that a law returns
 SHIPPED = Path(__file__).parents[2] / "laws"
 FORMS = {
     3: "(s11, s12, s22, de11, de12, de22, m) and return ds11, ds12, ds22",
     2: "(fn, fs, dun, dus, un, us, m) and return dfn, dfs",
 }
-UNCHECKED = ("flat", "as_strided")  # where numba takes any index, whatever it is told
+UNCHECKED = ("flat", "as_strided")  # whose indices numba never checks
 NAMED = ("LOAD_ATTR", "LOAD_METHOD", "LOAD_GLOBAL")
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 Given = str | Path | Mapping[str, Callable[..., Any]]
@@ -42,12 +44,11 @@ Given = str | Path | Mapping[str, Callable[..., Any]]
 
 @dataclass(frozen=True)
 class Law:
-    """A law that was given: `name` is cl2 ... clj5, `origin` the name of its file.
+    """A law: `name` is cl2 ... clj5, `origin` the name of its file, digest the SHA-256 of the text.
 
-    digest: SHA-256 of the text of the file. python, address: what stands among the calls of a Laws, for
-    kernels that are interpreted and for those that are compiled: the address of its machine code, 0 where
-    nothing is. code: owner of the machine code. function: the law itself. noted: the six reals with which it
-    has raised an exception, not numbers as long as it has not.
+    python: the law for interpreted kernels. address: of its machine code for compiled kernels, else 0. code:
+    owner of the machine code. function: the function of the user. failed_at: the six reals with which it has
+    raised its first exception, else NaN.
     """
 
     name: str
@@ -57,31 +58,33 @@ class Law:
     address: int
     code: Any
     function: FunctionType
-    noted: Any
+    failed_at: Any
 
     def raised(self, material: Material) -> tuple[str, str]:
-        """What the law has raised and where, and what it was called with; "" if it has raised nothing."""
-        if np.isnan(self.noted[0]):
+        """The exception of the law with its place, and the arguments of the call; "" without an exception."""
+        if np.isnan(self.failed_at[0]):
             return "", ""
         names = inspect.signature(self.function).parameters
-        called = ", ".join(f"{name} = {value:.6g}" for name, value in zip(names, self.noted, strict=False))
+        called = ", ".join(
+            f"{name} = {value:.6g}" for name, value in zip(names, self.failed_at, strict=False)
+        )
         return f": {self._reason(material)}", f"correct the law; it was called with {called}"
 
     def _reason(self, material: Material) -> str:
-        """What the Python function raises when it is called as the law was."""
-        law, code = _in_python(self.function, RESULTS[self.name], self.noted), self.function.__code__
+        """The exception that the Python function raises with the same arguments."""
+        law, code = _in_python(self.function, RESULTS[self.name], self.failed_at), self.function.__code__
         try:
             with np.errstate(all="ignore"):
-                law(*self.noted, material)
+                law(*self.failed_at, material)
         except Exception as error:
             line = _line(error, code.co_filename) or code.co_firstlineno
-            said = " ".join(str(error).split())
-            return f"{type(error).__name__}: {said}, in line {line} of {Path(code.co_filename).name}"
+            text = " ".join(str(error).split())
+            return f"{type(error).__name__}: {text}, in line {line} of {Path(code.co_filename).name}"
         return "an exception that only compiled code raises"
 
 
 def read_laws(given: Given | Iterable[Given] | None) -> dict[str, Law]:
-    """The laws in files, in laws that come with the program, or in mappings from names to functions."""
+    """The laws in files, in laws of the program, or in mappings from names to functions."""
     if given is None:
         return {}
     sources = [given] if isinstance(given, str | Path | Mapping) else list(given)
@@ -114,13 +117,13 @@ def _place(error: UdecError, file: str, line: int, column: int = 0) -> UdecError
 
 
 def _line(error: BaseException, file: str) -> int:
-    """The last line of `file` on the way to where `error` was raised; 0 if there is none."""
+    """The last line of `file` in the traceback of `error`; 0 if there is none."""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     return (lines[-1] if lines else 0) or 0
 
 
 def _find(name: str | Path) -> Path:
-    """The file `name`, or that of the law which comes with the program under this name."""
+    """The file `name`, or the file of the program's law of this name."""
     path = Path(name)
     shipped = SHIPPED / f"{path.stem.replace('-', '_')}.py"
     there = os.path.isfile(path) or path.name != str(name) or not shipped.is_file()
@@ -158,11 +161,11 @@ def _of_text(path: Path, text: str) -> list[Law]:
     return [_law(name, function, path.name, digest) for name, function in functions.items()]
 
 
-_of_shipped = cache(_of_text)  # they depend on nothing but their text: a process compiles each once
+_of_shipped = cache(_of_text)  # a process compiles each law of the program once
 
 
 def _of_mapping(functions: Mapping[str, Callable[..., Any]]) -> list[Law]:
-    """The laws of a mapping, whose text is that of the functions, as far as Python can tell it."""
+    """The laws of a mapping; the digest is of the source of each function, or else of its bytecode."""
     laws = []
     for name, function in functions.items():
         if name not in RESULTS:
@@ -177,7 +180,7 @@ def _of_mapping(functions: Mapping[str, Callable[..., Any]]) -> list[Law]:
 
 
 def _plain(name: str, function: Any) -> FunctionType:
-    """The Python function that was given, or that the given one was compiled from."""
+    """The given Python function, or the one behind a compiled function."""
     plain = getattr(function, "py_func", function)
     if not isinstance(plain, FunctionType):
         raise _wrong(f"{name} is not a function", f"a law is a function: def {name}{FORMS[RESULTS[name]]}")
@@ -185,7 +188,7 @@ def _plain(name: str, function: Any) -> FunctionType:
 
 
 def _law(name: str, function: Any, origin: str, digest: str) -> Law:
-    """The law `name`, once its arguments, its text and what it returns are seen to be right."""
+    """The law `name`. Error 34 if its arguments, its text or its results are wrong."""
     plain = _plain(name, function)
     n = RESULTS[name]
     advice = f"a law must take {FORMS[n]}"
@@ -193,27 +196,27 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
         inspect.signature(plain).bind(*range(7))
     except TypeError as error:
         raise _wrong(f"{name} does not take 7 arguments", advice, plain.__code__) from error
-    noted = np.full(6, np.nan)
-    python = _in_python(plain, n, noted)
+    failed_at = np.full(6, np.nan)
+    python = _in_python(plain, n, failed_at)
     if DISABLED:
-        return Law(name, origin, digest, python, 0, None, plain, noted)
+        return Law(name, origin, digest, python, 0, None, plain, failed_at)
     from udec_ia.compiling.law_calls_numba import MATERIAL, STATE, machine_code
 
     compiled = _compiled(function, {})
     try:
         compiled.compile((*STATE, MATERIAL))
-    except Exception as error:  # numba has more of them than it documents
+    except Exception as error:  # numba raises undocumented types
         raise _not_compiled(name, error, plain.__code__) from error
     (signature,) = compiled.nopython_signatures
     if not _are_numbers(signature.return_type, n):
         detail = f"{name} returns {signature.return_type} instead of {n} numbers"
         raise _wrong(detail, advice, plain.__code__)
-    code = machine_code(compiled, n, noted)
-    return Law(name, origin, digest, python, code.address, code, plain, noted)
+    code = machine_code(compiled, n, failed_at)
+    return Law(name, origin, digest, python, code.address, code, plain, failed_at)
 
 
-def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tuple[float, ...]]:
-    """`function` as Python runs it, to return `n` numbers; as compiled, it notes what it raises for."""
+def _in_python(function: FunctionType, n: int, failed_at: Any) -> Callable[..., tuple[float, ...]]:
+    """`function` for interpreted kernels: it returns `n` numbers, and records the arguments of a failure."""
 
     def law(*given: Any) -> tuple[float, ...]:
         try:
@@ -221,8 +224,8 @@ def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tupl
             if len(numbers) != n:
                 raise ValueError(f"{counted(len(numbers), 'number')} returned instead of {n}")
         except Exception:
-            if np.isnan(noted[0]):
-                noted[:] = given[:6]
+            if np.isnan(failed_at[0]):
+                failed_at[:] = given[:6]
             raise
         return numbers
 
@@ -230,25 +233,26 @@ def _in_python(function: FunctionType, n: int, noted: Any) -> Callable[..., tupl
 
 
 def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
-    """A compiled copy of the function `given`, with what it calls of the same file compiled too.
+    """A compiled copy of the function `given` and of the functions of the same file that it calls.
 
-    Indices are checked, unless its author has decorated it with numba.njit(boundscheck=False).
+    Indices are checked, unless it is decorated with numba.njit(boundscheck=False).
     """
     from numba import njit
 
     function: FunctionType = getattr(given, "py_func", given)
     checked = getattr(given, "targetoptions", {}).get("boundscheck") is not False
     for step in dis.get_instructions(function):
+        line = (step.positions.lineno if step.positions else None) or 0
         if step.opname == "RAISE_VARARGS":
             advice = 'return float("nan") instead: the run then stops with error 35'
-            raise _wrong_step(f"{function.__name__} raises an exception", advice, function, step)
+            raise _wrong(f"{function.__name__} raises an exception", advice, function.__code__, line)
         if checked and step.opname in NAMED and step.argval in UNCHECKED:
             advice = "index the array itself, or the result of its method ravel"
-            raise _wrong_step(f"numba does not check the indices of {step.argval}", advice, function, step)
+            detail = f"numba does not check the indices of {step.argval}"
+            raise _wrong(detail, advice, function.__code__, line)
     space = dict(function.__globals__)
-    copy = FunctionType(
-        function.__code__, space, function.__name__, function.__defaults__, function.__closure__
-    )
+    parts = function.__code__, space, function.__name__, function.__defaults__, function.__closure__
+    copy = FunctionType(*parts)
     done[function] = njit(error_model="numpy", boundscheck=checked)(copy)
     for name in function.__code__.co_names:
         called = space.get(name)
@@ -258,24 +262,19 @@ def _compiled(given: Any, done: dict[FunctionType, Any]) -> Any:
     return done[function]
 
 
-def _wrong_step(detail: str, advice: str, function: FunctionType, step: dis.Instruction) -> UdecError:
-    """Error 34, at the line of `function` that `step` was made from."""
-    line = step.positions.lineno if step.positions else None
-    return _wrong(detail, advice, function.__code__, line or 0)
-
-
 def _not_compiled(name: str, error: Exception, code: CodeType) -> UdecError:
-    """Error 34 with the first lines of numba's that say something, at the line of the file that they name."""
-    said = [line.strip() for line in COLOURS.sub("", str(error)).splitlines()]
-    reasons = [line for line in said if line and not line.startswith(("Failed in", "- "))]
+    """Error 34 with the first informative lines of numba's message, at the line of the file in it."""
+    message = COLOURS.sub("", str(error))
+    reasons = [line.strip() for line in message.splitlines() if line.strip()]
+    reasons = [line for line in reasons if not line.startswith(("Failed in", "- "))]
     reason = " ".join(reasons[: 2 if reasons[0].endswith(":") else 1]) if reasons else type(error).__name__
-    lines = re.findall(rf'File "[^"]*{re.escape(Path(code.co_filename).name)}", line (\d+)', "\n".join(said))
+    lines = re.findall(rf'File "[^"]*{re.escape(Path(code.co_filename).name)}", line (\d+)', message)
     advice = "laws are compiled: use numbers, math and NumPy functions, and functions of the same file only"
     return _wrong(f"{name} cannot be compiled: {reason}", advice, code, int(lines[-1]) if lines else 0)
 
 
 def _are_numbers(returned: Any, n: int) -> bool:
-    """True if a compiled type is that of `n` numbers."""
+    """True if a compiled type is a tuple of `n` numbers."""
     from numba import types
 
     kinds = (types.Float, types.Integer, types.Boolean)

@@ -1,4 +1,4 @@
-"""The laws of a model: those that its user has given, and those that a restart file says it was made with."""
+"""The laws of a model: those of its user, and the names of those that its restart file was made with."""
 
 from __future__ import annotations
 
@@ -27,11 +27,10 @@ Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 
 
 
 class Bound(NamedTuple):
-    """The laws as kernels take them.
+    """The laws in the form for kernels.
 
-    blocks: None if all blocks are rigid, as in `soft`, so that they need no machine code of their own.
-    joints: None if no contact follows a law of its own (kernels.constitutive.joint_laws). book: where they
-    come from. own_blocks: True if a deformable block follows one.
+    blocks: None if all blocks are rigid. joints: None if no contact follows a user's law
+    (kernels.constitutive.joint_laws). own_blocks: True if a deformable block follows a user's law.
     """
 
     blocks: Laws | None
@@ -41,10 +40,7 @@ class Bound(NamedTuple):
 
 
 class LawBook:
-    """The laws of one model, by name.
-
-    recorded: those that the model was calculated with before it was saved.
-    """
+    """The laws of one model, by name. recorded: those of the restart file that the model comes from."""
 
     def __init__(self, given: Given | Iterable[Given] | None = None) -> None:
         single = given is None or isinstance(given, str | Path | Mapping)
@@ -62,9 +58,8 @@ class LawBook:
         sources, recorded, record = state
         self.__init__(sources)  # type: ignore[misc]
         if self.note(record):
-            raise UdecError(
-                34, "a file of laws has changed since the model was pickled", "use the former file"
-            )
+            detail = "a file of laws has changed since the model was pickled"
+            raise UdecError(34, detail, "use the former file")
         self.recorded = recorded
 
     def __deepcopy__(self, _: Any) -> LawBook:
@@ -78,11 +73,11 @@ class LawBook:
         return [n for n in NUMBERS if f"cl{n}" in self.given]
 
     def record(self) -> Record:
-        """What a restart file says of the laws."""
+        """The laws for a restart file."""
         return self.recorded | {name: (law.origin, law.digest) for name, law in self.given.items()}
 
     def note(self, recorded: Mapping[str, tuple[str, str]]) -> list[str]:
-        """Take note of the laws that a state was made with. Returns a warning for each that has changed."""
+        """Store the laws of a restart file. Returns a warning for each that has changed since."""
         self.recorded = dict(recorded)
         return [
             f"{name} of {self.given[name].origin} differs from {name} of {printable(origin)}, "
@@ -94,8 +89,7 @@ class LawBook:
     def bind(self, array: MainArray) -> Bound:
         """The laws and materials for a CYCLE of the model in `array`; see `pack`.
 
-        Error 9 if a constitutive number is in use for which there is no law, or not the one it was used with.
-        A law that a restart file names is asked for first: it is known what is to be given.
+        Error 9 if a constitutive number in use has no law, or not the law of the restart file.
         """
         user = np.zeros((2, NCONS + 1), np.int64)
         numbers_in_use(array.h, user)
@@ -105,21 +99,19 @@ class LawBook:
             for n in NUMBERS
             if user[where, n]
         ]
+        # laws of the restart file first: their error names the file that is missing
         for law, n, group in sorted(wanted, key=lambda one: one[0] not in self.recorded):
             self._demand(array, n, law, group)
         laws = self.pack(array)
         own = [n for n in range(FIRST, NCONS + 1) if n > LAST or f"clj{n}" in self.given]
         followed = user[AT_JOINTS, own].any()
         for one in self.given.values():
-            one.noted[:] = np.nan
+            one.failed_at[:] = np.nan
         own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
         return Bound(laws if soft(array) else None, laws if followed else None, self, own_blocks)
 
     def pack(self, array: MainArray) -> Laws:
-        """The laws as kernels take them, with the materials of `array` as they are now.
-
-        They are valid as long as this object lives, and until the next call.
-        """
+        """The laws with the present materials of `array`, for kernels; valid until the next call."""
         rows = _materials(array)
         given = [self.given.get(name) for name in RESULTS]
         if mode.python:
@@ -128,7 +120,7 @@ class LawBook:
         return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
 
     def _demand(self, array: MainArray, n: int, law: str, group: int) -> None:
-        """Error 9 if block or contact `group`, of number `n`, should follow `law` and cannot."""
+        """Error 9 if `law`, which block or contact `group` of number `n` follows, is missing."""
         if law in self.given:
             return
         who = f"{'contact' if iget(array.h, group, HEAD) == g.MCON else 'block'}@{group}"
@@ -154,5 +146,5 @@ class LawBook:
 
 
 def _materials(array: MainArray) -> NDArray[np.float64]:
-    """One row a material: what its Material holds."""
+    """The fields of Material, one row for each material."""
     return np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)
