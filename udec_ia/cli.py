@@ -143,7 +143,7 @@ def _saved(interrupt: BaseException | None) -> str:
 
 
 def _last_of_output() -> None:
-    """Write what has been printed; if it cannot be, drop it, or Python would try once more at its end."""
+    """Flush standard output, or drop it: Python would try again at its end."""
     try:
         sys.stdout.flush()
     except OSError:

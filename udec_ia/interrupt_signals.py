@@ -37,7 +37,7 @@ def terminate(number: int, frame: Any) -> None:
 
 
 class _Waiting:
-    """What all holds of the process share.
+    """State that all holds of the process share.
 
     depth: open holds. passing: signals do not wait all the same. firm: even the second one
     waits. former: the handlers that `_arrived` replaces. report_lost: the hook that `_lost` replaces.
@@ -58,13 +58,13 @@ class _Waiting:
         return isinstance(error, KeyboardInterrupt) or (error is not None and error is self.raised)
 
     def ended(self, error: object) -> None:
-        """Something ends by `error`: if a signal has done that, it is not handed on again."""
+        """Record that `error` ends something: if it comes from a signal, this is not handed on again."""
         if self.has_raised(error):
             self.signals.clear()
             self.raised = None
 
     def turned_into(self, error: BaseException) -> BaseException | None:
-        """What a signal has raised and a library has made `error` of, or None."""
+        """The exception of a signal that a library has turned into `error`, or None."""
         turned = self.signals and not self.has_raised(error)
         return self.raised if turned else None
 
@@ -132,7 +132,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
 
 
 def poll() -> None:
-    """Let through what is waiting: here an interrupt does no harm."""
+    """Hand on a waiting signal: here an interrupt does no harm."""
     if _waiting.signals and current_thread() is main_thread():
         number = _waiting.signals[0]
         _waiting.signals.clear()
@@ -141,7 +141,7 @@ def poll() -> None:
 
 
 def dealt_with(error: BaseException) -> None:
-    """If a signal has raised `error`, that is all: it is not handed on again."""
+    """Record that `error` was handled: if it comes from a signal, this is not handed on again."""
     _waiting.ended(error)
 
 

@@ -15,13 +15,13 @@ MESSAGE = 2000  # characters of a whole message, which may contain paths of the 
 
 
 def printable(text: str, limit: int = NAME) -> str:
-    """The first `limit` characters of `text`, each of which takes its place on a line."""
+    """The first `limit` characters of `text`, on one line."""
     cut = text if len(text) <= limit else f"{text[:limit]}..."
     return _escaped(cut)
 
 
 def visible(text: str) -> str:
-    """All lines of `text`, in which what is not plainly visible is an escape."""
+    """All lines of `text`, with escapes for characters that are not visible."""
     return "\n".join(map(_escaped, text.split("\n")))
 
 
@@ -32,7 +32,7 @@ def _escaped(line: str) -> str:
 
 
 def folded(text: str) -> str:
-    """`text`, with lines that are no wider than a terminal, unless a word is."""
+    """`text` folded to the width of a terminal."""
     return "\n".join(_folded(line) for line in text.split("\n"))
 
 

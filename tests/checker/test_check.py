@@ -55,7 +55,7 @@ def test_sound_maps_have_no_violations(name: str) -> None:
     [
         ("JPHASE", 9, "JPHASE is 9, not 0 to 4"),
         ("NSPOIL", 1461, "NSPOIL is 1461, which is not the number of an error"),
-        ("MTOP", 5, "MFREE and MTOP do not fit an array of"),
+        ("MTOP", 5, "MTOP is 5, but the main array has"),
         ("DTOL", 0.7, "tolerances do not follow from the rounding length, 0.7"),
         ("CTOL", 0.0, "tolerances do not follow from the rounding length"),
     ],

@@ -28,6 +28,6 @@ def test_what_faces_away_from_an_arc_stands_at_its_nearer_end(turn: float) -> No
     assert len(right) == 2
     one = np.zeros(1, np.int64)
     touch = Touches(one, one + g.CORNER_EDGE, right[:1], right[1:], one * 0.0, o.p[right[:1]], one * 0.0)
-    (along,) = place(o, touch, 0).along
+    (along,) = place(o, touch, 0)[3]
     (k,) = touch.i
     assert along == pytest.approx(end_of(o, k) + o.r[k] * np.pi / 2)

@@ -219,6 +219,10 @@ def test_damaged_lists_are_not_followed() -> None:
     block = int(m.table("block")["address"][0])
     puti(m.array.h, block, g.KB, block)
     assert used(m).keys() >= {"blocks and contacts"}
+    assert vain(m) == vain(scene())  # nothing follows the list of blocks
+    m.history(10, "unbalanced")
+    history = int(m.table("history")["address"][0])
+    puti(m.array.h, history, g.KH, history)
     listing = facilities_without_effect(m.array)
     assert "damaged" in listing.said[0]
     assert not [*listing.rows]

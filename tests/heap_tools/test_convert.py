@@ -346,14 +346,11 @@ def test_integers_that_do_not_fit() -> None:
 def test_reals_that_do_not_fit() -> None:
     array = base().copy()
     corner = int(table(array, "corner")["address"][5])
-    block = iget(array.h, corner, g.KNB)
     array.h.cr[g.PAR1 + 2] = -1e300
     with pytest.raises(UdecError, match=r"PAR1\(3\) is -1e\+300\n32-bit reals hold numbers up to 3.4e\+38"):
         convert(array, scheme("i32r32"))
     putr(array.h, corner, g.KYDP, 1e39)
-    with pytest.raises(
-        UdecError, match=rf"KYDP of corner@{corner} of block@{block} is 1e\+39, the first of 2 numbers"
-    ):
+    with pytest.raises(UdecError, match=rf"KYDP of corner@{corner} is 1e\+39, the first of 2 numbers"):
         convert(array, scheme("i32r32"))
     putr(array.h, corner, g.KYDP, 3.4028235677973366e38)  # just rounds up to infinity
     with pytest.raises(UdecError, match="the first of 2"):

@@ -118,7 +118,7 @@ def test_walks(scene: Model) -> None:
             assert addresses("KG", points[0]) == points
     for domain in groups(h, "domain"):
         assert addresses("domain", domain) == [item for item, _ in loop(h, domain)]
-    with pytest.raises(ValueError, match="no list KXD: there are block, contact"):
+    with pytest.raises(ValueError, match="no list KXD from 1: there are block, contact"):
         walk(atlas, "KXD", 1)
     with pytest.raises(ValueError, match="is corner@"):
         walk(atlas, "block", int(scene.table("corner")["address"][0]))
@@ -138,7 +138,7 @@ def test_a_field_beside_each_group(scene: Model) -> None:
     (first, *_) = walk(atlas, "KZ", int(zone["address"]), "KZG(2)").rows
     assert first[3] == zone["KZG"][1]
     for field, says in (
-        ("KZG", "it is KZG(1) to KZG(3)"),
+        ("KZG", "did you mean KZG(1) or KZG(2) or KZG(3)"),
         ("KXPP", "did you mean KXP"),
         ("qqq", "no group has"),
     ):
@@ -199,7 +199,7 @@ def test_fragmentation() -> None:
         lose(h, one + k * size, g.NVCR)
     said = junk(Atlas(h)).said
     assert said[2] == f"junk: {3 * size} words, 50.0% of those, in 1 size"
-    assert said[3] == f"fragmentation: 2 runs, 33.3% of the junk outside the largest, of {2 * size} words"
+    assert said[3] == f"the junk lies in 2 runs, the longest of {2 * size} words"
     assert said[4].startswith(f"not linked: {3 * size} words, 50.0% of those")
     assert junk(Atlas(Model().array.h)).said[-1] == "junk: none"
 

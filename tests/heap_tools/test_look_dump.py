@@ -173,7 +173,7 @@ def test_codes_have_their_names() -> None:
     text = next(field.text for field in read_table().group("block").fields if field.name == "KBFIX")
     told = [row[5] for block in blocks[:5] for row in what(layout, int(block)).rows if row[2] == "KBFIX"]
     given = ["GIVEN_X: its x velocity is given", "GIVEN_Y: its y velocity is given"]
-    wrong = f"not allowed, 0 to 2, 4 or 6: {text}"
+    wrong = f"not allowed, 0 to 2 or 4 or 6: {text}"
     assert told == [text, "FIXED: fixed", given[0], ", ".join(given), wrong]
 
 

@@ -134,56 +134,56 @@ CASES = {
     "comment": Case(replaced(("| one block\n", "| a block\n"), ("# type ", "# Type "))),
     "middle": Case(
         before("KX", "KNEW real - data m ours/2 | new"),
-        ("1 field is not known here, and 0 (KNEW of block)", f"{FROM_KX} fields are elsewhere in the group"),
+        ("fields not known here, and 0: 1 (KNEW of block)", f"fields elsewhere in the group: {FROM_KX} ("),
     ),
     "end": Case(
         behind("KLB", "KNEW int 0..9 data - ours/2 | new"),
-        ("1 field is not known here, and 0 (KNEW of corner)",),
+        ("fields not known here, and 0: 1 (KNEW of corner)",),
     ),
     "pointer": Case(
         behind("KLB", "KNEW int contact data - ours/2 | new; 0 for none"),
-        ("1 field is not known here, and 0 (KNEW of corner)",),
+        ("fields not known here, and 0: 1 (KNEW of corner)",),
     ),
     "swapped": Case(
         swapped("KXD", "KYD", swapped("KMAT", "KCONS")),
-        ("4 fields are elsewhere in the group (KMAT of block, KCONS of block, KXD of block, KYD of block)",),
+        ("fields elsewhere in the group: 4 (KMAT of block, KCONS of block, KXD of block, KYD",),
     ),
     "less": Case(
         TEXT.replace(line("KPP"), "").replace("\nLAYOUT  ", "\nRETIRED  KPP  2 | pressure\nLAYOUT  "),
-        ("1 field is new and 0 (KPP of domain)", "4 fields are elsewhere in the group (KUMAX of domain,"),
+        ("fields that are new and 0: 1 (KPP of domain)", "fields elsewhere in the group: 4 (KUMAX of"),
     ),
     "kind": Case(
         NAILS,
-        ("1 field is not known here, and 0 (INAPNT)", "1 kind of group is not known here, and empty (nail)"),
+        ("fields not known here, and 0: 1 (INAPNT)", "not known here, and empty: 1 (nail)"),
     ),
     "kind less": Case(
-        TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("1 kind of group is new",)
+        TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("kinds of group that are new: 1",)
     ),
-    "codes": Case(CODES, ("7 codes are under another number (GIVEN_X",), NUMBERS),
+    "codes": Case(CODES, ("codes under another number: 7 (GIVEN_X",), NUMBERS),
     "codes before flags": Case(
         CODES.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX"),
-        ("7 codes are under another number (GIVEN_X",),
+        ("codes under another number: 7 (GIVEN_X",),
         NUMBERS,
     ),
     "heads": Case(
         replaced(("HEAD  MCOR   4", "HEAD  MCOR   14"), ("HEAD  MCON   5", "HEAD  MCON   4")),
-        ("2 codes are under another number (MCOR, MCON)",),
+        ("codes under another number: 2 (MCOR, MCON)",),
     ),
     "kinds in order": Case(
         TEXT.replace(group("corner"), "").replace(group("domain"), group("domain") + group("corner"))
     ),
     "common": Case(
         swapped("NCYC", "TIME", before("NCYC", "LNEW  int  0..1  data  -  ours/2 | new")),
-        ("1 field is not known here, and 0 (LNEW)",),
+        ("fields not known here, and 0: 1 (LNEW)",),
     ),
-    "common less": Case(TEXT.replace(line("LSHORT"), ""), ("1 field is new and 0 (LSHORT)",)),
+    "common less": Case(TEXT.replace(line("LSHORT"), ""), ("fields that are new and 0: 1 (LSHORT)",)),
     "reals of a kind": Case(replaced(("ESTOR   double", "ESTOR   real  "))),
     "all at once": Case(
         swapped("KUFX", "KUVY", CODES)
         .replace(line("KX"), "KNEW real*3 - data m ours/2 | new\n" + line("KX"))
         .replace(line("KHG"), "KHNEW int - data - ours/2 | new\n" + line("KHG"))
         .replace(line("TIME"), "TNEW double - data s ours/2 | new\n" + line("TIME")),
-        ("3 fields are not known here, and 0 (TNEW, KNEW of block, KHNEW of history)",),
+        ("fields not known here, and 0: 3 (TNEW, KNEW of block, KHNEW of history)",),
         NUMBERS,
     ),
 }  # fmt: skip

@@ -1,6 +1,6 @@
 """Invariant 6: what belongs together names each other, and belongs to the same block.
 
-    corner -> grid-point and grid-point -> corner are mutual
+    links between corners and grid-points are mutual
     the corners and grid-points that a group names are those of its own block
     every corner of a block with zones has a grid-point, and no other has; a point of an edge is not rounded
     the zones of a block fill it side to side: every side of a zone is that of one other zone, the other way
@@ -11,8 +11,6 @@ outline, and if none is turned over (invariant 7) there is neither gap nor overl
 """
 
 from __future__ import annotations
-
-from functools import cache
 
 import numpy as np
 
@@ -25,6 +23,13 @@ KGP, *_ = names("corner", "backlink")
 KCOR, *_ = names("gridpoint", "backlink")
 KZG, *_ = names("zone", "triple")
 KFMIX = "KFMIX"
+MUTUAL = [  # kind and field, the kind that it leads to, and the field that leads back
+    (group.name, field.name, str(field.target), back.name)
+    for group in TABLE.groups
+    for field in group.fields
+    for back in (TABLE.group(str(field.target)).fields if field.role == "backlink" else ())
+    if back.role == "backlink" and back.target == group.name
+]
 
 MASS_SHARE = 1e-3  # by which sums of masses may differ, for rounding in 32 bits
 
@@ -40,34 +45,13 @@ def check_members(state: State) -> None:
 
 def _check_mutual(state: State) -> None:
     """Links back and forth between groups of two kinds."""
-    for kind, addresses in state.address.items():
-        for name, target, back in _mutual(kind) if len(addresses) else ():
-            values = state.column(kind, name)
-            row = state.rows(target, values)
-            answer = np.append(state.column(target, back), 0)[row]
-            for k in np.flatnonzero((row >= 0) & (answer != addresses)):
-                text = f"{name} of {kind}@{addresses[k]} is {values[k]}"
-                state.report(6, f"{text}, but {back} of {target}@{values[k]} is {answer[k]}")
-
-
-@cache
-def _mutual(kind: str) -> list[tuple[str, str, str]]:
-    """Fields of `kind` that lead to groups of another kind, that kind, and its field that leads back.
-
-    Of several between the same two kinds the first answers the first, and so on.
-    """
-    targets = dict.fromkeys(field.target for field in TABLE.group(kind).fields if field.role == "backlink")
-    return [
-        (name, target, back)
-        for target in targets
-        if target is not None
-        for name, back in zip(_backlinks(kind, target), _backlinks(target, kind), strict=False)
-    ]
-
-
-def _backlinks(kind: str, target: str) -> list[str]:
-    fields = TABLE.group(kind).fields
-    return [field.name for field in fields if field.role == "backlink" and field.target == target]
+    for kind, name, target, back in MUTUAL:
+        addresses, values = state.address[kind], state.column(kind, name)
+        row = state.rows(target, values)
+        answer = np.append(state.column(target, back), 0)[row]
+        for k in np.flatnonzero((row >= 0) & (answer != addresses)):
+            text = f"{name} of {kind}@{addresses[k]} is {values[k]}"
+            state.report(6, f"{text}, but {back} of {target}@{values[k]} is {answer[k]}")
 
 
 def block_of(state: State, kind: str) -> Numbers | None:
@@ -102,11 +86,12 @@ def _check_counts(state: State) -> None:
     """The numbers of grid-points and zones that each block with zones says it has."""
     rows = state.rows("block", state.owner["fdef"])
     for name, kind in COUNTS.items():
-        count = state.column("fdef", name)
-        there = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
-        for k in np.flatnonzero(count != there[rows]):
-            text = f"{name} of fdef@{state.address['fdef'][k]} is {count[k]}"
-            state.report(5, f"{text}, but counting gives {there[rows[k]]}")
+        counts = state.column("fdef", name)
+        of_blocks = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
+        there = of_blocks[rows]
+        for k in np.flatnonzero(counts != there):
+            text = f"{name} of fdef@{state.address['fdef'][k]} is {counts[k]}"
+            state.report(5, f"{text}, but counting gives {there[k]}")
 
 
 def zoned(state: State) -> Numbers:
@@ -115,28 +100,20 @@ def zoned(state: State) -> Numbers:
 
 
 def _check_zoned(state: State) -> None:
-    points = state.column("corner", KGP)
-    with_zones = np.isin(state.owner["corner"], zoned(state))
-    state.report_rows(
-        6,
-        "corner",
-        KGP,
-        points,
-        (points != 0) != with_zones,
-        lambda k: f"but block@{state.owner['corner'][k]} has {'' if with_zones[k] else 'no '}zones",
-    )
+    owner = state.owner["corner"]
+    with_zones = np.isin(owner, zoned(state))
+
+    def has(k: int) -> str:
+        return f"but block@{owner[k]} has {'' if with_zones[k] else 'no '}zones"
+
+    state.report_rows(6, "corner", KGP, (state.column("corner", KGP) != 0) != with_zones, has)
     marked, at = state.column("gridpoint", "KGEDGE") == 1, state.column("gridpoint", KCOR)
     radius = np.append(state.column("corner", "KRAD"), 0)[state.rows("corner", at)]
-    state.report_rows(
-        6,
-        "gridpoint",
-        "KGEDGE",
-        marked.astype(int),
-        marked & ((at == 0) | (radius != 0)),
-        lambda k: (
-            f"but it stands at corner@{at[k]}, which is rounded" if at[k] else "but it is inside its block"
-        ),
-    )
+
+    def stands(k: int) -> str:
+        return f"but it stands at corner@{at[k]}, which is rounded" if at[k] else "but it is inside its block"
+
+    state.report_rows(6, "gridpoint", "KGEDGE", marked & ((at == 0) | (radius != 0)), stands)
 
 
 def _check_cover(state: State) -> None:
@@ -154,25 +131,18 @@ def _check_cover(state: State) -> None:
     order = np.argsort(side, kind="stable")
     for k in np.flatnonzero(side[order[1:]] == side[order[:-1]]):
         one, two = order[k], order[k + 1]
-        state.report(
-            6,
-            f"zone@{zones[zone[one]]} and zone@{zones[zone[two]]} lie on the same side of the "
-            f"line from gridpoint@{points[start[one]]} to gridpoint@{points[end[one]]}",
-        )
+        line = f"the line from gridpoint@{points[start[one]]} to gridpoint@{points[end[one]]}"
+        state.report(6, f"zone@{zones[zone[one]]} and zone@{zones[zone[two]]} lie on the same side of {line}")
     outline, corner = _outline(state)
     for k in np.flatnonzero(~np.isin(outline, side)):
         state.report(6, f"no zone stands on the edge that ends at corner@{corner[k]}")
-    inner = np.isin(end * n + start, side)
-    for k in np.flatnonzero(~inner & ~np.isin(side, outline)):
-        state.report(
-            6,
-            f"zone@{zones[zone[k]]} has no neighbour beyond its side from gridpoint@{points[start[k]]} to "
-            f"gridpoint@{points[end[k]]}, which is no edge of the block",
-        )
-    alone = np.ones(n, bool)
+    for k in np.flatnonzero(~np.isin(end * n + start, side) & ~np.isin(side, outline)):
+        line = f"from gridpoint@{points[start[k]]} to gridpoint@{points[end[k]]}, which is no edge"
+        state.report(6, f"zone@{zones[zone[k]]} has no neighbour beyond its side {line} of the block")
+    alone = np.isin(state.owner["gridpoint"], state.rings.block)
     alone[start] = False
-    for k in np.flatnonzero(alone & np.isin(state.owner["gridpoint"], state.rings.block)):
-        state.report(6, f"gridpoint@{points[k]} belongs to no zone")
+    for point in points[alone]:
+        state.report(6, f"gridpoint@{point} belongs to no zone")
     _check_pairs(state)
 
 
@@ -220,7 +190,7 @@ def _check_masses(state: State, kind: str, field: str, due: Numbers, here: Numbe
     """The masses of the groups `here` are those that their zones give them."""
     mass = state.column(kind, field)
     wrong = here & (np.abs(mass - due) > MASS_SHARE * np.maximum(np.abs(due), np.abs(mass)))
-    state.report_rows(7, kind, field, mass, wrong, lambda k: f"but its zones have the mass {due[k]}")
+    state.report_rows(7, kind, field, wrong, lambda k: f"but its zones have the mass {due[k]}")
 
 
 def check_zone_areas(state: State) -> None:

@@ -74,9 +74,7 @@ def outlines(state: State) -> Outlines | None:
         g=state.tolerance("GTOL"),
     )
     rounding = float(np.finfo(state.h.cr.dtype).eps) * ROUNDINGS
-    cycles = 1.0 + max(
-        state.common("MCTOT"), 0
-    )  # each rounds anew; the same way where a block spins steadily
+    cycles = 1.0 + max(state.common("MCTOT"), 0)  # each rounds anew, a block that spins steadily the same way
     MEASURE(len(block), found, rounding, float(np.sqrt(cycles) + cycles / ROUNDINGS))
     return found
 
@@ -110,10 +108,7 @@ def check_outlines(state: State, o: Outlines) -> None:
 
 
 def _check_inertia(state: State, o: Outlines, rows: Numbers, area: Numbers, far: Numbers) -> None:
-    """Mass and moment of inertia of a block without zones are those of one density.
-
-    Which density is not known: PROPERTY may have changed it since the mass was calculated.
-    """
+    """Mass and moment of inertia of a block without zones are those of one density, whatever it is."""
     centroid = np.column_stack([state.column("block", name)[rows] for name in ("KX", "KY")])
     here = o.p - centroid[o.owner]
     last = here[o.before]

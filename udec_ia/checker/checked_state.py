@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.untrusted_lists import STRETCH, rows_of
 from udec_ia.layout import offsets as g
 from udec_ia.reader.block_rings import Boundaries, one_before
 from udec_ia.reader.field_reading import HOSTS, INDEX, KIND_CODE, LISTED, TABLE, Numbers, names
@@ -76,8 +74,7 @@ def corner_before(rings: Rings) -> Numbers:
     return np.asarray(corner[one_before(rings.owner[corner])])
 
 
-ROWS_OF = InterpretWhenSmall(rows_of, 1e6)  # addresses
-
+STRETCH = 256  # places in which groups are counted by a byte
 LOST = "are in no group"  # ends the message on words that no list leads to
 
 
@@ -121,14 +118,12 @@ class State(Lists):
         self.found.append(Violation(invariant, message))
 
     def report_rows(
-        self, invariant: int, kind: str, name: str, values: Numbers, wrong: Numbers, why: Callable[[int], str]
+        self, invariant: int, kind: str, name: str, wrong: Numbers, why: Callable[[int], str]
     ) -> None:
-        """Add a violation for each group of `kind` whose value of the field `name` is wrong.
-
-        values, wrong: of all groups. why: gives the end of the message for a row.
-        """
+        """Add a violation for each group of `kind` of which the field `name` is wrong. why: what, by row."""
+        addresses, values = self.address[kind], self.column(kind, name)
         for k in np.flatnonzero(wrong).tolist():
-            self.report(invariant, f"{name} of {kind}@{self.address[kind][k]} is {values[k]}, {why(k)}")
+            self.report(invariant, f"{name} of {kind}@{addresses[k]} is {values[k]}, {why(k)}")
 
     def astray(self, source: str, iad: int, kind: str) -> None:
         """Nothing: all pointers that lead astray are reported together."""
@@ -159,10 +154,12 @@ class State(Lists):
 
     def rows(self, kind: str, addresses: Numbers) -> Numbers:
         """Row of each address among the groups of `kind` in use; -1 where it is no such group."""
-        at, found = addresses.ravel(), np.empty(addresses.size, INDEX)
-        before, row, code = self._before[kind], self._row[kind], KIND_CODE[kind]
-        ROWS_OF(len(at), at, code, self.kind_at, self._nth_at, before, row, self._shift, found)
-        return found.reshape(addresses.shape)
+        found = np.full(addresses.shape, -1, INDEX)
+        place = self.place_or_end(addresses)
+        there = self.kind_at[place] == KIND_CODE[kind]
+        place = place[there]
+        found[there] = self._row[kind][self._before[kind][place // STRETCH] + self._nth_at[place]]
+        return found
 
     def _enter(self, kind: str, at: Numbers) -> None:
         """Groups of `kind` are in use at the addresses `at`, all different."""

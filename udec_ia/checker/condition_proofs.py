@@ -47,21 +47,13 @@ def _check_edges(state: State) -> None:
 
     BOUNDARY puts the two next to each other. FREE may take one away; SPLIT then clears the name in the other.
     """
-    bounds, corner, other = (
-        state.address["bound"],
-        *(state.column("bound", name) for name in ("KUP", "KUQ")),
-    )
+    bounds = state.address["bound"]
+    corner, other = (state.column("bound", name) for name in ("KUP", "KUQ"))
     before = np.append(state.column("corner", KR), 0)
     rows = [state.rows("corner", values) for values in (corner, other)]
     beside = (before[rows[0]] == other) | (before[rows[1]] == corner)
-    state.report_rows(
-        6,
-        "bound",
-        "KUQ",
-        other,
-        (other != 0) & ((corner == 0) | ~beside),
-        lambda k: f"but no edge leads there from {corner[k]} (KUP)",
-    )
+    wrong = (other != 0) & ((corner == 0) | ~beside)
+    state.report_rows(6, "bound", "KUQ", wrong, lambda k: f"but no edge leads there from {corner[k]} (KUP)")
     alone = ~np.isin(other * state.free + corner, corner * state.free + other)
     for one, two in (slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1)):
         lost = (corner[one] != 0) & (other[one] == 0) & (other[two] == corner[one]) & alone[two]
@@ -94,15 +86,11 @@ def _check_held(state: State) -> None:
 
 def _check_signals(state: State) -> None:
     signals, number = state.address["signal"], state.column("signal", "KTNUM")
-    first = state.column("signal", "KTP")
-    state.report_rows(
-        6,
-        "signal",
-        "KTNUM",
-        number,
-        (number != 0) != (first != 0),
-        lambda k: "but it has no points" if number[k] else "but it has points, which a sine does not have",
-    )
+
+    def why(k: int) -> str:
+        return "but it has no points" if number[k] else "but it has points, which a sine does not have"
+
+    state.report_rows(6, "signal", "KTNUM", (number != 0) != (state.column("signal", "KTP") != 0), why)
     order = np.argsort(number, kind="stable")
     for k in np.flatnonzero((number[order[1:]] == number[order[:-1]]) & (number[order[1:]] != 0)):
         one, two = order[k], order[k + 1]

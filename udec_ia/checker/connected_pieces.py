@@ -50,8 +50,7 @@ def check_pieces(state: State, o: Outlines) -> None:
 def _loops(state: State, virtual: Numbers) -> dict[int, list[list[int]]]:
     """The loops around each domain with virtual contacts when these are left out.
 
-    A loop is a list of items of the blocks' lists: a corner, or a contact in the list of the block that is
-    walked after it.
+    A loop is a list of items of the blocks' lists; a contact is in that of the block that is walked after it.
     """
     rings = state.rings
     left_out = rings.contact & np.isin(rings.row, virtual)

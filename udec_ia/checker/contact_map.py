@@ -49,7 +49,7 @@ def check_map(state: State) -> None:
 def _check_corners(state: State) -> None:
     """Every block has at least three corners."""
     rings = state.rings
-    corners = np.add.reduceat(~rings.contact, rings.first, dtype=np.int64) if len(rings.item) else rings.count
+    corners = np.bincount(rings.owner[~rings.contact], minlength=len(rings.block))
     for k in np.flatnonzero(corners < 3):
         state.report(3, f"block@{rings.block[k]} has {counted(corners[k], 'corner')}")
 
@@ -107,17 +107,10 @@ def _check_virtual(state: State) -> None:
     virtual = state.column("contact", "KCCOD") == g.VIRTUAL
     left, right = (state.column("contact", side) for side in SIDES)
     why = "but the contact is virtual"
-    state.report_rows(
-        4,
-        "contact",
-        SIDES[0],
-        left,
-        virtual & (left != right),
-        lambda k: f"{why}, and {SIDES[1]} is {right[k]}",
-    )
+    bridge = virtual & (left != right)
+    state.report_rows(4, "contact", SIDES[0], bridge, lambda k: f"{why}, and {SIDES[1]} is {right[k]}")
     for name in ("KCFN", "KCFS"):
-        force = state.column("contact", name)
-        state.report_rows(9, "contact", name, force, virtual & (force != 0), lambda _: why)
+        state.report_rows(9, "contact", name, virtual & (state.column("contact", name) != 0), lambda _: why)
 
 
 def _passages(state: State) -> Numbers:
@@ -173,24 +166,18 @@ def _check_domains(state: State, with_loop: Numbers, whole: bool) -> None:
     """Each domain knows a contact of its loop, and has one."""
     domains, contact = state.address["domain"], state.column("domain", KDLOOP)
     if not len(state.address["contact"]):
-        for k in np.flatnonzero(contact != 0):
-            state.report(4, f"{KDLOOP} of domain@{domains[k]} is {contact[k]}, but there are no contacts")
+        state.report_rows(4, "domain", KDLOOP, contact != 0, lambda _: "but there are no contacts")
         return
     row = state.rows("contact", contact)
-    beside = np.zeros(len(domains), bool)
-    for side in SIDES:
-        beside |= state.column("contact", side)[row] == domains
-    for k in np.flatnonzero((row < 0) | ~beside):
-        what = f"{KDLOOP} of domain@{domains[k]} is"
-        if row[k] < 0:
-            state.report(4, f"{what} {contact[k]}, which is no contact in use")
-        else:
-            state.report(4, f"{what} contact@{contact[k]}, which does not stand on its loop")
+    beside = [state.column("contact", side)[row] == domains for side in SIDES]
+
+    def why(k: int) -> str:
+        return "which is no contact in use" if row[k] < 0 else "a contact that does not stand on its loop"
+
+    state.report_rows(4, "domain", KDLOOP, (row < 0) | ~np.any(beside, axis=0), why)
     if whole:
-        without = np.ones(len(domains) + 1, bool)  # one more, for row -1
-        without[state.rows("domain", with_loop)] = False
-        for k in np.flatnonzero(without[:-1]):
-            state.report(4, f"no loop of contacts belongs to domain@{domains[k]}")
+        for domain in domains[~np.isin(domains, with_loop)]:
+            state.report(4, f"no loop of contacts belongs to domain@{domain}")
 
 
 def _check_counts(state: State) -> None:

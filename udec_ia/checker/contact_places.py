@@ -8,7 +8,6 @@ cycle late.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -86,41 +85,25 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
 
 
 STANDING = InterpretWhenSmall(locate_on_outlines, 2e5)  # contacts
+ON_EDGE = g.EDGE_CORNER, g.CORNER_EDGE  # codes of contacts on an edge of block KB1, and of block KB2
 DISORDERED = InterpretWhenSmall(disordered, 2e6)  # items
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where the contacts stand on one of their two blocks; arrays with one element for each contact.
+def place(o: Outlines, touch: Touches, side: int) -> Numbers:
+    """Where all contacts stand on side 0 (block KB1) or 1 (KB2): under, over, lever and along (4, n).
 
-    corner: index of the first corner after the contact. on_edge: True on the edge, False on the arc.
-    under, over: distances by which it is outside its segment, before the start and after the end; negative
-    inside. On an arc they are those of the other circle's centre; lever: what they are along the arc, as a
-    part of that, where the other circle is a large one, or else 1. along: position, clockwise from the start
-    of the edge.
-    """
-
-    corner: Numbers
-    on_edge: Numbers
-    under: Numbers
-    over: Numbers
-    lever: Numbers
-    along: Numbers
-
-
-def place(o: Outlines, touch: Touches, side: int) -> Place:
-    """The places of all contacts on side 0 (block KB1) or 1 (KB2).
-
-    On an edge it is what touches it, the other circle or an end of a blunt arc, that must stand between the
-    roundings. Of two arcs each must face the other's centre. An arc on an edge may face another way: its
-    block has been tilted. Two edges that meet in a point without a radius part the ground between them at
-    their bisector.
+    under, over: distances by which they are outside their segment, before the start and after the end;
+    negative inside. On an arc they are those of the other circle's centre; lever: what they are along the
+    arc, as a part of that, where the other circle is a large one, or else 1. along: position, clockwise
+    from the start of the edge. On an edge it is what touches it, the other circle or an end of a blunt arc,
+    that must stand between the roundings. Of two arcs each must face the other's centre. An arc on an edge
+    may face another way: its block has been tilted. Two edges that meet in a point without a radius part
+    the ground at their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
-    edge = g.EDGE_CORNER if side == 0 else g.CORNER_EDGE
     places = np.empty((len(k), 4))
-    STANDING(len(k), o, touch.code, k, other, edge, places)
-    return Place(k, touch.code == edge, *places.T)
+    STANDING(len(k), o, touch.code, k, other, ON_EDGE[side], places)
+    return places.T
 
 
 def check_places(state: State, o: Outlines, touch: Touches) -> None:
@@ -129,31 +112,31 @@ def check_places(state: State, o: Outlines, touch: Touches) -> None:
         return
     along = []
     for side in (0, 1):
-        here = place(o, touch, side)
-        _check_segment(state, o, touch, here, side)
-        along.append(here.along.copy())  # the rest takes room
+        places = place(o, touch, side)
+        _check_segment(state, o, touch, places, side)
+        along.append(places[3].copy())  # the rest takes room
     state.forget()
     _check_order(state, touch, along)
 
 
-def _check_segment(state: State, o: Outlines, touch: Touches, here: Place, side: int) -> None:
-    contacts = state.address["contact"][touch.row]
+def _check_segment(state: State, o: Outlines, touch: Touches, places: Numbers, side: int) -> None:
+    contacts, end = state.address["contact"][touch.row], (touch.i, touch.j)[side]
     block = state.column("contact", HOSTS[side])[touch.row]
     force = state.column("contact", "KCFN")[touch.row]
-    sharp = ~((o.r > 0) | o.pointed)
-    for k in np.flatnonzero(sharp[here.corner] & ~here.on_edge):
+    on_edge, sharp = touch.code == ON_EDGE[side], ~((o.r > 0) | o.pointed)
+    for k in np.flatnonzero(sharp[end] & ~on_edge):
         if touch.code[k] == g.CORNER_CORNER or (touch.overlap[k] <= 0 and force[k] == 0):
-            corner = o.corner[here.corner[k]]
-            state.report(7, f"contact@{contacts[k]} stands on the arc of corner@{corner}, which has none")
+            text = f"contact@{contacts[k]} stands on the arc of corner@{o.corner[end[k]]}"
+            state.report(7, f"{text}, which has none")
     slack = state.tolerance("GTOL") + touch.slack
-    for beyond, step, what in ((here.under, -1, "before the start"), (here.over, 1, "after the end")):
+    under, over, lever, _ = places
+    for beyond, step, what in ((under, -1, "before the start"), (over, 1, "after the end")):
         for k in np.flatnonzero(beyond > slack):
-            corner = here.corner[k] if step > 0 else o.before[here.corner[k]]
-            concave = here.on_edge[k] and o.r[corner] < 0
+            concave = on_edge[k] and o.r[end[k] if step > 0 else o.before[end[k]]] < 0
             waits = concave or _waits(state, int(touch.row[k]), side, step)
-            far = slack[k] + (o.d / here.lever[k] if waits else 0.0)
+            far = slack[k] + (o.d / lever[k] if waits else 0.0)
             if beyond[k] > far and not (concave and force[k] != 0):
-                segment = f"{'edge' if here.on_edge[k] else 'arc'} of corner@{o.corner[here.corner[k]]}"
+                segment = f"{'edge' if on_edge[k] else 'arc'} of corner@{o.corner[end[k]]}"
                 text = f"contact@{contacts[k]} stands on the {segment} of block@{block[k]}"
                 state.report(7, f"{text}, but lies {beyond[k]} {what} of it")
 

@@ -121,20 +121,14 @@ BEYOND_LINKS = 7  # the first invariant that is not of links
 
 
 def unjudged(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
-    """What `check` does not judge in the state of `array`, in sentences; [] if it judges all.
-
-    found: what `check` has found. Where links are broken, what hangs on them is left out.
-    """
+    """What `check`, which has found `found`, does not judge in the state of `array`, in sentences."""
     phase, error, cycle = (int(array.h.ci[place]) for place in (g.JPHASE, g.NSPOIL, g.MCSPOI))
     broken = any(one.invariant < BEYOND_LINKS for one in found)
     return unfinished(phase, error, cycle) + (["not judged: what depends on broken links"] if broken else [])
 
 
 def unfinished(phase: int, error: int, cycle: int) -> list[str]:
-    """What is not judged in a state that stopped before a pass, or of which an error has ended a run.
-
-    phase, error, cycle: JPHASE, NSPOIL and MCSPOI.
-    """
+    """What is not judged if JPHASE is `phase`, and `error` (NSPOIL) has ended a run in `cycle` (MCSPOI)."""
     said = []
     if phase != g.AT_BLOCKS:
         said.append(

@@ -1,7 +1,6 @@
 """Invariant 1: every word below MFREE belongs to exactly one group, in use or in the junk list.
 
-The junk list is a chain of chains, one for each size (heap/find_lose.py). Laid side by side in order of
-address, the groups in use and the junk groups must tile the heap without gap or overlap.
+The groups in use and the junk groups, laid side by side, must tile the heap without gap or overlap.
 """
 
 from __future__ import annotations
@@ -37,31 +36,25 @@ def _junk_groups(state: State) -> dict[int, int]:
     """Address and size of every junk group, as far as the junk list can be followed."""
     sizes = {layout.size for layout in state.layout.values()}
     junk: dict[int, int] = {}
-    source, first = "JUNK", state.common("JUNK")
     known: set[int] = set()
-    while first != 0:
-        size = _junk_size(state, first, sizes, source, junk)
+    waiting = [("JUNK", state.common("JUNK"), 0)]  # source and address of a link, and the size of its chain
+    while waiting:
+        source, iad, of_chain = waiting.pop()
+        size = _junk_size(state, iad, sizes, source, junk) if iad else None
         if size is None:
-            break
-        if size in known:
-            state.report(1, f"{source} leads to junk@{first}: a second chain of groups of {size} words")
-        known.add(size)
-        _junk_chain(state, first, size, sizes, junk)
-        source, first = f"the link to the next size of junk@{first}", iget(state.h, first, JSIZES)
+            continue
+        if of_chain and size != of_chain:
+            text = f"{source} leads to junk@{iad} of {size} words, in the chain of {of_chain} words"
+            state.report(1, text)
+            continue
+        if not of_chain:
+            if size in known:
+                state.report(1, f"{source} leads to junk@{iad}: a second chain of groups of {size} words")
+            known.add(size)
+            waiting.append((f"the link to the next size of junk@{iad}", iget(state.h, iad, JSIZES), 0))
+        junk[iad] = size
+        waiting.append((f"the link of junk@{iad}", iget(state.h, iad, JNEXT), size))
     return junk
-
-
-def _junk_chain(state: State, first: int, size: int, sizes: set[int], junk: dict[int, int]) -> None:
-    source, group = "the link to the first group", first
-    while group != 0:
-        here = _junk_size(state, group, sizes, source, junk)
-        if here is None:
-            return
-        if here != size:
-            state.report(1, f"{source} leads to junk@{group} of {here} words, in the chain of {size} words")
-            return
-        junk[group] = size
-        source, group = f"the link of junk@{group}", iget(state.h, group, JNEXT)
 
 
 def _junk_size(state: State, iad: int, sizes: set[int], source: str, junk: dict[int, int]) -> int | None:
@@ -118,8 +111,7 @@ def _check_tiling(state: State, junk: dict[int, int]) -> None:
 def _check_nothing_points_to_junk(state: State, junk: dict[int, int]) -> None:
     if not junk:
         return
-    start = np.sort(np.fromiter(junk, np.int64))
-    size = np.array([junk[iad] for iad in start.tolist()])
+    start, size = np.array(sorted(junk.items())).T
 
     def in_junk(values: Numbers) -> Numbers:
         group = np.searchsorted(start, values, side="right") - 1

@@ -123,10 +123,7 @@ def _tip_at(o: Outlines, point: Numbers, reach: float, width: float, hosts: tupl
 
 
 def _lies_in_third(o: Outlines, point: Numbers, depth: float, hosts: tuple[int, int]) -> bool:
-    """True if the rounded outline of a third block holds `point` and all that is nearer to it than `depth`.
-
-    That is the depth from which on the program makes no contact there (detect/third_block_in_gap.py).
-    """
+    """True if a third block holds all around `point` to `depth`: no contact is made there by the program."""
     near = np.flatnonzero(((o.low <= point) & (point <= o.high)).all(axis=1))
     thirds = near[~np.isin(near, hosts)]
     angles = np.arange(AROUND) * (2 * np.pi / AROUND)

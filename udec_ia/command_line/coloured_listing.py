@@ -1,4 +1,4 @@
-"""A listing on a terminal: the lines that a pipe gets, in colours by kind of group and folded to its width.
+"""A listing on a terminal, in colours by kind of group and folded to its width.
 
 Rows under the heading of a group have the colour of its kind, and so has a name such as corner@412. Junk is
 dim; pointers and numbers that are not allowed are red. There are no colours where NO_COLOR is set or the

@@ -86,7 +86,7 @@ def measure_costs(
 
 
 def describe_file(path: str | Path) -> Tables:
-    """What a restart file says about itself, and what its words show, if they can be read here."""
+    """The header of a restart file, and which facilities its state uses, if its words can be read."""
     from udec_ia.facilities.facilities_in_use import facilities, facilities_without_effect
     from udec_ia.reader.printed_listing import Listing, Tables
     from udec_ia.restart import info, look_into

@@ -104,26 +104,26 @@ class Timeline:
 
     # ---- recording
 
-    def begin(self, text: str, line: int, cycle: int, number: int = 0) -> None:
-        """A command begins."""
+    def begin_command(self, text: str, line: int, cycle: int, number: int = 0) -> None:
+        """Begin the span of a command."""
         self.spans.append(CommandSpan(text, line, self.now, self.now, cycle, number))
 
-    def prepared(self, array: MainArray) -> None:
-        """The run that has begun is prepared: its cycles follow."""
+    def add_preparation(self, array: MainArray) -> None:
+        """Add the preparation of the run that has begun: its cycles follow."""
         span = self.spans[-1]
         span.runs = True
         self._next(array, 1)
         span.cycle = int(array.h.ci[g.MCTOT])
 
-    def ran(self, array: MainArray, cycles: int) -> None:
-        """So many cycles more; a copy if it is time for one."""
+    def add_cycles(self, array: MainArray, cycles: int) -> None:
+        """Add cycles of the run, and a copy if it is time for one."""
         self.now += cycles
         self.spans[-1].last = self.now
         if perf_counter() - self._last_copy > max(GAP, self._cost / SHARE):
             self._keep(array)
 
-    def end(self, array: MainArray) -> None:
-        """The command has ended."""
+    def end_command(self, array: MainArray) -> None:
+        """End the span of a command."""
         self.spans[-1].ended = True
         if self.spans[-1].runs:
             self._keep(array)
@@ -146,7 +146,7 @@ class Timeline:
         self._keep(array)
 
     def _keep(self, array: MainArray) -> None:
-        """A copy of now."""
+        """Copy the present state."""
         start = perf_counter()
         if self.now in self.copies:
             self._size -= self.copies[self.now].size

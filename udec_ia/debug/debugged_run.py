@@ -101,9 +101,9 @@ class Debugger:
         """Make `event` the present, followed by `command`, if it is not "". Returns the next number."""
         array = self.timeline.at(event)
         self.timeline.forget(event)
-        done, rest = self._parted()
+        done, rest = self._split_deck()
         place = done[-1][0] if done else 0
-        inserted = [(place, self._worded(command))] if command else []
+        inserted = [(place, self._typed_statement(command))] if command else []
         self._commands = [*done, *inserted, *rest]
         lines = [line.shown for _, statement in done for line in statement.lines]
         self.model.session.return_to(array, [*self._before, *lines])
@@ -114,7 +114,7 @@ class Debugger:
         self.show(event)
         return len(done)
 
-    def _parted(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
+    def _split_deck(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
         """The commands that were obeyed, and those to come. A run that is not over is in both."""
         spans = self.timeline.spans
         if not spans:
@@ -133,7 +133,7 @@ class Debugger:
             done[-1] = place, cycle_statement(whole, last.done)
         return done, rest
 
-    def _worded(self, command: str) -> Statement:
+    def _typed_statement(self, command: str) -> Statement:
         """A command that is typed after the last one of the deck that was obeyed, at the place of that."""
         spans = self.timeline.spans
         first = self._commands[spans[-1].number if spans else 0][1].tokens[0].line
@@ -146,18 +146,18 @@ class Debugger:
             self.stop([f"line {line.number} comes next"])
         elif self.goal is not None and timeline.now >= self.goal:
             self.stop([])
-        timeline.begin(line.shown.strip(), line.number, int(self.model.array.h.ci[g.MCTOT]), number)
+        timeline.begin_command(line.shown.strip(), line.number, int(self.model.array.h.ci[g.MCTOT]), number)
         try:
             self.monitor.obey(statement)
         except UdecError as error:
-            timeline.end(self.model.array)
+            timeline.end_command(self.model.array)
             self.ended = "the deck has ended in an error"
             self.stop([str(error)])
             raise
-        timeline.end(self.model.array)
+        timeline.end_command(self.model.array)
         self._look()
 
-    def piece(self, n: int) -> int:
+    def cycles_ahead(self, n: int) -> int:
         """Cycles until the next look, of `n` to come."""
         if self.conditions:
             return 1
@@ -167,13 +167,13 @@ class Debugger:
             n = min(n, max(self.goal_cycle - int(self.model.array.h.ci[g.MCTOT]), 1))
         return min(n, self._piece)
 
-    def ran(self, cycles: int, seconds: float) -> None:
-        """`cycles` have been run in one piece."""
+    def record_cycles(self, cycles: int, seconds: float) -> None:
+        """Record the cycles of one piece of the run, and stop if a condition is met."""
         if seconds < PIECE_SECONDS:
             self._piece = 2 * max(self._piece, cycles)
         elif self._piece > 1:
             self._piece //= 2
-        self.timeline.ran(self.model.array, cycles)
+        self.timeline.add_cycles(self.model.array, cycles)
         poll()
         self._look()
 
@@ -192,7 +192,7 @@ class Debugger:
             self.stop(hits)
 
     def stop(self, reasons: Sequence[str]) -> None:
-        """Stop here and now."""
+        """Stop, and show the present."""
         self.goal = self.goal_cycle = self.goal_line = None
         self.interrupted = False
         self.show(self.timeline.now)
@@ -214,7 +214,7 @@ class Debugger:
 
     @property
     def atlas(self) -> Atlas:
-        """What the words of that state are."""
+        """The words of that state, by group and field."""
         mark = self.event, self.trace.done if self.trace else -1, self.timeline.now
         if self._atlas is None or self._atlas[0] != mark:
             self._atlas = mark, Atlas(self.array.h)
@@ -226,7 +226,7 @@ class Debugger:
         return self.trace is not None or self.event < self.timeline.now
 
     def show(self, event: int) -> None:
-        """Look at the state after `event`, which was. Raises UnreachableEvent."""
+        """Show the state after an `event` of the past or present. Raises UnreachableEvent."""
         if event != self.timeline.now:
             self._array = event, self.timeline.at(event)
         self.event, self.trace = event, None
@@ -241,7 +241,7 @@ class Debugger:
     # ---- moving about
 
     def forward(self, events: int | None) -> tuple[bool, list[str]]:
-        """Look at what comes `events` later, or at the next event where a condition is met.
+        """Show what comes `events` later, or the next event where a condition is met.
 
         True if that has not been run yet: it is, when `stopped` returns. Else what has happened.
         """
@@ -291,7 +291,7 @@ class Debugger:
             condition.begin(self.model.array)
 
     def back(self, events: int) -> None:
-        """Look at what was `events` before. Raises UnreachableEvent."""
+        """Show the state `events` before. Raises UnreachableEvent."""
         self.show(max(self.event - events, self.timeline.earliest))
 
     def back_to(self, conditions: Sequence[StopCondition]) -> str:
@@ -357,16 +357,16 @@ class _CycleWatcher(Observer):
 
     def begin(self, array: MainArray, solves: bool) -> None:
         """See Observer."""
-        self.debugger.timeline.prepared(array)
+        self.debugger.timeline.add_preparation(array)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
         """See Observer."""
         self._start = perf_counter()
-        return self.debugger.piece(n)
+        return self.debugger.cycles_ahead(n)
 
     def look(self, array: MainArray, cycles: int) -> None:
         """See Observer."""
-        self.debugger.ran(cycles, perf_counter() - self._start)
+        self.debugger.record_cycles(cycles, perf_counter() - self._start)
 
 
 def count_cycles(statement: Statement) -> int:

@@ -73,7 +73,7 @@ class Console(DebuggerCommands):
         self.asking = False
 
     def ask(self, reasons: Sequence[str]) -> None:
-        """The run has stopped: obey what is typed until it is to go on."""
+        """The run has stopped: obey commands until one continues it."""
         for line in reasons:
             self.say(line)
         self.say(self.debugger.place())

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from time import monotonic, process_time
 
 import numpy as np
 
-from udec_ia.advice.energy_monitor import EnergyMonitor
 from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.errors import UdecError
 from udec_ia.facilities.facilities_in_use import FACILITIES, REMEMBER, Facility, Scene
@@ -29,6 +29,7 @@ from udec_ia.ops.commands.change_or_delete_blocks import change_types
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.list_walks import chain
 from udec_ia.reader.printed_listing import Listing
+from udec_ia.reader.word_map import Atlas
 from udec_ia.running.history_series import Recording
 from udec_ia.running.run_cycles import cycle, prepare
 
@@ -39,53 +40,39 @@ NEVER = 1e30  # m, a displacement that nothing reaches
 class Trial:
     """A copy of a state that runs without a facility, or with all of them.
 
-    judged: its energy is monitored. words: of IA() that the facility takes. why_not: why the state cannot run
+    monitored: its energy is judged. words: of IA() that the facility takes. why_not: why the state cannot run
     without it, "" if it can. ratios: processor times of pieces, as parts of those with everything.
     """
 
     array: MainArray
     laws: LawBook
-    judged: bool = True
+    monitored: bool = True
     words: int = 0
     why_not: str = ""
     ratios: list[float] = field(default_factory=list)
 
 
-def _rigid(code: int) -> Callable[[Trial], None]:
-    def without(trial: Trial) -> None:
-        h = trial.array.h
-        change_types(
-            trial.array,
-            [ib for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if iget(h, ib, HEAD) == code],
-            g.MRIG,
-        )
-
-    return without
+def _make_rigid(code: int, trial: Trial) -> None:
+    """Make all blocks with the head code `code` rigid."""
+    h = trial.array.h
+    blocks = [ib for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if iget(h, ib, HEAD) == code]
+    change_types(trial.array, blocks, g.MRIG)
 
 
-def _put(**values: float) -> Callable[[Trial], None]:
+def _put(trial: Trial, **values: float) -> None:
     """Give variables of the common block other values."""
-
-    def without(trial: Trial) -> None:
-        h = trial.array.h
-        for name, value in values.items():
-            words = h.ci if isinstance(value, int) else h.cr
-            words[getattr(g, name)] = value
-
-    return without
+    for name, value in values.items():
+        words = trial.array.h.ci if isinstance(value, int) else trial.array.h.cr
+        words[getattr(g, name)] = value
 
 
-def _in_every(kind: str, field: str, value: int) -> Callable[[Trial], None]:
+def _put_in_all(kind: str, field: str, value: int, trial: Trial) -> None:
     """Give an integer another value in all groups of a kind."""
-
-    def without(trial: Trial) -> None:
-        for iad in Scene(trial.array).atlas.groups[kind].tolist():
-            puti(trial.array.h, iad, getattr(g, field), value)
-
-    return without
+    for iad in Atlas(trial.array.h).groups[kind].tolist():
+        puti(trial.array.h, iad, getattr(g, field), value)
 
 
-def _without_conditions(trial: Trial) -> None:
+def _lose_conditions(trial: Trial) -> None:
     h = trial.array.h
     forget_blocks(h, list(chain(h, int(h.ci[g.IBPNT]), g.KB)))
     for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
@@ -95,47 +82,44 @@ def _without_conditions(trial: Trial) -> None:
     h.ci[g.ISGPNT] = 0
 
 
-def _without_relaxations(*, damping: bool = False, scaled: bool = False) -> Callable[[Trial], None]:
-    def without(trial: Trial) -> None:
-        ci = trial.array.h.ci
-        ci[g.LREST] = 0 if damping else ci[g.LREST]
-        ci[g.LSCALE] = 0 if scaled else ci[g.LSCALE]
-        if not (ci[g.LSCALE] or ci[g.LREST] in REMEMBER):
-            lose_relaxations(trial.array.h)
-
-    return without
+def _lose_relaxations(trial: Trial, **settings: int) -> None:
+    """Switch off what needs relaxations (LREST, LSCALE), and give them back if nothing else needs them."""
+    _put(trial, **settings)
+    ci = trial.array.h.ci
+    if not (ci[g.LSCALE] or ci[g.LREST] in REMEMBER):
+        lose_relaxations(trial.array.h)
 
 
-def _without_histories(trial: Trial) -> None:
+def _lose_histories(trial: Trial) -> None:
     h = trial.array.h
     for ih in chain(h, int(h.ci[g.IHPNT]), g.KH):
         lose(h, ih, g.NVHI)
     h.ci[g.IHPNT] = 0
 
 
-def _without_monitor(trial: Trial) -> None:
-    trial.judged = False
+def _stop_monitoring(trial: Trial) -> None:
+    trial.monitored = False
 
 
 WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "blocks and contacts": "nothing would be left to run",
-    "domain pass": _put(ETOL=NEVER, HTOL=NEVER),
-    "short edges": _put(LSHORT=0),
-    "SDEF": _rigid(g.MSDEF),
-    "FDEF": _rigid(g.MFDEF),
-    "MIXED": _in_every("fdef", "KFMIX", 0),
-    "BOUNDARY": _without_conditions,
-    "joint law": _in_every("contact", "KCC", 1),
-    "block law": _in_every("block", "KCONS", 1),
-    "DAMPING MASS": _put(ALPHA=0.0, CON1=1.0, CON2=1.0),
-    "DAMPING STIFFNESS": _put(BETA=0.0),
-    "DAMPING INTERNAL": _put(ALPB=0.0, C1B=1.0, C2B=1.0),
-    "DAMPING to rest": _without_relaxations(damping=True),
-    "FRACTION SCALED": _without_relaxations(scaled=True),
-    "to rest and SCALED": _without_relaxations(damping=True, scaled=True),
-    "ENERGY": _put(LENER=0),
-    "HISTORY": _without_histories,
-    "watch of the energy": _without_monitor,
+    "domain pass": partial(_put, ETOL=NEVER, HTOL=NEVER),
+    "short edges": partial(_put, LSHORT=0),
+    "SDEF": partial(_make_rigid, g.MSDEF),
+    "FDEF": partial(_make_rigid, g.MFDEF),
+    "MIXED": partial(_put_in_all, "fdef", "KFMIX", 0),
+    "BOUNDARY": _lose_conditions,
+    "joint law": partial(_put_in_all, "contact", "KCC", 1),
+    "block law": partial(_put_in_all, "block", "KCONS", 1),
+    "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),
+    "DAMPING STIFFNESS": partial(_put, BETA=0.0),
+    "DAMPING INTERNAL": partial(_put, ALPB=0.0, C1B=1.0, C2B=1.0),
+    "DAMPING to rest": partial(_lose_relaxations, LREST=0),
+    "FRACTION SCALED": partial(_lose_relaxations, LSCALE=0),
+    "to rest and SCALED": partial(_lose_relaxations, LREST=0, LSCALE=0),
+    "ENERGY": partial(_put, LENER=0),
+    "HISTORY": _lose_histories,
+    "watch of the energy": _stop_monitoring,
     "other groups": "their use is unknown",
 }
 
@@ -161,12 +145,8 @@ def costs(array: MainArray, laws: LawBook | None = None, seconds: float = SECOND
     times = _measure(whole, [trial for trial in trials if not trial.why_not], n, seconds)
     size, each = array.scheme.int_bits // 8, float(np.median(times)) / n
     rows = [_row(one, here, trial, each, size) for (one, here), trial in zip(used, trials, strict=True)]
-    said = [
-        f"a cycle takes {each * 1e9:,.0f} ns of processor time: median of {len(times)} runs of {n} cycles",
-        f"CYCLE takes {_preparing(whole.array) * 1e3:.3g} ms to prepare itself and to judge the time-step, "
-        "once after each change of the model",
-    ]
-    return Listing(said, COLUMNS, rows)
+    text = f"a cycle takes {each * 1e9:,.0f} ns of processor time: median of {len(times)} runs of {n} cycles"
+    return Listing([text], COLUMNS, rows)
 
 
 def _row(one: Facility, here: str, trial: Trial, each: float, size: int) -> tuple[object, ...]:
@@ -181,11 +161,11 @@ def _row(one: Facility, here: str, trial: Trial, each: float, size: int) -> tupl
 def _piece(trial: Trial, n: int) -> float:
     """Processor time of `n` cycles of a copy."""
     array, monitors = trial.array.copy(), RunMonitors(trial.laws)
-    if trial.judged:
+    if trial.monitored:
         monitors.energy.judge(array)
     recording = Recording(array, [], marks=monitors.chatter.marks)
     start = process_time()
-    cycle(array, n, recording=recording, observers=[monitors] if trial.judged else [], laws=trial.laws)
+    cycle(array, n, recording=recording, observers=[monitors] if trial.monitored else [], laws=trial.laws)
     return process_time() - start
 
 
@@ -225,16 +205,3 @@ def _measure(whole: Trial, trials: list[Trial], n: int, seconds: float) -> list[
             trial.ratios.append(_piece(trial, n) / times[-1])
         rounds += 1
     return times
-
-
-def _preparing(array: MainArray) -> float:
-    """Seconds of what CYCLE does before its first cycle, once after each change of the model."""
-    found = []
-    for _ in range(ROUNDS):
-        copy = array.copy()
-        copy.h.ci[g.LREADY] = 0
-        start = process_time()
-        prepare(copy)
-        EnergyMonitor().judge(copy)
-        found.append(process_time() - start)
-    return float(np.median(found))

@@ -11,6 +11,7 @@ Matched groups have one number in both heaps, from 1, by which pointers are comp
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,10 +55,7 @@ class Side:
         self._number[(addresses - 1) // self.atlas.ratio] = np.arange(first, first + len(addresses))
 
     def comparable(self, word: Word, at: Any) -> Any:
-        """What a field of the groups at (n,) says in both heaps: a number, or that of the group it leads to.
-
-        A pointer to a group that matches none is LOST, 0 is 0.
-        """
+        """What a field of groups says in both heaps: a number, or that of a group; LOST if it has none."""
         values = self.atlas.gather(word, at)
         if not word.field.target:
             return values
@@ -102,20 +100,12 @@ class Side:
 ALIKE = 0.01  # share of its size or mass by which a block may be another
 MASSES = 1e5  # steps of mass, to a factor of e, by which blocks are distinguished
 CELLS = (1e-3, 0.03, 0.5, 1.0)  # of cells that blocks are looked for in, as shares of the median size
-SHIFTS = (
-    (0.0, 0.0),
-    (0.5, 0.0),
-    (0.0, 0.5),
-    (0.5, 0.5),
-)  # of the cells: near a border of one, within another
+SHIFTS = (*product((0.0, 0.5), repeat=2),)  # of the cells: near a border of one, within another
 FAR = 2.0**30  # cells
 
 
 class Blocks(NamedTuple):
-    """Blocks in the order of their list: addresses, number of corners, size, mass, coordinates; each (n,).
-
-    rings: the corners of all, block by block, each from KP on anticlockwise.
-    """
+    """Blocks (n,) in the order of their list. rings: corners of all, block by block, from KP on by KR."""
 
     at: Any
     corners: Any
@@ -173,6 +163,7 @@ def same_shape(one: Blocks, two: Blocks, what: str = "size") -> Any:
     return (one.corners == two.corners) & near
 
 
+@np.errstate(all="ignore")
 def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
     """Rows that are matched whatever lies between them. cut: of blocks that may have another shape."""
     rows = np.arange(len(one.at)), np.arange(len(two.at))
@@ -194,17 +185,11 @@ def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
 
 def _keys(one: Blocks, two: Blocks) -> Iterator[tuple[Any, Any]]:
     """By mass, and by cells, small ones first: keys (n,) and (m,) that may belong to one block of each."""
-    both = one, two
-    with np.errstate(all="ignore"):
-        steps = [_whole(MASSES * np.log(blocks.mass)) for blocks in both]
-    yield fold((one.corners, steps[0]), (two.corners, steps[1]))
+    yield fold(*((blocks.corners, _whole(MASSES * np.log(blocks.mass))) for blocks in (one, two)))
     size = float(np.median(np.concatenate((one.size, two.size))))
-    for cell in CELLS:
-        for by_x, by_y in SHIFTS:
-            with np.errstate(all="ignore"):
-                x = [_whole(blocks.x / (cell * size) + by_x) for blocks in both]
-                y = [_whole(blocks.y / (cell * size) + by_y) for blocks in both]
-            yield fold((x[0], y[0]), (x[1], y[1]))
+    for cell, (by_x, by_y) in product(CELLS, SHIFTS):
+        step = cell * size
+        yield fold(*((_whole(at.x / step + by_x), _whole(at.y / step + by_y)) for at in (one, two)))
 
 
 def _whole(values: Any) -> Any:

@@ -10,13 +10,14 @@ import numpy as np
 
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap_tools.block_matching import Side
+from udec_ia.heap_tools.memory_use import words_of_kind
 from udec_ia.heap_tools.state_comparison import ADDRESSES, COMMON, Compared, Differing, compare
 from udec_ia.heap_tools.state_comparison import tolerance as limits
 from udec_ia.layout.code_names import spelled
 from udec_ia.printable_text import counted
 from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
 from udec_ia.reader.printed_listing import Listing, Tables
-from udec_ia.reader.word_map import KINDS, NAMES, NOTHING, TABLE, Atlas, names
+from udec_ia.reader.word_map import KINDS, NOTHING, TABLE, Atlas, names
 
 LIMIT = 20  # rows of a table, if it is not said how many
 DISTANCES = ("difference", "relative", "ulp", "unit")
@@ -41,17 +42,16 @@ def diff(
     if limit < 0:
         raise ValueError(f"{limit} rows: give 0 or more")
     found = compare(one.h, two.h, only, limits(tolerance))
+    columns = ("kind", "field", "differ", "of", *DISTANCES)
     parts = {
-        "summary": Listing(
-            _said(found, (one, two), called), ("kind", "field", "differ", "of", *DISTANCES), _by_field(found)
-        ),
+        "summary": Listing(_summary(found, (one, two), called), columns, _by_field(found)),
         "alone": _alone(found, limit, called),
         "differences": _greatest(found, limit),
     }
     return Tables(parts, int(found.differ))
 
 
-def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -> list[str]:
+def _summary(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -> list[str]:
     """How much differs, in sentences."""
     numbers = sum(len(one.one) for one in found.fields)
     differ = f"{numbers} numbers differ" if numbers > 1 else f"{numbers or 'no'} number differs"
@@ -66,10 +66,8 @@ def _said(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]) -
     if bits[0] != bits[1]:
         said.append(f"reals of {bits[0]} and {bits[1]} bits are compared in {min(bits)}")
     for side, name in zip(found.matching.sides, called, strict=True):
-        said += [
-            f"left out: {counted(words, 'word')} of {name} that nothing leads to"
-            for words in _lost(side.atlas)
-        ]
+        if lost := words_of_kind(side.atlas, NOTHING):
+            said.append(f"left out: {counted(lost, 'word')} of {name} that nothing leads to")
     return said
 
 
@@ -79,17 +77,6 @@ def _compared(found: Compared) -> str:
     matched = sum(len(at) for kind, (at, _) in pairs.items() if kind in found.kinds)
     groups = [f"{counted(matched, 'group')} of both"] if found.kinds - {COMMON} else []
     return " and ".join([*groups, *(["the common block"] if COMMON in found.kinds else [])])
-
-
-def _lost(atlas: Atlas) -> list[int]:
-    """How many words nothing leads to; [] if there are none."""
-    used = sum(len(at) * atlas.layout[kind].size for kind, at in atlas.groups.items())
-    if used + sum(size for chain in atlas.chains for _, size in chain) == atlas.free - 1:
-        return []
-    first, last, kind = atlas.bounds
-    lost = kind == NAMES.index(NOTHING)
-    words = int((last - first + 1)[lost].sum())
-    return [words] if words else []
 
 
 def _by_field(found: Compared) -> list[tuple[Any, ...]]:
@@ -102,27 +89,22 @@ def _by_field(found: Compared) -> list[tuple[Any, ...]]:
 
 
 def _distances(one: Differing, row: int) -> tuple[Any, ...]:
+    """The columns DISTANCES, of three digits each."""
     if not one.field.real:
         return "", "", "", ""
-    distances = one.distances
-    far = [_short(float(column[row])) for column in (distances.absolute, distances.relative, distances.ulps)]
-    return far[0], far[1], int(far[2]) if far[2] < 1e6 else far[2], one.field.unit.strip("-")
-
-
-def _short(value: float) -> float:
-    """Three digits of a difference."""
-    return float(f"{value:.3g}")
+    columns = one.distances.absolute, one.distances.relative, one.distances.ulps
+    absolute, relative, ulps = (float(f"{column[row]:.3g}") for column in columns)
+    return absolute, relative, int(ulps) if ulps < 1e6 else ulps, one.field.unit.strip("-")
 
 
 def _alone(found: Compared, limit: int, called: Sequence[str]) -> Listing:
     """Groups that only one state has."""
     rows: list[tuple[Any, ...]] = []
-    count = 0
-    for side, k in zip(found.matching.sides, (0, 1), strict=True):
+    for k, side in enumerate(found.matching.sides):
         for alone in found.alone.values():
-            count += len(alone[k])
             shown = alone[k][: max(limit - len(rows), 0)]
-            rows += [(called[k], name) for name in names(side.atlas, shown)] if len(shown) else []
+            rows += [(called[k], name) for name in names(side.atlas, shown)]
+    count = sum(len(at) for both in found.alone.values() for at in both)
     said = [f"the first {limit} of {count} groups that only one has:"] if count > limit else []
     return Listing(said, ("only in", "group"), rows)
 
@@ -140,10 +122,7 @@ def _greatest(found: Compared, limit: int) -> Listing:
 def _first(one: Differing, limit: int) -> list[tuple[float, int]]:
     """The greatest differences of a field, and their rows; of equal ones the first."""
     shares = np.nan_to_num(one.share, nan=FIRST) if one.field.real else np.full(len(one.one), FIRST)
-    rows = np.arange(len(shares))
-    if 0 < limit < len(shares):
-        rows = np.flatnonzero(shares >= np.partition(shares, -limit)[-limit])
-    order = rows[np.argsort(-shares[rows], kind="stable")][:limit]
+    order = np.argsort(-shares, kind="stable")[:limit]
     return list(zip(shares[order].tolist(), order.tolist(), strict=True))
 
 
@@ -169,9 +148,6 @@ def _shown(side: Side, one: Differing, value: int | float) -> int | float | str:
     return "+".join(code.name for code in codes) or value
 
 
-COLUMNS = ("address", "what it is", "first", "second")
-
-
 def raw(one: MainArray, two: MainArray, limit: int = LIMIT, called: Sequence[str] = CALLED) -> Listing:
     """The words of IA() in use that differ, and the variables of the common block; status 1 if any does.
 
@@ -185,20 +161,18 @@ def raw(one: MainArray, two: MainArray, limit: int = LIMIT, called: Sequence[str
     at = np.flatnonzero(one.h.ia[:used] != two.h.ia[:used]) + 1
     rows = list(_common(one, two))
     count = len(at) + len(rows)
-    verb = "differs" if len(at) == 1 else "differ"
-    said = [
-        f"{called[0]} and {called[1]}: {len(at)} of {used} words {verb}, {counted(len(rows), 'variable')}"
-    ]
+    words = f"{len(at)} of {used} words {'differs' if len(at) == 1 else 'differ'}"
+    said = [f"{called[0]} and {called[1]}: {words}, {counted(len(rows), 'variable')}"]
     for atlas, name in zip(atlases, called, strict=True):
         if atlas.free - 1 > used:
             said.append(f"{name} has {counted(atlas.free - 1 - used, 'more word')} in use")
     if count > limit:
         said.append(f"the first {limit} of {count}:")
     for address in at[: max(limit - len(rows), 0)].tolist():
-        what = [_what(atlas, address) for atlas in atlases]
-        what_it_is = " / ".join(dict.fromkeys(what))
-        rows.append((address, what_it_is, *(int(array.h.ia[address - 1]) for array in (one, two))))
-    return Listing(said, COLUMNS, rows[:limit], int(count > 0 or atlases[0].free != atlases[1].free))
+        places = dict.fromkeys(_place(atlas, address) for atlas in atlases)
+        rows.append((address, " / ".join(places), *(int(array.h.ia[address - 1]) for array in (one, two))))
+    differ = count > 0 or atlases[0].free != atlases[1].free
+    return Listing(said, ("address", "what it is", "first", "second"), rows[:limit], int(differ))
 
 
 def _common(one: MainArray, two: MainArray) -> list[tuple[Any, ...]]:
@@ -213,7 +187,7 @@ def _common(one: MainArray, two: MainArray) -> list[tuple[Any, ...]]:
     return rows
 
 
-def _what(atlas: Atlas, address: int) -> str:
+def _place(atlas: Atlas, address: int) -> str:
     """Group and field of a word."""
     span, word = atlas.word_at(address)
     return span.name + (f".{word.name}" if word else "")

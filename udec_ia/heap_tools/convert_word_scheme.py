@@ -45,10 +45,7 @@ def convert(array: MainArray, to: Scheme) -> Converted:
 
 
 def prove(made: Rewritten) -> Converted:
-    """What was made, settled in its reals, and what they have made unsound.
-
-    The state that it was made of is not needed any more, and may have been given up: it takes memory.
-    """
+    """What was made, settled in its reals, and what they have made unsound; its source may be given up."""
     array, old, junk = made.array, made.old, made.junk
     after = int(array.h.ci[g.MFREE]) - 1
     name = array.scheme.name

@@ -8,7 +8,7 @@ kind, and no group may lie in another.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -42,30 +42,18 @@ from udec_ia.heap_tools.written_state import (
 from udec_ia.layout.field_table import Field, Group, Table, lay_out
 
 
-class Misfit(NamedTuple):
-    """A number that a scheme cannot hold: the kind and address of its group, its field, and what it is."""
-
-    kind: str
-    address: int
-    field: str
-    value: int | float
-
-    def __str__(self) -> str:
-        return f"{self.field} of {self.kind}@{self.address}" if self.kind else self.field
-
-
 class Fit:
     """What has become of all numbers so far.
 
-    misfits: how many do not fit; first: the first of them, None if all do. reals: how many were written that
-    are as wide as the scheme says. rounded: how many of them are not what they were, vanished: how many of
-    these are 0 now. change: the largest relative change of the others; where: the field that has it, "" if
-    there is none.
+    misfits: how many do not fit; first: name and value of the first of them, None if all do. reals: how many
+    were written that are as wide as the scheme says. rounded: how many of them are not what they were,
+    vanished: how many of these are 0 now. change: the largest relative change of the others; where: the field
+    that has it, "" if there is none.
     """
 
     def __init__(self) -> None:
         self.misfits = 0
-        self.first: Misfit | None = None
+        self.first: tuple[str, int | float] | None = None
         self.reals = self.rounded = self.vanished = 0
         self.change, self.where = 0.0, ""
 
@@ -77,16 +65,15 @@ class Fit:
             return held
         if not field.real:
             limits = np.iinfo(to)
-            self._note((held < limits.min) | (held > limits.max), rows, field, held)
+            self._count_misfits((held < limits.min) | (held > limits.max), rows, field, held)
             return held.astype(to)
         with np.errstate(over="ignore", under="ignore"):
             narrow = held.astype(to)
         back = narrow.astype(held.dtype)
-        lost = back != held
+        lost = (back != held) & ~np.isnan(held)
         if not lost.any():
             return narrow
-        lost &= ~np.isnan(held)
-        self._note(lost & np.isinf(back), rows, field, held)
+        self._count_misfits(lost & np.isinf(back), rows, field, held)
         was, now = held[lost], back[lost]
         self.rounded += len(was)
         self.vanished += int(np.count_nonzero(now == 0))
@@ -96,50 +83,39 @@ class Fit:
             self.change, self.where = float(change.max()), _name(rows, field, int(place))
         return narrow
 
-    def _note(self, bad: Any, rows: Rows, field: Field, held: Any) -> None:
+    def _count_misfits(self, bad: Any, rows: Rows, field: Field, held: Any) -> None:
         """Numbers that do not fit."""
         if bad.any() and not self.misfits:
             place = int(np.argmax(bad))
-            row, element = divmod(place, field.count)
-            address = int(rows.at[row]) if rows.kind else 0
-            self.first = Misfit(rows.kind, address, _element(field, element), held.flat[place].item())
+            self.first = _name(rows, field, place), held.flat[place].item()
         self.misfits += int(np.count_nonzero(bad))
 
 
 def _name(rows: Rows, field: Field, place: int) -> str:
-    """An element of a field, by its place among those of all rows."""
+    """PAR1(3), or KXD of block@88: an element of a field, by its place among those of all rows."""
     row, element = divmod(place, field.count)
-    return rows.called(_element(field, element), row)
-
-
-def _element(field: Field, element: int) -> str:
-    """PAR1(3), or KXD of a field that is one number."""
-    return field.name + (f"({element + 1})" if field.count > 1 else "")
+    return rows.called(field.name + (f"({element + 1})" if field.count > 1 else ""), row)
 
 
 PIECE = 8192  # groups that are written together: they fit in the machine's caches
 
 
 def translate(state: Words, table: Table, scheme: Scheme) -> Words:
-    """The same state by `table` in words of `scheme`. Raises TranslationError.
-
-    Where groups go: place_grammar.py. Reals of fewer bits are rounded.
-    """
-    counted = state.integer("IHPNT") != 0  # a history knows a variable by its number
+    """The same state by `table` in words of `scheme`; reals may be rounded. Raises TranslationError."""
     work = Translation(state, table, scheme)
-    if scheme == state.scheme and same_words(state.table, table, counted):
-        ia, common = state.ia, work.variables()
-    else:
+    histories = state.integer("IHPNT") != 0
+    stays = scheme == state.scheme and same_words(state.table, table, histories)
+    if not stays:
         work.move()
-        ia = np.zeros(0 if work.faults else work.used, scheme.int_type)
-        common = {}
-        if not work.faults:
+    ia, common = state.ia, dict[str, Any]()
+    if not work.faults:
+        if not stays:
+            ia = np.zeros(work.used, scheme.int_type)
             work.write(ia)
-            common = work.variables()
+        common = work.variables()
     if work.fit.first:
-        work.faults.add(
-            f"{work.fit.first} is {work.fit.first.value}, too large for {scheme.name}", work.fit.misfits
-        )
+        name, value = work.fit.first
+        work.faults.add(f"{name} is {value}, too large for {scheme.name}", work.fit.misfits)
     if work.faults:
         raise TranslationError(work.faults.phrases())
     return Words(table, scheme, ia, common)
@@ -200,26 +176,23 @@ class Translation:
 
     def _groups(self, group: Group, rows: Rows) -> Any:
         """The words of groups by the new table, a row each."""
-        old, new = (lay_out(one, s.ratio) for one, s in self._both(group))
+        before = {field.name: field for field in self.state.table.group(group.name).fields}
+        old = lay_out(self.state.table.group(group.name), self.state.scheme.ratio)
         words = sliding_window_view(self.state.ia, old.size)[rows.at - 1]
         reals = words.view(self.state.scheme.real_type)
-        before = {field.name: field for field in self.state.table.group(group.name).fields}
         held = {}
         for name, field in before.items():
             first = old.offset[name] - field.real
             held[name] = (reals if field.real else words)[:, first : first + field.count]
         if group.name == HISTORY and {KIND, NUMBER} <= {*before} and self.table is not self.state.table:
             self._renumber(held, rows)
+        new = lay_out(group, self.scheme.ratio)
         words = np.zeros((len(rows), new.size), self.scheme.int_type)
         reals = words.view(self.scheme.real_type)
         for field, values in self._translated(rows, before, group.fields, held):
             first = new.offset[field.name] - field.real
             (reals if field.real else words)[:, first : first + field.count] = values
         return words
-
-    def _both(self, group: Group) -> list[tuple[Group, Scheme]]:
-        """A kind of group by the old table and by the new one, with the schemes that they are in."""
-        return [(self.state.table.group(group.name), self.state.scheme), (group, self.scheme)]
 
     def variables(self) -> dict[str, Any]:
         """The common block."""
@@ -237,31 +210,22 @@ class Translation:
         self, rows: Rows, before: dict[str, Field], fields: tuple[Field, ...], held: dict[str, Any]
     ) -> list[tuple[Field, Any]]:
         """The values of `fields`, from what the fields `before` held, by name: one row each."""
-        kind = rows.kind
         names = {field.name for field in fields}
         for name, old in before.items():
-            if name not in names and not (kind and self._is_head_of_one(kind, old)):
-                self._refuse(
-                    held[name] != 0, rows, name, held[name], f"and that field is {self._gone(name)} here"
-                )
+            only_head = old.role == "head" and len(head_codes(self.state.table, rows.kind)) == 1
+            if name not in names and not (rows.kind and only_head):  # else the kind of the group says as much
+                gone = next((one for one in self.table.retired if one.name == name), None)
+                why = f"retired since layout {gone.until} ({gone.text})" if gone else "not known"
+                self._refuse(held[name] != 0, rows, name, held[name], f"and that field is {why} here")
         found = []
         for field in fields:
-            values = np.zeros((len(rows), field.count), self._type(kind, field))
+            values = np.zeros((len(rows), field.count), self._type(rows.kind, field))
             if field.name in before:
                 self._put(values, rows, before[field.name], field, held[field.name])
             else:
                 self._begin(values, rows, field)
             found.append((field, values))
         return found
-
-    def _is_head_of_one(self, kind: str, field: Field) -> bool:
-        """True for a head code that says no more than the kind of the group does."""
-        return field.role == "head" and len(head_codes(self.state.table, kind)) == 1
-
-    def _gone(self, name: str) -> str:
-        """What is known of a field that the new table has not."""
-        old = next((one for one in self.table.retired if one.name == name), None)
-        return f"retired since layout {old.until} ({old.text})" if old else "not known"
 
     def _type(self, kind: str, field: Field) -> Any:
         """Type of the numbers of a field by the new table."""
@@ -274,9 +238,11 @@ class Translation:
         many = min(old.count, new.count) if is_alike(old, new) else 0
         self._refuse(held[:, many:] != 0, rows, old.name, held[:, many:], f"but it is {in_words(new)} here")
         held = held[:, :many]
-        if new.target is not None:
-            held = self._renewed(rows, old, new, held)
-        elif not new.real and old.name not in (KIND, NUMBER):
+        if new.target is not None and self.places is not None:
+            moved, astray = self.places.followed(held, new.target)
+            self._refuse(astray, rows, old.name, held, f"but there is no {new.target} at that address")
+            held = moved
+        elif new.target is None and not new.real and old.name not in (KIND, NUMBER):
             held = self._recoded(rows, old, new, held)
         values[:, :many] = self.fit.take(rows, new, held, values.dtype)
 
@@ -288,14 +254,6 @@ class Translation:
             values[:] = codes[0].value
         elif codes or not may_be_0(field):
             self._refuse(values == 0, rows, field.name, values, "as it is new, but must not be 0")
-
-    def _renewed(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
-        """Pointers to where the groups are now."""
-        if self.places is None:
-            return held
-        moved, astray = self.places.followed(held, str(new.target))
-        self._refuse(astray, rows, old.name, held, f"but there is no {new.target} at that address")
-        return moved
 
     def _recoded(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
         """Codes by their new numbers."""

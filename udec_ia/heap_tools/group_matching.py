@@ -1,7 +1,7 @@
 """Which group of one heap is which of the other: by its place in the map, and not by its address.
 
     block      by its place in the block list, allowing for insertions and deletions (block_matching.py)
-    corner     by its place round its block, counted from KP, else by where it lies
+    corner     by where it lies on its block, else by its place round the block, counted from KP
     extension  that of a block or a domain that matches
     gridpoint  by its place in the list of its block, as zones are; if their number has changed, by its corner
     contact    by the two corners that name its segments, else by the two blocks and one of these, else by the
@@ -12,9 +12,8 @@
     tabpoint   by its place in its signal
 
 Groups with equally many of one key on both sides match first. What is left matches if all pointers of matched
-groups that lead to the one lead to the other. A ring is turned where KP names another corner. Addresses only
-serve to follow pointers, so renumbered states and other word schemes match. Damaged heaps are matched as far
-as the census reaches.
+groups that lead to the one lead to the other. Addresses only serve to follow pointers, so renumbered states
+and other word schemes match. Damaged heaps are matched as far as the census reaches.
 """
 
 from __future__ import annotations
@@ -26,47 +25,10 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.heap_tools.block_matching import Side, blocks_of, match_blocks, same_shape
+from udec_ia.heap_tools.block_matching import Side, blocks_of, match_blocks
 from udec_ia.heap_tools.row_matching import Pairs, exclusive_pairs, fold, frequent_pairs, pairs_in_order
 from udec_ia.layout import offsets as g
 from udec_ia.reader.word_map import KINDS, TABLE, choices
-
-
-def turned(sides: Sequence[Side], rings: Pairs, many: Any, needed: Any) -> Any:
-    """The corners (n,) of the other's blocks in the order of those of the one. rings: both, from KP on.
-
-    many: corners of each block (m,). needed: how many of them must lie in one place when its ring is turned.
-    """
-    first = np.cumsum(many) - many
-    best, found = np.zeros(len(many), np.int64), needed - 1
-    places = [_places(side, at) for side, at in zip(sides, rings, strict=True)]
-    rows = np.arange(len(many))
-    turn = 0
-    while len(rows := rows[many[rows] > turn]):
-        now = _together(places, first[rows], many[rows], turn)
-        good = now > found[rows]
-        best[rows[good]], found[rows[good]] = turn, now[good]
-        rows = rows[now < many[rows]]
-        turn += 1
-    place = np.arange(len(rings[0])) - np.repeat(first, many)
-    return rings[1][np.repeat(first, many) + (place + np.repeat(best, many)) % np.repeat(many, many)]
-
-
-def _places(side: Side, at: Any) -> Any:
-    """Where the corners (n,) lie, to 32-bit reals: columns that are equal for one place (2, n)."""
-    with np.errstate(over="ignore"):
-        return np.array([side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")])
-
-
-def _together(places: Sequence[Any], first: Any, many: Any, turn: int) -> Any:
-    """How many corners of each block (m,) lie in one place, if those of the other are so many places on."""
-    starts = np.cumsum(many) - many
-    place = np.arange(int(many.sum())) - np.repeat(starts, many)
-    base = np.repeat(first, many)
-    there = base + (place + turn) % np.repeat(many, many)
-    same = (places[0][:, base + place] == places[1][:, there]).all(0)
-    return np.add.reduceat(same.astype(np.int64), starts)
-
 
 ROUNDS = 20  # of looking for what is left over, each from what the one before has found
 KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is, the best ones first
@@ -81,10 +43,7 @@ OPTIONAL = ("signal", "bound", "history", "relax")  # kinds whose keys may be 0
 
 
 class Matching:
-    """The groups of two heaps, matched. sides: both.
-
-    pairs: for each kind the addresses (n,) in the one and in the other of groups that match.
-    """
+    """The groups of two heaps, matched. pairs: by kind, addresses (n,) in both of groups that match."""
 
     def __init__(self, one: Memory, two: Memory) -> None:
         self.sides = Side(one), Side(two)
@@ -132,12 +91,23 @@ class Matching:
         one, two = (blocks_of(side) for side in self.sides)
         a, b = match_blocks(one, two)
         self._join("block", one.at[a], two.at[b])
+        self._corners_in_place()
         same = one.corners[a] == two.corners[b]
-        a, b = a[same], b[same]
-        ours, many = one.ring(a), one.corners[a]
-        needed = np.where(same_shape(one.some(a), two.some(b)), many, 1)
-        self._join("corner", ours, turned(self.sides, (ours, two.ring(b)), many, needed))
-        self._same_places()
+        rings = one.ring(a[same]), two.ring(b[same])
+        left = [side.numbers(at) == 0 for side, at in zip(self.sides, rings, strict=True)]
+        self._join("corner", *(at[left[0] & left[1]] for at in rings))
+
+    def _corners_in_place(self) -> None:
+        """Corners of one block that lie in one place, to 32-bit reals."""
+        left = self.left("corner")
+        keys, known = [], []
+        for side, at in zip(self.sides, left, strict=True):
+            with np.errstate(over="ignore"):
+                xy = [side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")]
+            host = side.comparable(side.word("corner", "KNB"), at)
+            keys.append([host, *((values + 0).view(np.int32) for values in xy)])
+            known.append(host > 0)
+        self._with_equal("corner", left, keys, known)
 
     def _chains(self, kind: str, owner: str, head: str, link: str) -> None:
         """Groups in lists that begin at the field `head` of matched owners, where both are of one length."""
@@ -149,18 +119,6 @@ class Matching:
         same = many[0] == many[1]
         one, two = (at[np.repeat(same, lengths)] for at, lengths in zip(found, many, strict=True))
         self._join(kind, one, two)
-
-    def _same_places(self) -> None:
-        """Corners that are left over: those of one block that lie in one place, to 32-bit reals."""
-        left = self.left("corner")
-        keys, known = [], []
-        for side, at in zip(self.sides, left, strict=True):
-            with np.errstate(over="ignore"):
-                xy = [side.column("corner", name, at).astype(np.float32) for name in ("KXP", "KYP")]
-            host = side.comparable(side.word("corner", "KNB"), at)
-            keys.append([host, *((values + 0).view(np.int32) for values in xy)])
-            known.append(host > 0)
-        self._with_equal("corner", left, keys, known)
 
     def _with_equal(
         self, kind: str, left: Sequence[Any], keys: Sequence[Any], known: Sequence[Any], as_many: bool = False
@@ -181,10 +139,7 @@ class Matching:
         self._join(kind, at[0][both][first], at[1][both][first])
 
     def _by_keys(self, kind: str, as_many: bool = True) -> None:
-        """Groups whose fields of some names say the same, in the order of their list.
-
-        as_many: only where both heaps have equally many of these.
-        """
+        """Match groups by KEYS, in the order of their list. as_many: if both have as many groups of a key."""
         if not all(len(at) for at in self.left(kind)):
             return
         lowest = 0 if kind in OPTIONAL else 1
@@ -204,13 +159,13 @@ class Matching:
         """Those that have most contacts in common; the outer one of a block that has no contact."""
         found = []
         for side, at in zip(self.sides, self.pairs["contact"], strict=True):
-            outer = np.array([int(side.h.ci[g.IODPNT])])
+            outer = side.h.ci[g.IODPNT : g.IODPNT + 1]
             found.append(
                 np.concatenate([*(side.column("contact", name, at) for name in ("KD1", "KD2")), outer])
             )
-        one, two = self.sides
-        both = one.atlas.holding("domain", found[0]) & two.atlas.holding("domain", found[1])
-        self._join("domain", *frequent_pairs(found[0][both], found[1][both]))
+        one, two = (self._if_left(side, "domain", at) for side, at in zip(self.sides, found, strict=True))
+        both = (one > 0) & (two > 0)
+        self._join("domain", *frequent_pairs(one[both], two[both]))
 
     def _rest(self) -> None:
         """What is left over, and all pointers of matched groups agree on."""
@@ -224,23 +179,18 @@ class Matching:
 
     def _agreed(self, kind: str) -> Pairs:
         """Groups of a kind that all pointers to them agree on."""
-        ways = [self._heads(kind)]
+        pointers = [self._heads(kind)]
         for owner in KINDS:
             for words in zip(*(side.atlas.shapes[owner] for side in self.sides), strict=True):
                 if words[0].field.target and kind in choices(words[0].field.target):
-                    ways.append(
-                        [
-                            side.atlas.gather(word, at)
-                            for side, word, at in zip(self.sides, words, self.pairs[owner], strict=True)
-                        ]
-                    )
-        found: list[Pairs] = []
-        for way in ways:
-            to = [self._if_left(side, kind, at) for side, at in zip(self.sides, way, strict=True)]
-            some = (to[0] != 0) | (to[1] != 0)
-            found.append((to[0][some], to[1][some]))
-        one, two = zip(*found, strict=True)
-        return exclusive_pairs(np.concatenate(one), np.concatenate(two))
+                    of_sides = zip(self.sides, words, self.pairs[owner], strict=True)
+                    pointers.append([side.atlas.gather(word, at) for side, word, at in of_sides])
+        one, two = (
+            np.concatenate([self._if_left(side, kind, to[k]) for to in pointers])
+            for k, side in enumerate(self.sides)
+        )
+        some = (one != 0) | (two != 0)
+        return exclusive_pairs(one[some], two[some])
 
     def _heads(self, kind: str) -> list[Any]:
         """Where the pointers of the common block to groups of a kind lead, in both."""

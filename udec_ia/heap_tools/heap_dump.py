@@ -36,9 +36,9 @@ PIECE = 2**16  # words that are in no group and looked at together
 VALUE = 13  # characters of a value
 ROOM = 60  # characters of words that are in no group, on a line
 JUNK_LINKS = (
-    (JNEXT[0], "JNEXT", "next junk group of this size"),
+    (JNEXT[0], "JNEXT", "next junk group of this size, 0 for none"),
     (JSIZE[0], "JSIZE", "its words"),
-    (JSIZES[0], "JSIZES", "first junk group of the next size"),
+    (JSIZES[0], "JSIZES", "in the first group of a size: first junk group of the next size, 0 for none"),
 )
 
 
@@ -62,10 +62,8 @@ def dump(atlas: Atlas, first: int | str | None = None, last: int | None = None, 
         for part in parts(atlas, first, last):
             yield from _part_rows(atlas, *part, (first, last), radix)
 
-    bits = atlas.h.ia.itemsize * 8
-    said = (
-        f"IA() has {top} words of {bits} bits, {atlas.ratio} to a real, and {atlas.free - 1} have been in use"
-    )
+    words = f"{top} words of {atlas.h.ia.itemsize * 8} bits, {atlas.ratio} to a real"
+    said = f"IA() has {words}, and {atlas.free - 1} have been in use"
     return Listing([said], ("group", *COLUMNS), Stream(rows), widths=_widths(atlas, radix), headed=True)
 
 
@@ -129,24 +127,13 @@ def _single(atlas: Atlas, span: Span, first: int, last: int, radix: int) -> Iter
                 yield row
         return
     if span.kind == JUNK:
-        for row in _junk_links(atlas, span, radix):
-            if first <= row[0] <= last:
-                yield row
+        for offset, name, text in JUNK_LINKS:
+            at = span.first + offset
+            if first <= at <= last:
+                word = atlas.h.ia[at - 1 : at]
+                yield at, digits(word, radix)[0], name, int(word[0]), "", text
         first = max(first, span.first + len(JUNK_LINKS))
     yield from _plain_rows(atlas, first, last, radix)
-
-
-def _junk_links(atlas: Atlas, span: Span, radix: int) -> Iterator[Row]:
-    """The words of a junk group that link the junk list."""
-    heads = {chain[0][0] for chain in atlas.chains}
-    for offset, name, text in JUNK_LINKS:
-        if span.first + offset <= span.last:
-            word = atlas.h.ia[span.first + offset - 1 : span.first + offset]
-            value = int(word[0])
-            says = text if name == "JSIZE" else f"{text}: {value or 'none'}"
-            if name == "JSIZES" and span.first not in heads:
-                says = "has a meaning only in the first group of each size"
-            yield span.first + offset, digits(word, radix)[0], name, value, "", says
 
 
 def _plain_rows(atlas: Atlas, first: int, last: int, radix: int) -> Iterator[Row]:
@@ -182,9 +169,7 @@ def _common_rows(atlas: Atlas) -> Iterator[Row]:
     """Rows of the common block; elements of an array that are the same are shown together."""
     for field in TABLE.common:
         values = variable(atlas.h, field)
-        meanings = (
-            leads_to(atlas, field.target, values) if field.target else list(data_meanings(field, values))
-        )
+        meanings = leads_to(atlas, field.target, values) if field.target else [*data_meanings(field, values)]
         bits = values.view(f"i{values.itemsize}")
         edges = [0, *(np.flatnonzero(bits[1:] != bits[:-1]) + 1).tolist(), len(values)]
         for k, after in pairwise(edges):

@@ -11,6 +11,7 @@ import numpy as np
 
 from udec_ia.heap.main_array import variable
 from udec_ia.printable_text import counted
+from udec_ia.reader.field_reading import LISTED
 from udec_ia.reader.field_rows import COLUMNS, COMMON, meaning, span_rows
 from udec_ia.reader.group_positions import places
 from udec_ia.reader.list_walks import Unsound, boundary, follow, groups, loop
@@ -64,10 +65,7 @@ def pointer_rows(atlas: Atlas, found: Iterable[Pointers], limit: int | None = No
 
 
 def who(atlas: Atlas, place: int | str) -> Listing:
-    """All words that point to the group at, or around, a place, by field.
-
-    place: an address, or text such as block@88. IndexError outside IA(), ValueError for no such place.
-    """
+    """All words that point to the group at, or around, a place, by field. Raises as `what` does."""
     span = atlas.span(address_of(atlas, place))
     rows = pointer_rows(atlas, pointing(atlas, span.first))
     said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
@@ -81,24 +79,19 @@ def what(atlas: Atlas, place: int | str) -> Listing:
     """
     address = address_of(atlas, place)
     span, word = atlas.word_at(address)
-    size, place = span.last - span.first + 1, address - span.first + 1
-    said = [f"{address} is word {place} of {size} of {called(atlas, span)}"]
+    number = f"{address} is word {address - span.first + 1} of {span.last - span.first + 1}"
     if span.kind == JUNK:
-        return Listing([f"{said[0]}, free to be used again"])
+        return Listing([f"{number} of {called(atlas, span)}, free to be used again"])
     if span.kind not in KINDS:
-        return Listing([f"{address} is word {place} of {size} that are {span.kind}"])
+        return Listing([f"{number} that are {span.kind}"])
     if word is None:
-        said.append("no field: it fills the group up to a whole number of reals")
+        text = "no field: it fills the group up to a whole number of reals"
     else:
-        text = meaning(atlas, span, word)
-        more = f", {text}" if text != word.field.text else ""
-        said.append(f"{word.name}, {word.field.text}: {_value(atlas, word)}{more}")
-    return Listing(said + places(atlas, span), COLUMNS, span_rows(atlas, span))
-
-
-def _value(atlas: Atlas, word: Word) -> str:
-    unit = word.field.unit.strip("-")
-    return f"{atlas.value(word)}{' ' if unit else ''}{unit}"
+        says = meaning(atlas, span, word)
+        text = f"{word.name}, {word.field.text}: {atlas.value(word)} {word.field.unit.strip('-')}".rstrip()
+        text += f", {says}" if says != word.field.text else ""
+    said = [f"{number} of {called(atlas, span)}", text, *places(atlas, span)]
+    return Listing(said, COLUMNS, span_rows(atlas, span))
 
 
 LINKS = {  # fields that lead along a list, with the kind of group that has them
@@ -107,7 +100,6 @@ LINKS = {  # fields that lead along a list, with the kind of group that has them
     for field in group.fields
     if field.role in ("next", "back", "anticlockwise")
 }
-MAIN = {group.name: group.list_head for group in TABLE.groups if group.list_head}
 AROUND = ("block", "domain")  # groups with a list around them
 
 
@@ -127,28 +119,28 @@ def walk(
     """
     if limit is not None and limit < 1:
         raise ValueError(f"limit {limit}: give the number of groups to show, 1 or more")
-    shown = _having(atlas, field) if field else {}
-    way, addresses = _way(atlas, along, None if start is None else address_of(atlas, start))
+    words = _having(atlas, field) if field else {}
+    name, addresses = _list(atlas, along, None if start is None else address_of(atlas, start))
     found, broken = list[int](), ""
     try:
         for iad in addresses:
             found.append(iad)
     except Unsound as error:
         broken = f", and then it breaks: {error.detail}"
-    said = f"{way}: {counted(len(found), 'group')}{broken}"
+    said = f"{name}: {counted(len(found), 'group')}{broken}"
     if limit is not None and limit < len(found):
         said += f"; the first {limit}:"
     at = np.array(found[:limit], np.int64)
     columns: list[Any] = [range(1, len(at) + 1), at.tolist(), names(atlas, at)]
     if field:
-        columns.append(_values(atlas, shown, at))
+        columns.append(_values(atlas, words, at))
     rows = list(zip(*columns, strict=True))
     return Listing([said], ("place", "address", "group", *([field] if field else [])), rows)
 
 
-def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
+def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
     """A list in words, and the addresses of its groups; these raise Unsound where it leads astray."""
-    if along in MAIN and start is None:
+    if along in LISTED and start is None:
         return f"the {along} list", groups(atlas.h, along)
     if along in AROUND and start is not None:
         if not atlas.holds(along, start):
@@ -158,16 +150,11 @@ def _way(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int
         return f"around domain@{start}", (iad for iad, _ in loop(atlas.h, start))
     if along in LINKS and start is not None:
         return f"from {start} along {along}", _linked(atlas, along, start)
-    if along in LINKS:
-        raise ValueError(f"a list along {along} begins at a {LINKS[along]}: give its ADDRESS as well")
-    if along in MAIN:
-        raise ValueError(
-            f"the {along} list begins at {MAIN[along]}: give no ADDRESS, or a field that links them"
-        )
+    given = along if start is None else f"{along} from {start}"
     around = " and ".join(f"{kind} ADDRESS" for kind in AROUND)
     raise ValueError(
-        f"no list {along}: there are {', '.join(MAIN)}; "
-        f"{around} for the list around one; and from an ADDRESS along {', '.join(LINKS)}"
+        f"no list {given}: there are {', '.join(LISTED)} without an ADDRESS, "
+        f"{around} for the list around one, and lists from an ADDRESS along {', '.join(LINKS)}"
     )
 
 
@@ -195,25 +182,17 @@ def _having(atlas: Atlas, name: str) -> dict[str, Word]:
     """The field of a name, KXD or KZG(2), by the kinds of group that have it. ValueError if none has."""
     found = {kind: word for kind, shape in atlas.shapes.items() for word in shape if word.name == name}
     if not found:
-        known = {one.name: one.field.name for shape in atlas.shapes.values() for one in shape}
-        several = [one for one, field in known.items() if field == name]
-        close = get_close_matches(name, known, 1)
-        advice = (
-            f": it is {several[0]} to {several[-1]}"
-            if several
-            else f": did you mean {close[0]}?"
-            if close
-            else ""
-        )
+        known = {word.name: word.field.name for shape in atlas.shapes.values() for word in shape}
+        likely = [one for one, field in known.items() if field == name] or get_close_matches(name, known, 1)
+        advice = f": did you mean {' or '.join(likely)}?" if likely else ""
         raise ValueError(f"no group has a field {name}{advice}")
     return found
 
 
-def _values(atlas: Atlas, shown: dict[str, Word], at: Any) -> list[Any]:
+def _values(atlas: Atlas, words: dict[str, Word], at: Any) -> list[Any]:
     """What the groups at some addresses hold in a field; "" where they have none."""
     found = np.full(len(at), "", object)
-    for kind, word in shown.items():
+    for kind, word in words.items():
         here = np.flatnonzero(atlas.holding(kind, at))
         found[here] = atlas.gather(word, at[here]).tolist()
-    values: list[Any] = found.tolist()
-    return values
+    return list(found)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from textwrap import wrap
 from typing import Any
 
@@ -11,49 +10,40 @@ import numpy as np
 from udec_ia.printable_text import counted
 from udec_ia.reader.kind_colours import LETTERS
 from udec_ia.reader.printed_listing import Listing
-from udec_ia.reader.word_map import JUNK, KINDS, NAMES, NOTHING, UNUSED, Atlas
+from udec_ia.reader.word_map import JUNK, NAMES, NOTHING, UNUSED, Atlas
 
 
 def junk(atlas: Atlas) -> Listing:
     """How full the memory is: by kind of group, the junk list by sizes, and what nothing leads to."""
-    rows: list[tuple[object, ...]] = []
-    for kind in KINDS:
-        many, size = len(atlas.groups[kind]), atlas.layout[kind].size
-        if many:
-            rows.append((kind, many, size, many * size))
-    for chain in atlas.chains:
-        rows.append((JUNK, len(chain), chain[0][1], sum(size for _, size in chain)))
-    stretches, lost = _runs(atlas, NOTHING), _words(atlas, NOTHING)
+    rows: list[tuple[Any, ...]] = []
+    for kind, at in atlas.groups.items():
+        size = atlas.layout[kind].size
+        rows += [(kind, len(at), size, len(at) * size)] if len(at) else []
+    rows += [(JUNK, len(chain), chain[0][1], sum(size for _, size in chain)) for chain in atlas.chains]
+    given, lost = words_of_kind(atlas, JUNK), words_of_kind(atlas, NOTHING)
     if lost:
-        rows.append((NOTHING, len(stretches), "", lost))
-    used, top, given = atlas.free - 1, len(atlas.h.ia), _words(atlas, JUNK)
+        rows.append((NOTHING, len(_runs(atlas, NOTHING)), "", lost))
+    used, top = atlas.free - 1, len(atlas.h.ia)
+
+    def share(words: int) -> str:
+        return f"{words} words, {words / max(used, 1):.1%} of those"
+
     said = [
         f"high water: {used} of {top} words have been in use, {used / top:.1%}, MFREE {atlas.free}",
-        f"in use: {used - given - lost} words, {(used - given - lost) / max(used, 1):.1%} of those",
-        *_scattered(given, used, len(atlas.chains), _runs(atlas, JUNK)),
+        f"in use: {share(used - given - lost)}",
+        f"junk: {share(given)}, in {counted(len(atlas.chains), 'size')}" if given else "junk: none",
     ]
+    if given:
+        runs = _runs(atlas, JUNK)
+        said.append(f"the junk lies in {counted(len(runs), 'run')}, the longest of {runs.max()} words")
     if lost:
-        said.append(
-            f"{NOTHING}: {lost} words, {lost / used:.1%} of those, that no list leads to: the heap is damaged"
-        )
-    shares = (round(100 * float(row[3]) / max(used, 1), 1) for row in rows)  # type: ignore[arg-type]
-    with_share = [(*row, share) for row, share in zip(rows, shares, strict=True)]
+        said.append(f"{NOTHING}: {share(lost)}, that no list leads to: the heap is damaged")
+    with_share = [(*row, round(100 * row[3] / max(used, 1), 1)) for row in rows]
     return Listing(said, ("kind", "groups", "words each", "words", "percent"), with_share)
 
 
-def _scattered(given: int, used: int, sizes: int, runs: Any) -> Iterator[str]:
-    """Sentences on the junk list, and how scattered it lies."""
-    if not given:
-        yield "junk: none"
-        return
-    largest = int(runs.max())
-    yield f"junk: {given} words, {given / used:.1%} of those, in {counted(sizes, 'size')}"
-    share = 1 - largest / given
-    runs_of = counted(len(runs), "run")
-    yield f"fragmentation: {runs_of}, {share:.1%} of the junk outside the largest, of {largest} words"
-
-
-def _words(atlas: Atlas, kind: str) -> int:
+def words_of_kind(atlas: Atlas, kind: str) -> int:
+    """How many words are in spans of a kind of group, or JUNK, NOTHING or UNUSED."""
     first, last, kinds = atlas.bounds
     here = kinds == NAMES.index(kind)
     return int((last[here] - first[here] + 1).sum())
@@ -62,9 +52,8 @@ def _words(atlas: Atlas, kind: str) -> int:
 def _runs(atlas: Atlas, kind: str) -> Any:
     """Lengths in words of the runs of neighbouring spans of a kind."""
     first, last, kinds = atlas.bounds
-    here = np.concatenate(([False], kinds == NAMES.index(kind), [False]))
-    begins, ends = np.flatnonzero(here[1:] & ~here[:-1]), np.flatnonzero(~here[1:] & here[:-1])
-    return last[ends - 1] - first[begins] + 1
+    edges = np.diff(np.concatenate(([False], kinds == NAMES.index(kind), [False])).astype(np.int8))
+    return last[np.flatnonzero(edges < 0) - 1] - first[edges[:-1] > 0] + 1
 
 
 ACROSS, DOWN, WIDTH = 64, 24, 80  # characters of a map, and of a line
@@ -74,10 +63,7 @@ PICTURE = "map"  # the column whose characters are LETTERS
 
 
 def cover(atlas: Atlas, step: int) -> Any:
-    """For each stretch of `step` words that have been in use, from 1 on: the kind that has a majority there.
-
-    By its place in NAMES; of kinds that have as many words the first.
-    """
+    """For each stretch of `step` words in use, from 1 on, the place in NAMES of its main kind."""
     first, last, kind = atlas.bounds
     used = kind != NAMES.index(UNUSED)
     words = np.repeat(kind[used].astype(np.int8), (last - first + 1)[used])
@@ -99,12 +85,8 @@ def _majority(words: Any, step: int) -> Any:
 
 def stretch(atlas: Atlas, places: int) -> int:
     """The smallest of 1, 2, 5, 10, ... words for which there are enough places for all that are in use."""
-    step, factors = 1, (2.0, 2.5, 2.0)
-    k = 0
-    while step * places < atlas.free - 1:
-        step = int(step * factors[k % 3])
-        k += 1
-    return step
+    steps = (factor * 10**power for power in range(20) for factor in (1, 2, 5))
+    return int(next(step for step in steps if step * places >= atlas.free - 1))
 
 
 def heap_map(atlas: Atlas) -> Listing:
@@ -121,6 +103,5 @@ def heap_map(atlas: Atlas) -> Listing:
     rows = [(k * step + 1, "".join(letters[k : k + ACROSS])) for k in range(0, len(letters), ACROSS)]
     said = [f"{atlas.free - 1} of {len(atlas.h.ia)} words have been in use", f"a character is {unit}"]
     said += wrap(", ".join(key), WIDTH) if rows else []
-    return Listing(
-        [*said, "--out map.png or map.svg draws it, beside the blocks"], ("address", PICTURE), rows
-    )
+    said.append("--out map.png or map.svg draws it, beside the blocks")
+    return Listing(said, ("address", PICTURE), rows)

@@ -1,7 +1,6 @@
 """The pointers around a group: what it points to, what points to it, and so on; as a list or in DOT.
 
-Groups are taken in waves from the first, the nearest first, up to the number that a picture can show; the
-rest is counted. A pointer to something other than the field table says is marked.
+Groups are taken in waves, the nearest first, up to the number that a picture can show; the rest is counted.
 """
 
 from __future__ import annotations
@@ -53,8 +52,7 @@ class Graph(NamedTuple):
 def neighbourhood(atlas: Atlas, place: int | str, depth: int = 1, limit: int = NODES) -> Graph:
     """The pointers around the group at, or around, a place: depth of them away, `limit` groups.
 
-    place: an address, or text such as block@88. IndexError outside IA(), ValueError for what is no group, or
-    no depth.
+    IndexError outside IA(), ValueError for what is no group, or no depth.
     """
     address = address_of(atlas, place)
     span = atlas.span(address)
@@ -114,27 +112,25 @@ def _edges(atlas: Atlas, every: list[Pointers], nodes: dict[int, int]) -> Iterat
 def _named(atlas: Atlas, depths: dict[int, int], edges: list[Edge]) -> dict[int, Node]:
     """Nodes for the groups, and for what else the edges lead from and to."""
     at = np.array([*depths], np.int64)
-    found = {
-        iad: Node(name, KINDS[number - 1], away)
-        for (iad, away), name, number in zip(
-            depths.items(), names(atlas, at), atlas.starts[at].tolist(), strict=True
-        )
-    }
-    for source, _, target, _, _ in edges:
+    kinds = (KINDS[number - 1] for number in atlas.starts[at].tolist())
+    found = dict(zip(depths, map(Node, names(atlas, at), kinds, depths.values()), strict=True))
+    for source, _, target, meaning, _ in edges:
         if source not in found:
             found[source] = Node(COMMON, COMMON, depths[target] + 1)
         if target not in found:
-            name = leads_to(atlas, "any", np.array([target]))[0]
-            found[target] = Node(f"{target}: {name}", ASTRAY, depths[source] + 1)
+            found[target] = Node(f"{target}: {meaning}", ASTRAY, depths[source] + 1)
     return found
 
 
 def graph(atlas: Atlas, place: int | str, depth: int = 1) -> Listing:
     """The same as a list of pointers. Raises as `neighbourhood` does."""
     found = neighbourhood(atlas, place, depth)
+
+    def order(edge: Edge) -> tuple[int, Edge]:
+        return min(found.nodes[end].depth for end in (edge.source, edge.target)), edge
+
     rows = [
-        (found.nodes[edge.source].name, edge.field, edge.meaning)
-        for edge in sorted(found.edges, key=lambda edge: (_depth(found, edge), edge))
+        (found.nodes[edge.source].name, edge.field, edge.meaning) for edge in sorted(found.edges, key=order)
     ]
     return Listing(summary(found), ("from", "field", "to"), rows)
 
@@ -149,10 +145,6 @@ def summary(found: Graph) -> list[str]:
         left = counted(found.left_out, "more group")
         lines.append(f"left out: {left} at a distance of {counted(furthest, 'pointer')}, and all beyond")
     return lines
-
-
-def _depth(found: Graph, edge: Edge) -> int:
-    return min(found.nodes[edge.source].depth, found.nodes[edge.target].depth)
 
 
 def dot(found: Graph) -> str:

@@ -43,10 +43,7 @@ LARGE = 500  # blocks from which on it pays
 
 
 def arrange(array: MainArray) -> Any:
-    """Put the groups of a large model that has not been cycled yet in the order of the map.
-
-    Returns the new address of the group at each old one, 0 where there was none; None if nothing moved.
-    """
+    """Put a large model, not cycled yet, in the order of the map. Returns new addresses by old, or None."""
     h = array.h
     if h.ci[g.NBLK] < LARGE or h.ci[g.MCTOT] > 0:
         return None

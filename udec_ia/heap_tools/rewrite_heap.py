@@ -1,12 +1,10 @@
-"""A state written anew in the words of another scheme: every number in its field, every pointer to its group.
+"""A state in the words of another scheme: every number in its field, every pointer to its group.
 
 A word of IA() is known only by its group and field. So every word must be in one group or in the junk list,
-and every pointer must lead to a group of the kind that the table gives it. Each group is written field by
-field, and all addresses follow (field_translation.py). Groups keep their order in memory, side by side, and
-the junk list is empty afterwards. IA() keeps its number of words unless the groups need more or the addresses
-end before. The tolerances are those of the rounding length in reals of the new width.
-
-A number that does not fit is refused, and reals that lose digits are counted.
+and every pointer must lead to a group of the kind that the table gives it. Groups keep their order in memory,
+side by side, and the junk list is empty afterwards. IA() keeps its number of words unless the groups need
+more or the addresses end before. A number that does not fit is refused, and reals that lose digits are
+counted (field_translation.py). The tolerances are those of the rounding length in reals of the new width.
 """
 
 from __future__ import annotations
@@ -15,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.checker.memory_words import gaps
 from udec_ia.compiling.interpreted_kernels import interpreted
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray, variable
@@ -27,7 +26,7 @@ from udec_ia.layout.field_table import layouts
 from udec_ia.reader.field_reading import TABLE, TARGETS
 from udec_ia.reader.group_lists import Lists
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.reader.word_map import Atlas, called, junk_list
+from udec_ia.reader.word_map import Atlas, junk_list, names
 
 
 def groups_in_list_order(array: MainArray) -> dict[str, Any]:
@@ -46,12 +45,6 @@ def groups_in_list_order(array: MainArray) -> dict[str, Any]:
     return found
 
 
-def name_at(array: MainArray, address: int) -> str:
-    """The group at `address` with the blocks that it belongs to: corner@412 of block@88."""
-    atlas = Atlas(array.h)
-    return called(atlas, atlas.span(address))
-
-
 def junk_words(array: MainArray) -> int:
     """Words of the junk list."""
     return sum(size for chain in junk_list(array.h) for _, size in chain)
@@ -59,18 +52,17 @@ def junk_words(array: MainArray) -> int:
 
 def _check_words(array: MainArray, found: dict[str, Any]) -> None:
     """Unsound unless groups and junk groups, in the order of their addresses, lie end to end."""
-    layout, free = layouts(array.scheme.ratio), int(array.h.ci[g.MFREE])
+    layout = layouts(array.scheme.ratio)
     junk = np.array([one for chain in junk_list(array.h) for one in chain], np.int64).reshape(-1, 2)
-    start = np.concatenate([*found.values(), junk[:, 0]])
+    at = np.concatenate([*found.values(), junk[:, 0]])
     size = np.concatenate([*(np.full(len(at), layout[kind].size) for kind, at in found.items()), junk[:, 1]])
-    order = np.argsort(start)
-    begins, ends = np.append(start[order], free), np.append(0, start[order] + size[order] - 1)
-    wrong = np.flatnonzero(begins != ends + 1)
-    if len(wrong):
-        begin, end = int(begins[wrong[0]]), int(ends[wrong[0]])
-        if begin > end:
-            raise Unsound(f"words {end + 1} to {begin - 1} are in no group, so their meaning is unknown")
-        raise Unsound(f"the group that ends at word {end} and the one that begins at {begin} share words")
+    order = np.argsort(at)
+    for _, after, start in gaps(at[order], size[order], int(array.h.ci[g.MFREE])).tolist():
+        if start > after:
+            raise Unsound(f"words {after} to {start - 1} are in no group, so their meaning is unknown")
+        raise Unsound(
+            f"the group that ends at word {after - 1} and the one that begins at {start} share words"
+        )
 
 
 def _check_pointers(array: MainArray, lists: Lists) -> None:
@@ -80,19 +72,16 @@ def _check_pointers(array: MainArray, lists: Lists) -> None:
             targets = TARGETS[str(field.target)] if field.target else ()
             for i in range(field.count if targets else 0):
                 for row, value in lists.pointers_astray(kind, field.name, i, targets, True)[:1]:
-                    owner = name_at(array, int(at[row]))
+                    (owner,) = names(Atlas(array.h), at[row : row + 1])
                     raise Unsound(f"{field.name} of {owner} points to {value}, which is not a {field.target}")
     for field in TABLE.common:
         value = lists.common(field.name) if field.target else 0
-        if value and not lists.is_one(value, TARGETS[str(field.target)]):
+        if value and not lists.are_groups(np.array([value]), TARGETS[str(field.target)])[0]:
             raise Unsound(f"{field.name} points to {value}, which is no {field.target}")
 
 
 class Rewritten(NamedTuple):
-    """A state in other words, and what that has cost its reals.
-
-    old, before, junk: the scheme that it was in, words that were in use, and how many of them were junk.
-    """
+    """A state in other words. old: former scheme; before, junk: words in use before, and those of junk."""
 
     array: MainArray
     fit: Fit
@@ -115,7 +104,7 @@ def rewrite(array: MainArray, to: Scheme) -> Rewritten:
     fresh.fixed = array.fixed
     work.write(fresh.h.ia[: work.used])
     common, fit = work.variables(), work.fit
-    _check_fit(array, fit, to)
+    _check_fit(fit, to)
     for field in TABLE.common:
         variable(fresh.h, field)[:] = common[field.name]
     if to.real_bits != array.scheme.real_bits:
@@ -132,16 +121,15 @@ def _check_addresses(found: dict[str, Any], to: Scheme) -> None:
         raise UdecError(1, detail, "take wider integers")
 
 
-def _check_fit(array: MainArray, fit: Fit, to: Scheme) -> None:
+def _check_fit(fit: Fit, to: Scheme) -> None:
     """Error 28 if there are numbers that do not fit."""
     if fit.first is None:
         return
-    kind, address, name, value = fit.first
-    what = f"{name} of {name_at(array, address)}" if kind else name
+    name, value = fit.first
     if isinstance(value, int):
         limits = np.iinfo(to.int_type)
         holds = f"{to.int_bits}-bit integers hold {limits.min} to {limits.max}"
     else:
         holds = f"{to.real_bits}-bit reals hold numbers up to {np.finfo(to.real_type).max:.2g}"
     more = f", the first of {fit.misfits} numbers that these words cannot hold" if fit.misfits > 1 else ""
-    raise UdecError(28, f"{what} is {value}{more}", f"{holds}: take wider words")
+    raise UdecError(28, f"{name} is {value}{more}", f"{holds}: take wider words")

@@ -13,32 +13,18 @@ Pairs = tuple[Any, Any]  # rows of the one table (n,) and of the other (n,)
 
 def fold(one: Sequence[Any], two: Sequence[Any]) -> tuple[Any, Any]:
     """Columns of whole numbers as one key a row, for each of two tables: equal for equal rows only."""
-    keys = [np.zeros(len(table[0]), np.int64) for table in (one, two)]
-    room = 1
-    for columns in zip(one, two, strict=True):
-        both = np.concatenate(columns).astype(np.int64)
-        low, high = (int(both.min()), int(both.max())) if len(both) else (0, 0)
-        if room * (high - low + 1) >= 2**63:  # else the key would not fit a word
-            both = np.unique(both, return_inverse=True)[1]
-            low, high = 0, len(both)
-            keys, room = _narrowed(keys)
-        parts = np.split(both - low, [len(columns[0])])
-        keys = [key * (high - low + 1) + part for key, part in zip(keys, parts, strict=True)]
-        room *= high - low + 1
-    return keys[0], keys[1]
-
-
-def _narrowed(keys: Sequence[Any]) -> tuple[list[Any], int]:
-    """The same keys as places among all that there are, and how many of these there are at most."""
-    places = np.unique(np.concatenate(keys), return_inverse=True)[1]
-    return np.split(places, [len(keys[0])]), len(places)
+    columns = [np.concatenate(both).astype(np.int64) for both in zip(one, two, strict=True)]
+    order = np.lexsort(columns)
+    new = np.zeros(len(order), bool)
+    for column in columns:
+        new[1:] |= column[order[1:]] != column[order[:-1]]
+    keys = np.empty(len(order), np.int64)
+    keys[order] = np.cumsum(new)
+    return keys[: len(one[0])], keys[len(one[0]) :]
 
 
 def pairs_in_order(one: Any, two: Any, as_many: bool = False) -> Pairs:
-    """Rows with equal keys (n,) and (m,): the first of the one with the first of the other, and so on.
-
-    as_many: only of keys that both have equally often.
-    """
+    """Rows with equal keys (n,) and (m,), in turn. as_many: only of keys that both have equally often."""
     order = np.argsort(one, kind="stable"), np.argsort(two, kind="stable")
     a, b = one[order[0]], two[order[1]]
     first, mine = np.searchsorted(b, a), np.searchsorted(a, a)
@@ -74,19 +60,15 @@ def frequent_pairs(one: Any, two: Any) -> Pairs:
     """Pairs of the numbers (n,) and (n,) that come together more often than either does with another."""
     a, b, times = votes(one, two)
     best = np.lexsort((b, a, -times))
-    a, b = a[best], b[best]
-    mine = np.zeros(len(a), bool)
-    mine[np.unique(a, return_index=True)[1]] = True
-    theirs = np.zeros(len(b), bool)
-    theirs[np.unique(b, return_index=True)[1]] = True
-    return a[mine & theirs], b[mine & theirs]
+    first = [np.unique(side[best], return_index=True)[1] for side in (a, b)]
+    both = best[np.intersect1d(first[0], first[1])]
+    return a[both], b[both]
 
 
 def exclusive_pairs(one: Any, two: Any) -> Pairs:
     """Pairs of the numbers (n,) and (n,) of which neither comes with another, 0 for none being one."""
     a, b, _ = votes(one, two)
-    alone = [np.unique(side, return_counts=True) for side in (a, b)]
-    once = [values[times == 1] for values, times in alone]
+    once = [values[times == 1] for values, times in (np.unique(side, return_counts=True) for side in (a, b))]
     good = np.isin(a, once[0]) & np.isin(b, once[1]) & (a > 0) & (b > 0)
     return a[good], b[good]
 

@@ -32,33 +32,12 @@ class Differences(NamedTuple):
     ulps: Any
 
 
-class Tolerance(NamedTuple):
-    """What does not count as a difference of reals. units: by unit; relative, ulps: for all of them."""
-
-    units: dict[str, float]
-    relative: float = 0.0
-    ulps: float = 0.0
-
-    def allows(self, unit: str, distances: Differences) -> Any:
-        """True for each difference that does not count."""
-        good = np.zeros(len(distances.rows), bool)
-        limits = (
-            (distances.absolute, self.units.get(unit)),
-            (distances.relative, self.relative),
-            (distances.ulps, self.ulps),
-        )
-        for distance, limit in limits:
-            if limit:
-                good |= distance <= limit
-        return good
-
-
-NONE = Tolerance({})
+Tolerance = dict[str, float]  # greatest distance that does not count, by unit, RELATIVE or ULPS
 
 
 def tolerance(texts: Iterable[str]) -> Tolerance:
     """Of texts such as m=1e-6, N/m=10, relative=1e-9, ulp=4. ValueError for anything else."""
-    units: dict[str, float] = {}
+    found: Tolerance = {}
     for text in texts:
         name, sign, number = text.partition("=")
         try:
@@ -68,8 +47,18 @@ def tolerance(texts: Iterable[str]) -> Tolerance:
         if name not in (*UNITS, RELATIVE, ULPS) or not sign or not (isfinite(limit) and limit >= 0):
             known = ", ".join((RELATIVE, ULPS, *UNITS))
             raise ValueError(f"tolerance {text}: give NAME=NUMBER, such as m=1e-6, of {known}")
-        units[name] = limit
-    return Tolerance(units, units.pop(RELATIVE, 0.0), units.pop(ULPS, 0.0))
+        found[name] = limit
+    return found
+
+
+def _counts(tolerance: Tolerance, unit: str, distances: Differences) -> Any:
+    """True for each difference of reals that counts."""
+    found = np.ones(len(distances.rows), bool)
+    of_names = (unit, distances.absolute), (RELATIVE, distances.relative), (ULPS, distances.ulps)
+    for name, distance in of_names:
+        if limit := tolerance.get(name):
+            found &= ~(distance <= limit)
+    return found
 
 
 def whole_differences(differ: Any) -> Differences:
@@ -92,7 +81,7 @@ def real_differences(one: Any, two: Any) -> Differences:
 
 def _ulps(one: Any, two: Any) -> Any:
     """How many reals of their width lie between two, as reals of 64 bits."""
-    a, b = (_order(values) for values in (one, two))
+    a, b = _order(one), _order(two)
     return (np.maximum(a, b) - np.minimum(a, b)).astype(np.float64)
 
 
@@ -157,7 +146,9 @@ class Compared(NamedTuple):
         return bool(self.fields or any(len(one) + len(two) for one, two in self.alone.values()))
 
 
-def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Tolerance = NONE) -> Compared:
+def compare(
+    one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Tolerance | None = None
+) -> Compared:
     """Two heaps of any word schemes, sound or damaged.
 
     only: kinds of groups and fields, such as contact or contact.KCFN, or common.FRAC; all if there are none.
@@ -165,8 +156,8 @@ def compare(one: Memory, two: Memory, only: Iterable[str] = (), tolerance: Toler
     """
     wanted = selected_fields(only)
     matching = Matching(one, two)
-    fields = [found for found in _groups(matching, wanted, tolerance) if len(found.one)]
-    fields += [found for found in _common(matching, wanted, tolerance) if len(found.one)]
+    found = *_groups(matching, wanted, tolerance or {}), *_common(matching, wanted, tolerance or {})
+    fields = [one for one in found if len(one.one)]
     alone = {kind: matching.left(kind) for kind in KINDS if not only or (kind, "") in wanted}
     return Compared(matching, fields, alone, {kind for kind, _ in wanted})
 
@@ -232,7 +223,7 @@ def _differing(
     greatest = 0.0
     if field.real:
         distances = real_differences(*values)
-        counts = ~tolerance.allows(field.unit, distances)
+        counts = _counts(tolerance, field.unit, distances)
         distances = Differences(*(column[counts] for column in distances))
         with np.errstate(invalid="ignore"):
             greatest = float(max(np.max(np.abs(one), initial=0.0) for one in values)) if counts.any() else 0.0
@@ -247,10 +238,7 @@ def _differing(
 
 def _pointers_differ(matching: Matching, values: tuple[Any, Any]) -> Any:
     """True for each pointer (n,) of both that does not lead to one group, or to the same nonsense."""
-    numbers, groups = [], []
-    for side, addresses in zip(matching.sides, values, strict=True):
-        numbers.append(side.numbers(addresses))
-        within = (addresses >= 1) & (addresses < side.atlas.free)
-        groups.append(side.atlas.starts[np.where(within, addresses, 0)] > 0)
-    same = (numbers[0] == numbers[1]) & (numbers[0] > 0)
-    return ~(same | ((values[0] == values[1]) & ~groups[0] & ~groups[1]))
+    one, two = (side.numbers(at) for side, at in zip(matching.sides, values, strict=True))
+    astray = (~side.atlas.holding("any", at) for side, at in zip(matching.sides, values, strict=True))
+    same_nonsense = (values[0] == values[1]) & np.logical_and(*astray)
+    return ~(((one == two) & (one > 0)) | same_nonsense)

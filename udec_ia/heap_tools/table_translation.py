@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import cached_property
 from typing import Any
 
+from udec_ia.layout import offsets as g
 from udec_ia.layout.code_names import spelled
-from udec_ia.layout.field_table import Code, Field, Table, lay_out, read_table
+from udec_ia.layout.field_table import Code, Field, Table, lay_out
 
 HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
-UNGROUPED = {code.name: code.value for code in read_table().codes_of(KIND)}
 SHOWN = 4  # names that a sentence lists
 
 
@@ -22,20 +21,19 @@ class UnknownError(ValueError):
     """A word means nothing by the other table; the message is a phrase that follows what it is."""
 
 
-def same_words(theirs: Table, ours: Table, counted: bool) -> bool:
-    """True if every word of IA() means by `ours` what it means by `theirs`.
-
-    counted: there are histories, which know a variable of the common block by its number.
-    """
+def same_words(theirs: Table, ours: Table, histories: bool) -> bool:
+    """True if every word means the same by both tables. histories: some know a variable by its number."""
     known = {code.name: code.value for code in ours.codes}
-    return (
-        [(group.name, [_word(field) for field in group.fields]) for group in theirs.groups]
-        == [(group.name, [_word(field) for field in group.fields]) for group in ours.groups]
-        and {(head.name, head.value, head.group) for head in theirs.heads}
-        == {(head.name, head.value, head.group) for head in ours.heads}
-        and not (known and any(known.get(one.name) != one.value for one in theirs.codes))
-        and not (counted and [one.name for one in theirs.common] != [one.name for one in ours.common])
-    )
+    shapes = [
+        (
+            [(group.name, [_word(field) for field in group.fields]) for group in table.groups],
+            {(head.name, head.value, head.group) for head in table.heads},
+            histories and [one.name for one in table.common],
+        )
+        for table in (theirs, ours)
+    ]
+    same_codes = not known or all(known.get(one.name) == one.value for one in theirs.codes)
+    return same_codes and shapes[0] == shapes[1]
 
 
 def _word(field: Field) -> tuple[Any, ...]:
@@ -61,22 +59,27 @@ def may_be_0(field: Field) -> bool:
 
 
 def news(theirs: Table, ours: Table) -> list[str]:
-    """What another table has changed for a state, in phrases: fields that are new, that have gone, ..."""
+    """What another table has changed for a state, in phrases with the names of fields, kinds and codes."""
     mine, other = _all_fields(ours), _all_fields(theirs)
     kinds, known_kinds = ([group.name for group in table.groups] for table in (theirs, ours))
-    gone = [name for name, at in other.items() if name not in mine and at[0] in ("", *known_kinds)]
-    known, named = _all_codes(ours), _all_codes(theirs)
+    codes, named = _all_codes(ours), _all_codes(theirs)
     changes = {
-        "field {} new and 0": [n for n, at in mine.items() if n not in other and at[0] in ("", *kinds)],
-        "field {} not known here, and 0": gone,
-        "field {} elsewhere in the group": [n for n, at in mine.items() if other.get(n, at) != at],
-        "kind of group {} new": [kind for kind in known_kinds if kind not in kinds],
-        "kind of group {} not known here, and empty": [kind for kind in kinds if kind not in known_kinds],
-        "code {} under another number": [
-            name for name, value in named.items() if known.get(name, value) != value
+        "fields that are new and 0": [
+            n for n, at in mine.items() if n not in other and at[0] in ("", *kinds)
         ],
+        "fields not known here, and 0": [
+            n for n, at in other.items() if n not in mine and at[0] in ("", *known_kinds)
+        ],
+        "fields elsewhere in the group": [n for n, at in mine.items() if other.get(n, at) != at],
+        "kinds of group that are new": [kind for kind in known_kinds if kind not in kinds],
+        "kinds of group not known here, and empty": [kind for kind in kinds if kind not in known_kinds],
+        "codes under another number": [n for n, value in named.items() if codes.get(n, value) != value],
     }
-    return [_counted(names, what) for what, names in changes.items() if names]
+    return [
+        f"{what}: {len(names)} ({', '.join(names[:SHOWN])}{', ...' if len(names) > SHOWN else ''})"
+        for what, names in changes.items()
+        if names
+    ]
 
 
 def _all_codes(table: Table) -> dict[str, int]:
@@ -90,18 +93,8 @@ def _all_fields(table: Table) -> dict[str, tuple[Any, ...]]:
     for group in table.groups:
         layouts = [lay_out(group, ratio).offset for ratio in (1, 2)]
         for field in group.fields:
-            name = f"{field.name} of {group.name}"
-            found[name] = group.name, [layout[field.name] for layout in layouts]
+            found[f"{field.name} of {group.name}"] = group.name, [layout[field.name] for layout in layouts]
     return found
-
-
-def _counted(names: list[str], what: str) -> str:
-    """2 fields are new and 0 (KNEW of block, LNEW)."""
-    noun, verb = what.split(" {} ")
-    few = ", ".join(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
-    first, *rest = noun.split()
-    noun = " ".join([first if len(names) == 1 else f"{first}s", *rest])
-    return f"{len(names)} {noun} {'is' if len(names) == 1 else 'are'} {verb} ({few})"
 
 
 class Meaning:
@@ -109,12 +102,11 @@ class Meaning:
 
     def __init__(self, theirs: Table, ours: Table) -> None:
         self.theirs, self.ours = theirs, ours
+        self._recorded = _recordable(theirs)
+        self._numbers = {field: numbers for numbers, field in _recordable(ours).items()}
 
     def codes(self, old: Field, new: Field, kind: str, values: list[int]) -> dict[int, int]:
-        """The new number of each of `values` of a field, {} if none has another.
-
-        UnknownError if one has none. A field without names of codes has none to lose.
-        """
+        """New numbers of `values` of a field, {} if all are the old ones. UnknownError if one has none."""
         if new.role == "head" and new.target is None:
             there, ours = head_codes(self.theirs, kind), head_codes(self.ours, kind)
         else:
@@ -126,10 +118,9 @@ class Meaning:
         return {value: _renumbered(value, there, here) for value in values}
 
     def _there(self, field: Field, flags: dict[str, bool]) -> list[Code]:
-        """The codes of a field by the old table.
+        """The codes of a field by the old table. flags: codes of the new one by name, True for a flag.
 
-        flags: codes of the new one by name, True for a flag. A table of before the word FLAG knew each code
-        of one field only, and not which of them add up.
+        A table of before the word FLAG knew each code of one field only, and not which of them add up.
         """
         return [
             replace(code, flag=code.flag or flags.get(code.name, False))
@@ -137,38 +128,22 @@ class Meaning:
             if field.name in code.fields or code.name in flags
         ]
 
-    @cached_property
-    def _numbers(self) -> dict[tuple[int, int], tuple[int, int]]:
-        """(KHK, KHF) by the new table, for each by the old one."""
-        here = {
-            (group.name, field.name): (kind, number)
-            for kind, group in enumerate(self.ours.groups, 1)
-            for number, field in enumerate(group.fields)
-        }
-        here |= {("", field.name): (UNGROUPED["COMMON_BLOCK"], n) for n, field in enumerate(self.ours.common)}
-        return {number: here[name] for number, name in self._recordable.items() if name in here}
-
-    @cached_property
-    def _recordable(self) -> dict[tuple[int, int], tuple[str, str]]:
-        """Kind of group and name of the field for each (KHK, KHF) by the old table."""
-        found = {
-            (kind, number): (group.name, field.name)
-            for kind, group in enumerate(self.theirs.groups, 1)
-            for number, field in enumerate(group.fields)
-        }
-        return found | {
-            (UNGROUPED["COMMON_BLOCK"], n): ("", one.name) for n, one in enumerate(self.theirs.common)
-        }
-
     def recorded(self, kind: int, number: int) -> tuple[int, int]:
-        """KHK and KHF of a history by the new table. UnknownError if there is no such number any more."""
-        if kind == UNGROUPED["WHOLE_MODEL"]:
+        """KHK and KHF of a history by the new table. UnknownError if it has no such field or variable."""
+        if kind == g.WHOLE_MODEL:
             return kind, number
-        if (kind, number) in self._numbers:
-            return self._numbers[kind, number]
-        group, name = self._recordable.get((kind, number), ("", ""))
-        what = f"{name} of {group or 'the common block'}" if name else "nothing that there is"
-        raise UnknownError(f"records {what}" + (", which is not known here" if name else ""))
+        group, name = self._recorded.get((kind, number), ("", "a number without a name"))
+        if (group, name) not in self._numbers:
+            raise UnknownError(f"records {name} of {group or 'the common block'}, which is not known here")
+        return self._numbers[group, name]
+
+
+def _recordable(table: Table) -> dict[tuple[int, int], tuple[str, str]]:
+    """Kind of group, "" for none, and name of the field for each (KHK, KHF)."""
+    found = {(g.COMMON_BLOCK, number): ("", one.name) for number, one in enumerate(table.common)}
+    for kind, group in enumerate(table.groups, 1):
+        found |= {(kind, number): (group.name, one.name) for number, one in enumerate(group.fields)}
+    return found
 
 
 def head_codes(table: Table, kind: str) -> list[Code]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from udec_ia.checker.memory_words import gaps
 from udec_ia.heap.group_census import CHOICES, list_heads, reached
 from udec_ia.heap.junk_list import junk_chains
 from udec_ia.heap.main_array import MainArray, variable
@@ -64,25 +65,17 @@ class Rows(NamedTuple):
         return f"{name} of {self.kind}@{self.at[row]}" if self.kind else name
 
 
-class Faults:
-    """Phrases; of those that differ in the group alone the first is kept, and how many there are."""
-
-    def __init__(self) -> None:
-        self._found: dict[tuple[str, ...], tuple[str, int]] = {}
-
-    def __bool__(self) -> bool:
-        return bool(self._found)
+class Faults(dict[tuple[str, ...], tuple[str, int]]):
+    """The first phrase of each sort of fault, and how many there are, by what they have in common."""
 
     def add(self, phrase: str, many: int = 1, *alike: str) -> None:
         """`many` faults, of which the first is `phrase`. alike: what they have in common with others."""
-        first, before = self._found.get(alike or (phrase,), (phrase, 0))
-        self._found[alike or (phrase,)] = first, before + many
+        first, before = self.get(alike or (phrase,), (phrase, 0))
+        self[alike or (phrase,)] = first, before + many
 
     def phrases(self) -> list[str]:
         """A phrase for each sort of fault."""
-        return [
-            first + (f", and {many - 1} more" if many > 1 else "") for first, many in self._found.values()
-        ]
+        return [first + (f", and {many - 1} more" if many > 1 else "") for first, many in self.values()]
 
 
 class Places:
@@ -127,15 +120,15 @@ class Places:
 
     def _check_spans(self, faults: Faults) -> None:
         """Groups must not lie in each other; where they move, every word must be in one."""
-        spans = [np.full(len(at), self.old[kind].size) for kind, at in self.at.items()]
+        sizes = [np.full(len(at), self.old[kind].size) for kind, at in self.at.items()]
         first = np.concatenate([*self.at.values(), self.junk[:, 0]])
-        after = first + np.concatenate([*spans, self.junk[:, 1]])
+        size = np.concatenate([*sizes, self.junk[:, 1]])
         order = np.argsort(first, kind="stable")
-        after, first = np.append(1, after[order]), np.append(first[order], self.words + 1)
-        for k in np.flatnonzero(after > first)[:1]:
-            faults.add(f"word {first[k]} is in two groups")
-        for k in np.flatnonzero(after < first)[: 0 if self.stays else 1]:
-            faults.add(f"words {after[k]} to {first[k] - 1} are in no group")
+        wrong = gaps(first[order], size[order], self.words + 1)
+        for _, _, start in wrong[wrong[:, 1] > wrong[:, 2]][:1]:
+            faults.add(f"word {start} is in two groups")
+        for _, after, start in wrong[wrong[:, 1] < wrong[:, 2]][: 0 if self.stays else 1]:
+            faults.add(f"words {after} to {start - 1} are in no group")
 
     def _lay_out(self, sizes: dict[str, int]) -> None:
         """Side by side in the order of the old addresses, or where they are."""

@@ -40,14 +40,14 @@ def _is_plain(value: Any) -> bool:
 
 
 class CommandLog:
-    """steps: commands, or lines of a deck. cycles: of the CYCLEs at the end, None if it does not end so."""
+    """steps: commands, or lines of a deck. cycles: number of cycles of the CYCLEs at the end, or None."""
 
     def __init__(self, lines: Sequence[str] = ()) -> None:
         self.steps: list[str | Step] = [*lines]
         self.cycles: int | None = None
 
     def add(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """A command was obeyed."""
+        """Add a command that was obeyed."""
         if method.__name__ == "cycle":
             self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
             return
@@ -55,7 +55,7 @@ class CommandLog:
         self.add_lines([step] if step.has_constants_only else step.lines)
 
     def add_lines(self, lines: Sequence[str | Step]) -> None:
-        """Lines of a deck were obeyed."""
+        """Add lines of a deck that were obeyed."""
         if self.cycles is not None:
             self.steps.append(f"CYCLE {self.cycles}")
         self.steps += lines
@@ -63,7 +63,7 @@ class CommandLog:
 
     @property
     def lines(self) -> list[str]:
-        """The lines of a deck that say what was done."""
+        """All commands as lines of a deck."""
         last = [] if self.cycles is None else [f"CYCLE {self.cycles}"]
         return [*self._step_lines(), *last]
 

@@ -1,4 +1,4 @@
-"""What a session records: the numbers of its histories, and the results of its SOLVEs."""
+"""Records of a session: the numbers of its histories, and the results of its SOLVEs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class HistoryRecorder:
         self._files: HistoryFiles | None = None
 
     def replace(self, series: list[Series]) -> None:
-        """Go on with the numbers of `series`, which the files do not have."""
+        """Continue with `series`, the numbers of which are not in the files."""
         self.series, self._files = series, None
 
     def add(
@@ -45,7 +45,7 @@ class HistoryRecorder:
         return self.series[first:]
 
     def write(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
-        """Write what was recorded to base.csv and base.h5, and report which groups have gone."""
+        """Write all histories to base.csv and base.h5, and report which groups do not exist any more."""
         if not self.series:
             return []
         from udec_ia.output.history_files import HistoryFiles

@@ -32,7 +32,7 @@ class InSession(Generic[T]):
 
 
 def of_session(function: Callable[Concatenate[Session, P], R]) -> Callable[Concatenate[Any, P], R]:
-    """`function` of a session as a method of the same other arguments, name and description."""
+    """`function` of a session as a method of Model with its other arguments, name and docstring."""
 
     def method(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         return function(model.session, *args, **named)
@@ -41,7 +41,7 @@ def of_session(function: Callable[Concatenate[Session, P], R]) -> Callable[Conca
     return method
 
 
-def on_shapes(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Any, P], R]:
+def on_sound_outlines(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Any, P], R]:
     """`op` as a method of the same arguments, for an operation that needs sound outlines."""
 
     def method(model: Any, /, *args: P.args, **named: P.kwargs) -> R:

@@ -30,7 +30,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
-from udec_ia.model.method_forms import InSession, of_session, on_shapes, takes_keywords
+from udec_ia.model.method_forms import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
 from udec_ia.ops.commands import boundary_command as bounds
@@ -58,7 +58,7 @@ T = TypeVar("T")
 
 
 class Model:
-    """A block system and everything that was done to it.
+    """A block system, and the commands that act on it.
 
     build: word scheme, "i16r32", "i32r32", "i16r64", "i32r64" or "i64r64".
     mtop: size of IA() in words, fixed as in 1980; None lets the array grow as needed.
@@ -117,7 +117,7 @@ class Model:
         return self.session.undo.run_whole(self, action)
 
     def deck(self) -> str:
-        """The deck that does what was done until now, in decks and in Python: all but SAVE and RESTART.
+        """The deck of all commands until now, from decks and Python, without SAVE and RESTART.
 
         What was given as `constitutive` is given with it again; words that were written through `h` cannot be
         expressed in it. The deck of a model from a restart file begins as that of the model that was saved.
@@ -128,7 +128,7 @@ class Model:
 
     @outside_array
     def start(self) -> None:
-        """START: a cold start; all that was there is gone."""
+        """START: a cold start; everything before it is discarded."""
         self.session.start()
 
     save = outside_array(of_session(saved_states.save))
@@ -158,7 +158,7 @@ class Model:
 
     @shows
     def stop(self) -> str:
-        """STOP: write what is still open and return the line that sums up the run."""
+        """STOP: write the open files and return the line that sums up the run."""
         self.session.close_files()
         return self.summary()
 
@@ -214,7 +214,7 @@ class Model:
 
     change = changes_array(of_session(block_commands.change))
     generate = changes_array(of_session(block_commands.generate))
-    boundary = changes_array(on_shapes(bounds.boundary))
+    boundary = changes_array(on_sound_outlines(bounds.boundary))
 
     @changes_array
     def function(self, n: int, *tf: float) -> None:
@@ -250,7 +250,7 @@ class Model:
 
     @changes_array
     def rset(self, v: float, ia: int, ioff: int) -> None:
-        """RSET: put the real value v at offset ioff of the group at address ia."""
+        """RSET: write the real value v at offset ioff of the group at address ia."""
         self.session.ensure_ready(sound=False)
         model_settings.rset(self.array, v, ia, ioff)
         self.session.forget_boxes()
@@ -258,7 +258,7 @@ class Model:
 
     @changes_array
     def patch(self, assignments: str) -> None:
-        """PATCH: give words of the array other values by name, as in "block@88.KXD = 0.5, FRAC = 0.1".
+        """PATCH: change words of the array by name, as in "block@88.KXD = 0.5, FRAC = 0.1".
 
         All of them, and only if the state is sound with them (patch_words.py): else error 10, 28 or 30.
         """
@@ -463,7 +463,7 @@ class Model:
         stream: TextIO | None = None,
         values: Values | None = None,
     ) -> str | None:
-        """Run the text of a deck under the debugger, which is talked to at the terminal, or obeys `script`.
+        """Run the text of a deck under the debugger, with commands from the terminal or from `script`.
 
         What is printed goes to `stream`; with a script and no stream it is returned. values: as for `run`.
         """

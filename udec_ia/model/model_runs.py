@@ -62,7 +62,7 @@ def solve(
 
 
 def _log_cycles(session: Session, n: int) -> None:
-    """Log the `n` cycles of a run that has ended early."""
+    """Log the `n` cycles of a run that ended early."""
     session.log.add(cycle, (n,), {})
 
 
@@ -82,7 +82,7 @@ def _solve_statically(session: Session, ratio: float, limit: int, criterion: str
 
 
 def _run_to_rest(session: Session, ratio: float, limit: int, criterion: str, log_part: LogPart) -> Solution:
-    """Up to `limit` cycles to rest."""
+    """Run up to `limit` cycles, to rest."""
     array, monitors = session.array, session.monitors
     diagnosis = RestDiagnosis(monitors.friction_until_rest(array))
     recording = _recording(session, ratio, criterion == MEAN)
@@ -118,7 +118,7 @@ def _run_cycles(
     before = int(array.h.ci[MCTOT])
 
     def confirm_piece() -> None:
-        """The cycles of a run until now are to stay, whatever ends it."""
+        """The cycles of a run until now are not undone, whatever ends it."""
         if mode.python:
             finish(array, recording)
         undo.confirm_piece(session)
@@ -136,7 +136,7 @@ def _run_cycles(
             settled=confirm_piece,
         )
     except BaseException:
-        log_part(int(array.h.ci[MCTOT]) - before)  # they stay
+        log_part(int(array.h.ci[MCTOT]) - before)  # they are not undone
         finish(array, recording)
         with suppress(UdecError):  # of two errors the first one counts
             session.write_histories(recording)

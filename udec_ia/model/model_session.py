@@ -70,7 +70,7 @@ def warn_in_log(text: str) -> None:
 
 
 class Session:
-    """What the methods of one Model work on; Model explains the arguments.
+    """The session of one Model, which explains the arguments.
 
     array: the main array. laws: the user's laws. started: START or RESTART was given. undo: undoes commands.
     written: words were written by RSET or through `h` since the state was last proved. unproved: the state
@@ -91,7 +91,7 @@ class Session:
     ) -> None:
         self.out = out
         self.name = name
-        self.mtop = None if mtop is None else _words(mtop)
+        self.mtop = None if mtop is None else _checked_size(mtop)
         self.scheme = scheme(build)
         self.array = MainArray(self.scheme, self.mtop)
         self.laws = LawBook(constitutive)
@@ -110,7 +110,7 @@ class Session:
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
 
     def _set_process(self) -> None:
-        """What belongs to this process: where messages go, the undo copy, the time."""
+        """Set what belongs to this process: functions for messages, undo copy, start time."""
         self.progress: TextIO | None = None
         self.tell: Callable[[str], None] = warn_in_log
         self.inform: Callable[[str], None] = log.info
@@ -132,7 +132,7 @@ class Session:
 
     @property
     def out(self) -> Path:
-        """The folder for files; a str that it is set to becomes a path."""
+        """The folder for files; a str becomes a path."""
         return self._out
 
     @out.setter
@@ -157,7 +157,7 @@ class Session:
     # ---- the array, and what is proved of it
 
     def start(self) -> None:
-        """START: a cold start; all that was there is gone."""
+        """START: a cold start; everything before it is discarded."""
         self.array = MainArray(self.scheme, self.mtop)
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
@@ -167,13 +167,13 @@ class Session:
         self.started = True
 
     def replace_state(self, *, written: bool, unproved: bool) -> None:
-        """The array is another one: what was known of the state before is forgotten."""
+        """Forget all facts about the former state: the array is another one."""
         self.forget_boxes()
         self.written, self.unproved = written, unproved
         self.monitors = RunMonitors(self.laws, self.warn)
 
     def return_to(self, array: MainArray, lines: Sequence[str]) -> None:
-        """Go on from a former state of this run, to which `lines` have led: what came later is forgotten."""
+        """Continue from a former state of this run, reached by `lines`; everything later is forgotten."""
         with hold():
             self.undo.release()
             self.array = array
@@ -184,21 +184,21 @@ class Session:
             self.replace_state(written=False, unproved=True)
 
     def continue_from(self, lines: Sequence[str], series: list[Series]) -> None:
-        """The state is that of a run that has logged `lines` and recorded `series`."""
+        """Continue a run that has logged `lines` and recorded `series`."""
         self.log, self.continued = CommandLog(lines), True
         self.recorder.replace(series)
         if self.plots is not None:
             self.plots.count = max(self.plots.count, self._last_picture("-plot"))
 
     def note_writes(self) -> None:
-        """Words were written through `h`: commands that follow them prove them first."""
+        """Record that words were written through `h`: commands that follow them prove them first."""
         self.array.h.ci[g.LREADY] = 0
         self.forget_boxes()
         self.undo.release()  # repeated commands would not give these words
         self.written = True
 
     def forget_boxes(self) -> None:
-        """Blocks are not where SPLIT has seen them last."""
+        """Forget the boxes of SPLIT: blocks may have moved."""
         self.split_boxes.forget()
 
     def ensure_ready(self, sound: bool = True, shapes: bool = False) -> None:
@@ -302,7 +302,7 @@ class Session:
         return last_number(self.out, self.name + kind) if self.continued else 0
 
     def write_histories(self, recording: Recording) -> None:
-        """Write what was recorded."""
+        """Write the files of the histories."""
         self.add_files(self.recorder.write(recording, self.out / f"{self.name}-history", self.tell))
 
     def run_progress(self, n: int) -> RunProgress:
@@ -316,7 +316,7 @@ class Session:
         return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
-        """Groups have new addresses: those of the open frame follow them."""
+        """Give the open frame the new addresses of groups."""
         if self.plots is not None:
             self.plots.renumber(moved)
 
@@ -333,13 +333,13 @@ class Session:
         return files
 
     def draw_histories(self) -> list[Path]:
-        """Draw what was recorded. Error 26 if nothing was."""
+        """Draw all histories. Error 26 if nothing was recorded."""
         files = self.recorder.plot(self.name, self.out, self._last_picture("-history"))
         self.add_files(files)
         return files
 
     def close_files(self) -> None:
-        """Write what is still open."""
+        """Write the open frame and the animation."""
         if self.plots is not None:
             self.add_files(self.plots.close())
         if self.animation is not None:
@@ -350,7 +350,7 @@ class Session:
             self.animation = None
 
 
-def _words(mtop: SupportsIndex) -> int:
+def _checked_size(mtop: SupportsIndex) -> int:
     """`mtop` as an integer; TypeError if it is not one."""
     try:
         return operator.index(mtop)

@@ -1,1 +1,1 @@
-"""What a person looks at: PRINT, DUMP, PLOT, animations and progress. Nothing here writes to IA()."""
+"""Output: PRINT, DUMP, PLOT, animations and progress. Nothing here writes to IA()."""

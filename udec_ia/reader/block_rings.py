@@ -1,7 +1,7 @@
 """The lists around blocks: clockwise through corners and contacts, and back from corner to corner.
 
-Those that close are walked all at once. Each of the others is walked by itself, and what breaks is reported.
-A block whose lists do not close still has the corners that they lead to.
+Those that close are walked all at once, each of the others by itself, and what breaks is reported. A block
+whose lists do not close has the corners that they lead to.
 """
 
 from __future__ import annotations
@@ -54,20 +54,21 @@ class _Walker:
 
     def closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, list[int]]:
         """Row of the block and item, for the clockwise lists that close; and the blocks of the others."""
-        row, item, closed = self._closed(blocks)
-        if closed.all():
-            return row, item, []
-        rows, items = [row], [item]
-        broken: list[int] = []
+        heap = self.heap
+        room = (heap.free - 1) // heap.ratio + 1
+        row, item, closed = np.empty(room, INDEX), np.empty(room, np.int64), np.zeros(len(blocks), bool)
+        limits = heap.last("corner"), heap.last("contact"), heap.ratio
+        steps = tuple(heap.offset[name] - 1 for name in (KP, KL, *HOSTS, *FORWARD))
+        found = CLOSED_LISTS(room, heap.h.ia, blocks, limits, steps, row, item, closed)
+        row, item, broken = row[:found].copy(), item[:found].copy(), list[int]()
         for k in np.flatnonzero(~closed).tolist():
             ring, closes = self._walk(int(blocks[k]), "clockwise", boundary)
             if closes:
-                rows.append(np.full(len(ring), k, row.dtype))
-                items.append(np.array(ring, np.int64))
+                at = int(np.searchsorted(row, k))
+                row, item = np.insert(row, at, [k] * len(ring)), np.insert(item, at, ring)
             else:
                 broken.append(int(blocks[k]))
-        order = np.argsort(np.concatenate(rows), kind="stable")
-        return np.concatenate(rows)[order], np.concatenate(items)[order], broken
+        return row, item, broken
 
     def with_others(self, corner: Numbers, owner: Numbers, again: list[int]) -> tuple[Numbers, Numbers]:
         """The corners, and those of the lists of the blocks `again` that are not among them."""
@@ -84,16 +85,6 @@ class _Walker:
             once = np.sort(np.unique(at, return_index=True)[1])
             at, owner = at[once], owner[once]
         return at, owner
-
-    def _closed(self, blocks: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Rows of blocks and items of the lists that close, and which blocks these are."""
-        heap = self.heap
-        room = (heap.free - 1) // heap.ratio + 1
-        row, item, closed = np.empty(room, INDEX), np.empty(room, np.int64), np.zeros(len(blocks), bool)
-        limits = heap.last("corner"), heap.last("contact"), heap.ratio
-        steps = tuple(heap.offset[name] - 1 for name in (KP, KL, *HOSTS, *FORWARD))
-        found = CLOSED_LISTS(room, heap.h.ia, blocks, limits, steps, row, item, closed)
-        return row[:found].copy(), item[:found].copy(), closed
 
     def _walk(
         self, block: int, name: str, along: Callable[[Memory, int], Iterator[int]]

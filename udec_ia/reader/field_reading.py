@@ -1,7 +1,4 @@
-"""Reading a heap without trusting it: fields of groups by name, and what the table says of lists.
-
-The lists of groups (group_lists.py) and the checker (checker/checked_state.py) build on it.
-"""
+"""Reading a heap without trusting it: fields of groups by name, and what the table says of lists."""
 
 from __future__ import annotations
 
@@ -45,10 +42,7 @@ FORWARD = names("contact", "clockwise")[:2]
 
 
 class Reading:
-    """One look at a main array. free: first unused address, as far as it can be believed.
-
-    What breaks ends it in Unsound; the checker notes it and goes on with the rest.
-    """
+    """One look at a main array, which may end in Unsound. free: first unused address, if credible."""
 
     def __init__(self, array: MainArray) -> None:
         self.h = array.h
@@ -75,6 +69,12 @@ class Reading:
         """The places of groups at the addresses `at`, counted in reals from 0."""
         return (at - 1) >> self._shift
 
+    def place_or_end(self, at: Numbers) -> Numbers:
+        """The same for any numbers `at`; the place at MFREE, where no group begins, where none can."""
+        place = self.place(at)
+        good = (at >= 1) & (at < self.free) & (place << self._shift == at - 1)
+        return np.where(good, place, (self.free - 1) >> self._shift)
+
     def common(self, name: str) -> int:
         """An integer of the common block."""
         return int(self.h.ci[getattr(g, name)])
@@ -100,22 +100,18 @@ def allowed(field: Field, values: Numbers) -> Numbers:
 
 
 def in_words(field: Field) -> str:
-    """What the field may hold: "0 to 2, 4 or 6"."""
-    parts = [
+    """What the field may hold: "0 to 2 or 4 or 6"."""
+    return " or ".join(
         f"{low} or more" if high is None else f"{low} to {high}" if high > low else f"{low}"
         for low, high in field.allowed
-    ]
-    return " or ".join([", ".join(parts[:-1]), parts[-1]] if parts[:-1] else parts)
+    )
 
 
 ROOM = 100  # rows that are expected
 
 
 def kernel_rows(kernel: InterpretWhenSmall, groups: int, columns: int, *args: Any, of: type = int) -> Numbers:
-    """The rows that `kernel` finds with `args` and room for some rows; it returns how many there are.
-
-    groups: how many it goes through; of: int or float.
-    """
+    """The rows that `kernel` finds with `args`. groups: how many it goes through; of: int or float."""
     found = room = ROOM
     while found >= room:  # once more, if there are more than had room
         room = found + 1

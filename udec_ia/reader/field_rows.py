@@ -5,7 +5,7 @@ A value that the field table does not allow, and a pointer to something else tha
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import repeat
 from typing import Any
 
@@ -29,23 +29,26 @@ def group_rows(atlas: Atlas, kind: str, at: Any, radix: int = 10) -> list[tuple[
     fields = []
     for word in atlas.shapes[kind]:
         values = atlas.gather(word, at)
-        wide = range(word.first - 1, word.last)
-        words = _joined([digits(atlas.h.ia[at + offset], radix) for offset in wide])
-        meanings = _meanings(atlas, kind, word.field, values)
-        addresses = (at + word.first).tolist()
-        unit = word.field.unit.strip("-")
-        fields.append(
-            zip(addresses, words, repeat(word.name), values.tolist(), repeat(unit), meanings, strict=False)
-        )
+        words = [digits(atlas.h.ia[at + offset], radix) for offset in range(word.first - 1, word.last)]
+        columns = [
+            (at + word.first).tolist(),
+            map(" ".join, zip(*words, strict=True)),
+            repeat(word.name),
+            values.tolist(),
+            repeat(word.field.unit.strip("-")),
+            _meanings(atlas, kind, word.field, values),
+        ]
+        fields.append(zip(*columns, strict=False))
     return list(zip(*fields, strict=True))
 
 
 def span_rows(atlas: Atlas, span: Span, radix: int = 10) -> list[Row]:
     """The rows of one group, and of words of it that no field has, if there is something in them."""
     rows = list(group_rows(atlas, span.kind, np.array([span.first]), radix)[0])
-    for address in _padding(atlas, span):
-        word = atlas.h.ia[address - 1 : address]
-        rows.append((address, digits(word, radix)[0], "", "", "", "no field, but not 0"))
+    for offset in _gaps(atlas, span.kind):
+        word = atlas.h.ia[span.first + offset - 1 : span.first + offset]
+        if word.any():
+            rows.append((span.first + offset, digits(word, radix)[0], "", "", "", "no field, but not 0"))
     return sorted(row for row in rows if row[0] <= span.last)
 
 
@@ -63,12 +66,6 @@ def _gaps(atlas: Atlas, kind: str) -> list[int]:
     return [offset for offset in range(atlas.layout[kind].size) if offset not in taken]
 
 
-def _padding(atlas: Atlas, span: Span) -> Iterator[int]:
-    for offset in _gaps(atlas, span.kind):
-        if span.first + offset <= span.last and atlas.h.ia[span.first + offset - 1]:
-            yield span.first + offset
-
-
 def digits(words: Any, radix: int) -> list[str]:
     """Words in a radix: decimal with a sign, else all digits of the word as it is."""
     if radix == 10:
@@ -82,10 +79,6 @@ def word_width(words: Any, radix: int) -> int:
     """How many characters a word of that type has in a radix, if it has all digits."""
     lowest = np.array([np.iinfo(words.dtype).min], words.dtype)
     return len(digits(lowest, radix)[0])
-
-
-def _joined(parts: list[list[str]]) -> Iterable[str]:
-    return parts[0] if len(parts) == 1 else map(" ".join, zip(*parts, strict=True))
 
 
 def meaning(atlas: Atlas, span: Span, word: Word) -> str:

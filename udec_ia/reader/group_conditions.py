@@ -2,8 +2,7 @@
 
 The part after `where` has the form of a Python expression of fields of the kind, KZG(2) for an element,
 `address`, numbers, names of codes, comparisons, and, or, not, + - * / and abs(). It is never run as Python:
-each node of its tree gives one NumPy array with an element for each group. A part is either a number or a
-truth value; neither stands for the other.
+each node of its tree gives a number or a truth value for each group, as one NumPy array.
 """
 
 from __future__ import annotations
@@ -24,20 +23,10 @@ from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Word
 LONGEST = 500  # characters of a condition: so deep it can be
 ADDRESS = "address"
 CONSTANTS = {head.name: head.value for head in TABLE.heads} | {code.name: code.value for code in TABLE.codes}
-SUMS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-}
-COMPARISONS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-}
+SUMS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+ORDERS = ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE
+OPERATORS = operator.eq, operator.ne, operator.lt, operator.le, operator.gt, operator.ge
+COMPARISONS: dict[type[ast.AST], Callable[[Any, Any], Any]] = dict(zip(ORDERS, OPERATORS, strict=True))
 ALLOWED = "fields, address, numbers, comparisons, and, or, not, + - * /, abs()"
 FORM = re.compile(r"\s*(\S+)(?:\s+(\S+)(.*))?", re.DOTALL)
 
@@ -60,10 +49,7 @@ class Found(NamedTuple):
 
 
 def satisfying(atlas: Atlas, text: str) -> Found:
-    """The groups that a condition such as "block where KXD > 0.1" is true for; a kind alone is all of them.
-
-    Raises Wrong, a ValueError, for an invalid condition.
-    """
+    """The groups that a condition is true for; a kind alone is all of them. Raises Wrong, a ValueError."""
     if len(text) > LONGEST:
         raise ValueError(f"the condition is longer than {LONGEST} characters: shorten it")
     given = FORM.match(text)
@@ -76,9 +62,8 @@ def satisfying(atlas: Atlas, text: str) -> Found:
     if where is None:
         return Found(kind, at, {})
     if where != "where":
-        raise Wrong(
-            text, given.start(2), f"after the kind of group write: where, and a condition of {ALLOWED}"
-        )
+        reason = f"after the kind of group write: where, and a condition of {ALLOWED}"
+        raise Wrong(text, given.start(2), reason)
     judge = _Judge(atlas, kind, text, given.start(3))
     with np.errstate(all="ignore"):
         true = judge.truth(judge.tree(rest))

@@ -18,22 +18,12 @@ import numpy as np
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.group_census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
-from udec_ia.heap.untrusted_lists import chains, wrong_pointers
+from udec_ia.heap.untrusted_lists import chains
 from udec_ia.reader.block_rings import Boundaries, boundaries
-from udec_ia.reader.field_reading import (
-    KIND_CODE,
-    LISTED,
-    TABLE,
-    TARGETS,
-    Numbers,
-    Reading,
-    kernel_rows,
-    names,
-)
+from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
 from udec_ia.reader.list_walks import HEADS
 
 CHAINS = InterpretWhenSmall(chains, 2e7)  # places where a group could begin
-WRONG_POINTERS = InterpretWhenSmall(wrong_pointers, 9e5)  # addresses
 
 
 class Pointers(NamedTuple):
@@ -78,21 +68,17 @@ class Lists(Reading):
 
     def pointers_astray(
         self, kind: str, name: str, i: int, targets: Sequence[str], optional: bool
-    ) -> list[list[int]]:
-        """Row and value of each pointer of groups of `kind` that leads to none of the kinds `targets`
-        followed so far.
+    ) -> list[tuple[int, int]]:
+        """Row and value of the pointers of groups of `kind` to none of `targets`. optional: 0 is allowed."""
+        values = self.h.ia[self.address[kind] + (self.offset[name] + i - 1)]
+        good = self.are_groups(values, targets) | (optional & (values == 0))
+        rows = np.flatnonzero(~good)
+        return list(zip(rows.tolist(), values[rows].tolist(), strict=True))
 
-        optional: 0 is no such pointer.
-        """
-        groups, codes = self.address[kind], np.array([KIND_CODE[one] for one in targets], np.int8)
-        where = self.h.ia, groups, self.offset[name] + i - 1, codes, optional, self.kind_at, self._shift
-        return [*kernel_rows(WRONG_POINTERS, len(groups), 2, *where).tolist()]
-
-    def is_one(self, iad: int, kinds: Sequence[str]) -> bool:
-        """True if a group of the kinds `kinds` followed so far begins at the address `iad`."""
-        place, beside = divmod(iad - 1, self.ratio)
-        there = 0 <= place < len(self.kind_at) and not beside
-        return there and self.kind_at[place] in [KIND_CODE[kind] for kind in kinds]
+    def are_groups(self, at: Numbers, kinds: Sequence[str]) -> Numbers:
+        """True for each of the numbers `at` where a group of the kinds `kinds` followed so far begins."""
+        found = self.kind_at[self.place_or_end(at)]
+        return np.asarray(one_of(found, [KIND_CODE[kind] for kind in kinds]))
 
     def report_lost(self, *kinds: str) -> None:
         """Report groups of these kinds that the census knows, but no list leads to."""
@@ -130,24 +116,17 @@ class Lists(Reading):
         return at[:again]
 
     def _hung(self, kind: str) -> tuple[Numbers, Numbers]:
-        """The groups of `kind`, which stand in no list of the common block but hang on others; their owners.
-
-        They are taken as they come, then tested all at once; if that has led astray, one by one.
-        """
+        """The groups of `kind`, which hang on others, and their owners; one by one, if that leads astray."""
         link = next(iter(names(kind, "next")), None)
         pointers = list(self._pointers_to(kind))
-        parts = [(np.empty(0, np.int64),) * 2, *(self._followed(kind, link, one) for one in pointers)]
+        parts: list[tuple[Numbers, Numbers]] = [(np.empty(0, np.int64),) * 2]
+        for one in pointers:
+            at, many = self._chains(kind, link, one.values) if link else (one.values, 1)
+            parts.append((at, np.repeat(one.owner, many)))
         at, owner = (np.concatenate(found) for found in zip(*parts, strict=True))
         if self._stand(kind, at) and len(np.unique(at)) == len(at):
             return at, owner
         return self._hung_with_care(kind, link, pointers)
-
-    def _followed(self, kind: str, link: str | None, pointers: Pointers) -> tuple[Numbers, Numbers]:
-        """Addresses where `pointers` lead, and what their lists hold; owners. Where one breaks stands 0."""
-        if not link:
-            return pointers.values, pointers.owner
-        at, many = self._chains(kind, link, pointers.values)
-        return at, np.repeat(pointers.owner, many)
 
     def _chains(self, kind: str, link: str, firsts: Numbers) -> tuple[Numbers, Numbers]:
         """Addresses along the lists of `kind` that begin at `firsts`, and how many each list has.

@@ -43,8 +43,8 @@ def select_groups(array: MainArray, kind: str, field: str, address: int | None, 
         raise UdecError(10, "an address and a point", "give one of them", parameter="at")
     if not kind:
         if len(at) or address is not None:
-            detail = f"{field} belongs to no group"
-            raise UdecError(10, detail, "omit address and point", parameter="at" if len(at) else "address")
+            name = "at" if len(at) else "address"
+            raise UdecError(10, f"{field} belongs to no group", "omit address and point", parameter=name)
         return [Selected(0)]
     if address is not None:
         if address not in table(array, kind)["address"]:
@@ -52,17 +52,16 @@ def select_groups(array: MainArray, kind: str, field: str, address: int | None, 
             raise UdecError(30, detail, f"{field} belongs to a {kind}", parameter="address")
         return [Selected(address)]
     if not len(at):
-        detail = f"{field} of which {kind}?"
-        raise UdecError(7, detail, "give its address, or a point near it", parameter="field")
+        advice = "give its address, or a point near it"
+        raise UdecError(7, f"{field} of which {kind}?", advice, parameter="field")
     return _nearest(array, kind, _points(array, at))
 
 
 def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     values = np.asarray(at, float).ravel().tolist()
     if len(values) % 2:
-        raise UdecError(
-            8, f"{counted(len(values), 'coordinate')} given", "a point is x and y", parameter="at"
-        )
+        detail = f"{counted(len(values), 'coordinate')} given"
+        raise UdecError(8, detail, "a point is x and y", parameter="at")
     largest = float(np.finfo(array.scheme.real_type).max)
     for value in values:
         if not abs(value) <= largest:
@@ -99,28 +98,30 @@ def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
     return _extensions(array, rows["address"])
 
 
+def _values_at(addresses: Any, values: Any, wanted: Any) -> Any:
+    """The values (n, ...) of the groups at `addresses` (n,), in the order of the addresses `wanted`."""
+    order = np.argsort(addresses)
+    return values[order[np.searchsorted(addresses, wanted, sorter=order)]]
+
+
 def _middles(array: MainArray, zones: Any) -> Any:
-    address, place = _places(array, "gridpoint")
-    order = np.argsort(address)
-    return place[order][np.searchsorted(address[order], zones["KZG"])].mean(axis=1)
+    return _values_at(*_places(array, "gridpoint"), zones["KZG"]).mean(axis=1)
 
 
 def _subjects(array: MainArray, bounds: Any) -> Any:
     found = np.empty((len(bounds), 2))
     for kind, pointer in SUBJECTS:
-        address, place = _places(array, kind)
-        order, has = np.argsort(address), bounds[pointer] != 0
-        found[has] = place[order][np.searchsorted(address[order], bounds[pointer][has])]
+        has = bounds[pointer] != 0
+        found[has] = _values_at(*_places(array, kind), bounds[pointer][has])
     return found
 
 
 def _domains(array: MainArray, address: Any) -> tuple[Any, Any]:
     contacts = table(array, "contact")
     contacts = contacts[contacts["KCCOD"] != g.VIRTUAL]
-    order = np.argsort(address)
     count, total = np.zeros(len(address)), np.zeros((len(address), 2))
     for side in ("KD1", "KD2"):
-        row = order[np.searchsorted(address[order], contacts[side])]
+        row = _values_at(address, np.arange(len(address)), contacts[side])
         np.add.at(count, row, 1)
         np.add.at(total, row, np.column_stack([contacts["KXC"], contacts["KYC"]]))
     inner = (count > 0) & (address != array.h.ci[g.IODPNT])
@@ -132,12 +133,11 @@ def _extensions(array: MainArray, address: Any) -> tuple[Any, Any]:
     for owner, pointer in OWNERS:
         owners = table(array, owner)
         hosts, place = _places(array, owner)
-        extension = dict(zip(owners["address"].tolist(), owners[pointer].tolist(), strict=True))
-        for host, at in zip(hosts.tolist(), place, strict=True):
-            if extension[host] in address:
-                found.append(extension[host])
-                where.append(at)
-    return np.array(found, np.int64), np.array(where).reshape(-1, 2)
+        extension = _values_at(owners["address"], owners[pointer], hosts)
+        here = np.isin(extension, address)
+        found.append(extension[here])
+        where.append(place[here])
+    return np.concatenate(found), np.concatenate(where)
 
 
 NEIGHBOURS = ("loop", "watched")  # roles of pointers to a group that lies where a group without a block does

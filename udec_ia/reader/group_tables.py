@@ -14,12 +14,11 @@ from udec_ia.reader.group_lists import Lists
 def table(array: MainArray, kind: str) -> Any:
     """All groups of `kind` that the lists reach, one row each, as a copy.
 
-    kind: block, corner, contact, domain, sdef, fdef, zone, gridpoint, jointext, bound, signal or tabpoint.
     Rows stand in list order; corners block by block, clockwise from KP; extensions in the order of their
-    blocks or domains, zones and grid-points block by block.
-    Fields: `address`, then those of the field table by name and in its units, integers as int64, reals
-    in the type of the word scheme; a triple is a field of three. Raises ValueError for an unknown kind
-    and Unsound if the lists are broken, or have lost groups that pointers lead to.
+    blocks or domains, zones and grid-points block by block. Fields: `address`, then those of the field table
+    by name and in its units, integers as int64, reals in the type of the word scheme; a triple is a field of
+    three. Raises ValueError for an unknown kind and Unsound if the lists are broken, or have lost groups that
+    pointers lead to.
     """
     groups = {group.name: group for group in read_table().groups}
     if kind not in groups:

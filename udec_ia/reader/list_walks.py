@@ -56,10 +56,7 @@ def follow(
 
 
 def chain(h: Memory, first: int, link: Offset) -> Iterator[int]:
-    """Groups from `first` on along `link`, of a list that is known to be sound; no address is tested.
-
-    The group at hand may be given back meanwhile.
-    """
+    """Groups of a sound list from `first` on along `link`; the group at hand may be given back meanwhile."""
     while first:
         following = iget(h, first, link)
         yield first
@@ -183,19 +180,16 @@ def loop(h: Memory, domain: int) -> Iterator[tuple[int, int]]:
     def step(here: tuple[int, int]) -> tuple[int, int]:
         item, block = here
         following = next_item(h, block, item)
-        return following, other_block(h, following, block) if kind_of(h, following) == "contact" else block
+        if kind_of(h, following) == "contact":
+            clockwise_link(h, block, following)  # raises Unsound unless the contact names the block
+            one, two = iget(h, following, g.KB1), iget(h, following, g.KB2)
+            block = two if block == one else one
+        return following, block
 
     def link(here: tuple[int, int]) -> str:
         return clockwise_link(h, here[1], here[0])[0]
 
     yield from follow((contact, start), step, link, closed=True)
-
-
-def other_block(h: Memory, contact: int, block: int) -> int:
-    """The block on the other side of `contact`, seen from `block`, in whose list it stands."""
-    clockwise_link(h, block, contact)  # raises Unsound unless the contact names the block
-    one, two = iget(h, contact, g.KB1), iget(h, contact, g.KB2)
-    return two if block == one else one
 
 
 def point(h: Memory, iad: int, kx: Offset, ky: Offset) -> tuple[Any, Any]:

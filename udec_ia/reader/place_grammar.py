@@ -26,10 +26,7 @@ PARTS = {"int": "ci", "real": "cr", "double": "cd"}  # of a Memory, by the type 
 
 
 class PlaceError(ValueError):
-    """A place that cannot be read, or that the heap does not have.
-
-    detail: what is wrong. advice: what to do.
-    """
+    """A place that cannot be read, or is not in the heap. detail: what is wrong; advice: what to do."""
 
     def __init__(self, detail: str, advice: str) -> None:
         self.detail, self.advice = detail, advice
@@ -93,10 +90,9 @@ def read_place(text: str) -> PlaceName:
 
 
 def address_of(atlas: Atlas, place: int | str) -> int:
-    """The first word of a place, for what looks at words and groups.
+    """The first word of a place: an address, which may be any integer, or text.
 
-    place: an address, which may be any integer, or text. Raises PlaceError for a variable of the common block
-    and for a group that is not there.
+    Raises PlaceError for a variable of the common block and for a group that is not there.
     """
     return place if isinstance(place, int) else _words(atlas, read_place(place))[0]
 
@@ -162,10 +158,7 @@ def _element(field: Field, given: int | None) -> int:
 
 
 def find_number(atlas: Atlas, text: str) -> Place:
-    """The number that `text` names: a field, a variable, or a word by its address. Raises PlaceError.
-
-    IndexError for an address outside IA().
-    """
+    """The number that `text` names. Raises PlaceError, and IndexError for an address outside IA()."""
     name = read_place(text)
     if not name.kind and name.field:
         fields = {one.name: one for one in TABLE.common}

@@ -1,7 +1,6 @@
 """A listing: a few sentences and a table, as text, JSON or Python objects.
 
-Text and JSON are made line by line, so that a table of millions of rows needs no memory. Colours are added in
-command_line/coloured_listing.py.
+Text and JSON are made line by line, so that a table of millions of rows needs no memory.
 """
 
 from __future__ import annotations

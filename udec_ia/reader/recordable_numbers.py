@@ -1,8 +1,7 @@
-"""What HISTORY can record: every single number that has a name.
+"""What HISTORY can record: a field of a group, a variable of the common block, or a quantity of the model.
 
-That is a field of a group by its name (KXD), a variable of the common block (TIME), or a quantity of the
-whole model. A history group holds the number of the kind in the order of the table, from 1, or COMMON_BLOCK
-or WHOLE_MODEL.
+A history group holds the number of the kind in the order of the table, from 1, or COMMON_BLOCK or
+WHOLE_MODEL.
 """
 
 from __future__ import annotations

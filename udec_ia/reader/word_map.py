@@ -109,41 +109,33 @@ class Atlas:
     @cached_property
     def bounds(self) -> tuple[Any, Any, Any]:
         """First and last address and kind, by its place in NAMES, of all spans: ascending, without gaps."""
-        wide = np.int32 if len(self.h.ia) < 2**30 else np.int64
-        junk = np.array([one for chain in self.chains for one in chain], wide).reshape(-1, 2)
-        first = np.concatenate([*(at.astype(wide) for at in self.groups.values()), junk[:, 0]])
-        sizes = (np.full(len(at), self.layout[kind].size, wide) for kind, at in self.groups.items())
-        size = np.concatenate([*sizes, junk[:, 1]])
-        many = [*(len(at) for at in self.groups.values()), len(junk)]
-        kind = np.repeat(np.arange(len(many), dtype=wide), many)
+        junk = np.array([one for chain in self.chains for one in chain], np.int64).reshape(-1, 2)
+        sizes = [np.full(len(at), self.layout[kind].size) for kind, at in self.groups.items()]
+        first = np.concatenate([*self.groups.values(), junk[:, 0]])
+        kind = np.repeat(np.arange(len(sizes) + 1), [*map(len, sizes), len(junk)])
         first, once = np.unique(first, return_index=True)  # a group in use goes before junk at its address
-        size, kind = size[once], kind[once]
-        top = min(self.free, len(self.h.ia) + 1)
-        last = np.minimum(first + size, np.append(first[1:], wide(top))) - 1
-        before, after = np.append(wide(1), last + 1), np.append(first, wide(top))  # what lies between
-        gap = np.flatnonzero(before < after)
-        rest = [(top, len(self.h.ia), NAMES.index(UNUSED))] if top <= len(self.h.ia) else []
-        nothing = np.full(len(gap), NAMES.index(NOTHING), wide)
-        parts = [(first, last, kind), (before[gap], after[gap] - 1, nothing)]
-        ends = [np.array([one[c] for one in rest], wide) for c in range(3)]
-        rows = [np.concatenate([*(part[c] for part in parts), ends[c]]) for c in range(3)]
-        order = np.argsort(rows[0], kind="stable")
-        begin, end, kinds = (row[order].astype(np.int64) for row in rows)
-        return begin, end, kinds
+        size, kind = np.concatenate([*sizes, junk[:, 1]])[once], kind[once]
+        behind = np.minimum(first + size, np.append(first[1:], self.free))  # may be the next group, or unused
+        begin = np.concatenate((first, [self.free], behind, [1]))
+        unlinked = np.full(len(behind) + 1, NAMES.index(NOTHING))
+        kind = np.concatenate((kind, [NAMES.index(UNUSED)], unlinked))
+        begin, once = np.unique(begin, return_index=True)  # of several spans at one address the first counts
+        end = np.append(begin[1:], len(self.h.ia) + 1) - 1
+        there = begin <= len(self.h.ia)
+        return begin[there], end[there], kind[once][there]
 
-    def spans(self, first: int = 1, last: int | None = None) -> Iterator[Span]:
-        """What the words `first` to `last` belong to, in rising order and without gaps; each span whole."""
-        begin, end, kind = self.bounds
-        k = int(np.searchsorted(begin, first, "right")) - 1
-        while k < len(begin) and (last is None or begin[k] <= last):
-            yield Span(int(begin[k]), int(end[k]), NAMES[kind[k]])
-            k += 1
+    def spans(self) -> Iterator[Span]:
+        """What all words belong to, in rising order and without gaps."""
+        for first, last, kind in zip(*(column.tolist() for column in self.bounds), strict=True):
+            yield Span(first, last, NAMES[kind])
 
     def span(self, address: int) -> Span:
         """What the word at `address` belongs to. IndexError outside IA()."""
         if not 1 <= address <= len(self.h.ia):
             raise IndexError(f"IA() has the addresses 1 to {len(self.h.ia)}")
-        return next(self.spans(address, address))
+        first, last, kind = self.bounds
+        k = int(np.searchsorted(first, address, "right")) - 1
+        return Span(int(first[k]), int(last[k]), NAMES[kind[k]])
 
     # ---- words
 
@@ -289,10 +281,7 @@ def _hosts(atlas: Atlas, hosts: Any) -> list[str]:
 
 
 def leads_to(atlas: Atlas, target: str, values: Any, required: bool = False) -> list[str]:
-    """What pointers to `target` with the values (n,) lead to, or that it is not what the table says.
-
-    required: 0 is no value for such a pointer.
-    """
+    """What pointers to `target` with the values (n,) lead to, or that this is wrong. required: so is 0."""
     wanted = ASTRAY + ("group" if target == "any" else " or ".join(choices(target)))
     found = np.full(len(values), NOTHING_THERE + (wanted if required else ""), object)
     sound = atlas.holding(target, values)

@@ -25,7 +25,7 @@ OLDER_FILE = "use another restart file, or run the deck again from START"
 
 
 class RefusedError(Exception):
-    """What is wrong with the file (a phrase that follows its name), and what to do about it."""
+    """A file cannot be read: what is wrong (a phrase that follows its name), and what to do."""
 
     def __init__(self, what: str, advice: str = OLDER_FILE) -> None:
         self.what = what
@@ -35,7 +35,7 @@ class RefusedError(Exception):
 
 @contextmanager
 def refusing(path: Path) -> Iterator[None]:
-    """Let nothing but UdecError 29 leave the block."""
+    """Turn every exception within into UdecError 29."""
     try:
         yield
     except RefusedError as error:

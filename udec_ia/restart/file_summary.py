@@ -1,4 +1,4 @@
-"""What a restart file says about itself (`udec info FILE`), without making an array of it."""
+"""The description of a restart file (`udec info FILE`), from its header."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def info(path: str | Path) -> str:
     path = Path(path)
     with refusing(path), opened(path) as file:
         front = read_header(file)
-        scheme, (layout, values) = front.scheme, _understood(file, front)
+        scheme, (layout, values) = front.scheme, _read_values(file, front)
         lines = [("file", str(path)), ("format", _format(file)), ("written", _written(file))]
         lines += [("words", f"{scheme.name}: {scheme.int_bits}-bit integers, {scheme.real_bits}-bit reals")]
         lines += [("layout", layout), *(_state(file, values) if values else [])]
@@ -48,8 +48,8 @@ def info(path: str | Path) -> str:
     return "\n".join(f"{name:10}{printable(value, LINE)}" for name, value in lines)
 
 
-def _understood(file: Contents, front: Words) -> tuple[str, Mapping[str, Any]]:
-    """How the words can be read here, and the common block; {} if they cannot be read."""
+def _read_values(file: Contents, front: Words) -> tuple[str, Mapping[str, Any]]:
+    """Which field table the file has, and its common block; {} if it cannot be read here."""
     if front.table is read_table():
         return "that of this program", front.common
     try:

@@ -67,15 +67,15 @@ def common_places(table: Table) -> Iterator[tuple[Field, slice]]:
 def table_faults(table: Table) -> list[str]:
     """Why a table that came with a file cannot be used: names with two meanings, impossible sizes."""
     names, fields = [group.name for group in table.groups], list(table.common)
-    found = [f"two kinds of group are called {name}" for name in _double(names)]
+    found = [f"two kinds of group are called {name}" for name in _repeated(names)]
     for heads in ([one.name for one in table.heads], [one.value for one in table.heads]):
-        found += [f"two head codes are {one}" for one in _double(heads)]
+        found += [f"two head codes are {one}" for one in _repeated(heads)]
     found += [f"{one.name} is no head code of a group" for one in table.heads if not _is_head(one, names)]
     if len(names) > MAX_KINDS:
         found.append("it has too many kinds of group")
     for group in table.groups:
         fields += group.fields
-        found += [f"group {group.name} has two {name}" for name in _double([f.name for f in group.fields])]
+        found += [f"group {group.name} has two {name}" for name in _repeated([f.name for f in group.fields])]
         if lay_out(group, max(RATIOS)).size > MAX_WORDS:
             found.append(f"group {group.name} is too large")
         first = (group.fields[0].role, in_words(group.fields[0])) if group.fields else ()
@@ -93,6 +93,6 @@ def _is_head(head: HeadCode, kinds: list[str]) -> bool:
     return head.group in kinds and head.value < MAX_HEAD
 
 
-def _double(names: list[Any]) -> list[Any]:
+def _repeated(names: list[Any]) -> list[Any]:
     """Names that occur more than once."""
     return [name for name, times in Counter(names).items() if times > 1]

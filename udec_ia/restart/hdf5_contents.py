@@ -52,13 +52,13 @@ class Contents:
         self._left = size  # bytes that may yet be read
 
     def has(self, place: str) -> bool:
-        """Is there something of this name?"""
+        """True if there is an object at `place`."""
         above, _, name = place.rpartition("/")
         group = self._group(above)
         return bool(group.links.exists(name.encode()))
 
     def has_attribute(self, place: str, name: str) -> bool:
-        """Is there something of this name attached to an object?"""
+        """True if the object at `place` has this attribute."""
         return bool(h5a.exists(self._open(place), name.encode()))
 
     def string(self, place: str) -> bytes:
@@ -93,12 +93,12 @@ class Contents:
             part[:] = raw[:-CHECKSUM].view(kind)[: len(part)]
 
     def has_words(self, place: str, many: int, size: int) -> None:
-        """Judge by the header whether there are so many words of `size` bytes, and count them as read."""
+        """Check in the header that there are `many` words of `size` bytes, and count them as read."""
         self._dataset(place, (many,))
         self._spend(place, many * size)
 
     def attribute(self, place: str, name: str) -> bytes:
-        """A text that is attached to an object."""
+        """The attribute of an object, a text."""
         found = self._attribute(place, name, ())
         kind = found.get_type()
         where = f"{place}, {name}"
@@ -107,7 +107,7 @@ class Contents:
         return bytes(text[()])
 
     def attribute_numbers(self, place: str, name: str, kind: str, shape: tuple[int, ...] = ()) -> Any:
-        """Numbers that are attached to an object."""
+        """The attribute of an object, numbers."""
         found = self._attribute(place, name, shape)
         _check_type(found.get_type(), kind, f"{place}, {name}")
         values = np.empty(shape, kind)
@@ -115,7 +115,7 @@ class Contents:
         return values
 
     def _open(self, place: str) -> Any:
-        """The object at `place`, through groups that hold it themselves."""
+        """The object at `place`, not through links."""
         if not place:
             return self._root
         above, _, last = place.rpartition("/")
@@ -127,7 +127,7 @@ class Contents:
         return h5o.open(group, name)
 
     def _group(self, place: str) -> Any:
-        """The group at `place`, judged when it is first asked for."""
+        """The group at `place`, checked at the first call."""
         if place not in self._groups:
             node = self._open(place)
             if not isinstance(node, h5g.GroupID) or _filters(node):

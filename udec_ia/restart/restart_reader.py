@@ -95,7 +95,7 @@ def load(path: str | Path, force: bool = False, unchecked: bool = False) -> Rest
 
 
 def read_stored_state(path: str | Path) -> StoredState:
-    """The array in the restart file `path`, in whatever state its heap is: to look at, not to go on with.
+    """The array in the restart file `path`, sound or not, for inspection only.
 
     Raises UdecError 29 if the file is not what `save` wrote.
     """

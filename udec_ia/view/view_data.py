@@ -30,7 +30,7 @@ NAMING = {group.name for group in TABLE.groups if any(field.role == "host" for f
 
 
 def state(array: MainArray, name: str, lines: Sequence[str], limit: int) -> dict[str, Any]:
-    """The state of `array`, which is called `name` and came to be by the deck `lines`, as JSON.
+    """The state of `array`, called `name` and made by the deck `lines`, as JSON.
 
     limit: words that the page has room for.
     """
@@ -85,7 +85,7 @@ def _owner(atlas: Atlas, span: Span) -> int:
 
 
 def tables(ratios: set[int]) -> dict[str, Any]:
-    """All that does not change from state to state, for word schemes of these ratios, as JSON.
+    """The data that all states share, for word schemes of these ratios, as JSON.
 
     spans: names of what a span can be, kinds of groups before the rest. layouts: by ratio and kind the size
     of a group and the first word of each field, counted from 0.

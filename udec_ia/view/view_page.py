@@ -1,4 +1,4 @@
-"""One HTML file that holds everything: states, field table, style and scripts.
+"""The page, one HTML file with states, field table, style and scripts.
 
 Nothing in it is taken from elsewhere, and its policy forbids the browser to. Only the style and the script
 that stand in it may work, which it knows by their checksums: what a file or a deck says is shown as text, and
