@@ -10,7 +10,7 @@ from naive.relocate import differences, essence
 from support.mechanics_scenes import G, sound
 
 from udec_ia import Model
-from udec_ia.kernels.drive.unbalanced_force import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"
@@ -92,7 +92,7 @@ def test_the_wall_settles_and_collapses() -> None:
     assert len(blocks) == 25
     free = blocks["KBM"][blocks["KBFIX"] == 0]
     first = G * float(free.max() * free.sum()) ** 0.5
-    assert unbalanced(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cd[TIME]) / 2)
+    assert unbalanced_force(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cd[TIME]) / 2)
 
     height = float((blocks["KBM"] * blocks["KY"]).sum())
     inside = [
@@ -106,7 +106,7 @@ def test_the_wall_settles_and_collapses() -> None:
     above = height - lost - float((blocks["KBM"] * blocks["KY"]).sum())
     two_heavy_blocks = 2 * 8000 * 100.0
     assert above > two_heavy_blocks * 8  # they have come down by most of a course
-    assert unbalanced(m.h, None)[0] < 1e-3 * first  # and come to rest
+    assert unbalanced_force(m.h, None)[0] < 1e-3 * first  # and come to rest
 
 
 def test_the_deck_runs(tmp_path: Path) -> None:
