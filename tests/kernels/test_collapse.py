@@ -12,6 +12,7 @@ from support.mechanics_scenes import G, sound
 from udec_ia import Model
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
+from udec_ia.reader.group_lists import Lists
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"
 GAP = (20.0, 40.0, 10.0, 20.0)
@@ -31,10 +32,13 @@ def test_the_deck_is_the_rigid_part_of_the_reports() -> None:
     assert commands(DECK)[: len(rigid)] == rigid
 
 
-def links(m: Model) -> list[tuple[int, ...]]:
+def links(m: Model) -> bytes:
     """The contacts with what they stand on and between: while these stay, no group changes its neighbours."""
-    rows = m.table("contact")
-    return list(zip(*(rows[name].tolist() for name in ("address", *LINKS)), strict=True))
+    lists = Lists(m.array)
+    contacts = lists.addresses("contact")
+    return b"".join(
+        column.tobytes() for column in (contacts, *(lists.read(contacts, name) for name in LINKS))
+    )
 
 
 def played(last: int, watched: int = CYCLES) -> Model:
@@ -44,7 +48,7 @@ def played(last: int, watched: int = CYCLES) -> Model:
     """
     m = Model()
     now = 0
-    before: list[tuple[int, ...]] = []
+    before = b""
     for line in commands(DECK):
         word, *numbers = line.split()
         if word == "CYCLE":
