@@ -75,7 +75,7 @@ def test_a_cycle_asks_for_what_it_runs(
     monkeypatch.setattr(module, "entry", entry)
     monkeypatch.setattr(module, "updating", lambda h: 1)
     monkeypatch.setattr(module, "entry_if", lambda wanted, kernel, h: 0)  # another test may have compiled it
-    found = module.passes(m.array.h, soft(m.array), (), -1.0, False, ())
+    found = module.passes(m.array.h, soft(m.array.h), (), -1.0, False, ())
     assert asked == ALWAYS | wanted
     assert sum(1 for one in found if one and isinstance(one, int)) == len(asked) + 1  # and the update
     assert not any(found[module.MEASURES])

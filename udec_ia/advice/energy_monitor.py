@@ -37,7 +37,7 @@ from udec_ia.kernels.energy.stored_energy import (
     strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.running.critical_step import bound
@@ -139,7 +139,7 @@ class EnergyMonitor:
 
     def _error(self, array: MainArray, there: float, came: float) -> UdecError:
         h = array.h
-        _, largest, at = greatest_motion(h, soft_in(h))
+        _, largest, at = greatest_motion(h, soft(h))
         step = float(h.cr[g.TDEL])
         share = step / damped_step(h, self.safe.step)
         self._account = None
@@ -155,9 +155,9 @@ class EnergyMonitor:
 
 def _stock(h: Memory) -> Stock:
     """The energies of the model as it is."""
-    soft = soft_in(h)
-    moving = greatest_motion(h, soft)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
-    strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, soft))
+    kinds = soft(h)
+    moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
+    strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, kinds))
     return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
 
 

@@ -82,7 +82,7 @@ class CycleTrace:
         self.state, seen = array.copy(), array
         with interpreted(), suppress(UdecError):
             bound = laws.bind(seen)
-            given = soft(seen), bound.blocks, bound.joints
+            given = soft(seen.h), bound.blocks, bound.joints
             for _ in range(MEMORY_LIMIT):
                 memory = seen.h
                 done = run_unwatched(observe(memory, self._record), 1, given)

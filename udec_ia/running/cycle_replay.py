@@ -21,7 +21,7 @@ class Replay:
     def __init__(self, array: MainArray, laws: LawBook) -> None:
         self.array = array
         self._bound = laws.bind(array)
-        self._given = soft(array), self._bound.blocks, self._bound.joints
+        self._given = soft(array.h), self._bound.blocks, self._bound.joints
         self._recorded = nothing_recorded()
         self._passes = passes(array.h, self._given[0], (), NEVER, False, NO_MARKS)
 

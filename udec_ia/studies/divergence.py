@@ -242,7 +242,7 @@ class _PassStates:
         self._array, self._name = array, ROOT
         with interpreted(), suppress(UdecError):
             bound = laws.bind(array)
-            given = soft(array), bound.blocks, bound.joints
+            given = soft(array.h), bound.blocks, bound.joints
             cycle = int(array.h.ci[g.MCTOT])
             for _ in range(STOPS):
                 run_unwatched(observe(array.h, self._observe), 1, given)

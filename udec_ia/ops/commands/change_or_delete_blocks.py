@@ -29,7 +29,7 @@ from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, items
 from udec_ia.ops.common.deformable_scene import renew_forces
 from udec_ia.ops.common.listed_groups import lose_hosted
-from udec_ia.ops.common.number_limits import constitutive_number, held, material_number
+from udec_ia.ops.common.number_limits import check_real_range, constitutive_number, material_number
 from udec_ia.reader.list_walks import chain
 
 STAYS = "leave the block fully-deformable"
@@ -93,7 +93,7 @@ def _change_types(array: MainArray, changing: list[int], kind: int) -> None:
         add_loads(h, h.cr.dtype.type(0))
         for ib in rigid:
             stress = applied_stress(h, ib)
-            held(array, f"the stress in block@{ib}", stress)
+            check_real_range(array, f"the stress in block@{ib}", stress)
             _put_stress(h, ib, stress)
     forget_blocks(h, [ib for ib in changing if g.MFDEF in (kind, iget(h, ib, HEAD))])
     for ib in changing:
