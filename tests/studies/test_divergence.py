@@ -71,7 +71,7 @@ def test_another_gravity(tmp_path: Path) -> None:
     """The motion of the next cycle feels it."""
     found = decks(tmp_path, "GRAVITY 3 -11")
     assert isinstance(found, Divergence)
-    assert (found.cycle, found.in_pass) == (31, "move_all")
+    assert (found.cycle, found.in_pass) == (31, "move_blocks")
 
 
 @pytest.mark.parametrize("friction", [0.3, 0.29, 0.2])
@@ -166,7 +166,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     kept = [str(tmp_path / name) for name in ("a.h5", "b.h5")]
     assert main(["diverge", str(one), str(two), "--tolerance", "0", "--keep", *kept, "--json"]) == 1
     said = json.loads(capsys.readouterr().out)
-    assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_all" in said["said"][0]
+    assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_blocks" in said["said"][0]
     assert main(["diff", *kept, "--only", "block.KYD"]) == 1
     assert main(["diverge", *kept, "--cycles", "3", "--tolerance", "1"]) == 0
     assert capsys.readouterr().out.endswith("no difference in 3 cycles\n")
