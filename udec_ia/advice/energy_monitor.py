@@ -30,14 +30,14 @@ from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.boundary_conditions import power_of_loads
 from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
     energy_of_motion,
-    height,
-    liveliest,
-    strain_of_blocks,
-    strain_of_contacts,
+    greatest_motion,
+    potential_energy,
+    strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft_in
+from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.running.critical_step import bound
@@ -139,7 +139,7 @@ class EnergyMonitor:
 
     def _error(self, array: MainArray, there: float, came: float) -> UdecError:
         h = array.h
-        _, largest, at = liveliest(h, soft_in(h))
+        _, largest, at = greatest_motion(h, soft(h))
         step = float(h.cr[g.TDEL])
         share = step / damped_step(h, self.safe.step)
         self._account = None
@@ -155,10 +155,10 @@ class EnergyMonitor:
 
 def _stock(h: Memory) -> Stock:
     """The energies of the model as it is."""
-    soft = soft_in(h)
-    moving = liveliest(h, soft)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
-    strained = float(strain_of_contacts(h)) + float(strain_of_blocks(h, soft))
-    return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(height(h)))
+    kinds = soft(h)
+    moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
+    strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, kinds))
+    return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
 
 
 def _grain(array: MainArray) -> float:

@@ -17,14 +17,17 @@ import numpy as np
 from udec_ia.checker.checked_state import State, corner_before
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
-from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
+from udec_ia.kernels.audit.domain_faces import label_cycles, label_pieces, link_passages, sum_areas
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.list_walks import clockwise_link
 
-PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
-PIECES = InterpretWhenSmall(pieces, 6e5)  # contacts
+PASSAGES, CYCLES = (
+    InterpretWhenSmall(link_passages, 1.7e6),
+    InterpretWhenSmall(label_cycles, 3e6),
+)  # items, passages
+PIECES = InterpretWhenSmall(label_pieces, 6e5)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]
@@ -205,7 +208,7 @@ def _check_connected(state: State) -> None:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 
-AREAS = InterpretWhenSmall(areas, 9e5)  # items
+AREAS = InterpretWhenSmall(sum_areas, 9e5)  # items
 
 
 def check_outer(state: State) -> None:

@@ -19,16 +19,16 @@ from udec_ia.kernels.audit.contact_positions import (
     OVERLAP,
     PASSED_OVER,
     PLACE,
-    disordered,
+    contacts_out_of_order,
     locate_on_outlines,
     touching,
-    unlike,
+    wrong_contacts,
 )
 from udec_ia.kernels.audit.outline_arrays import Outlines
 from udec_ia.layout import offsets as g
 from udec_ia.reader.field_reading import HOSTS, INDEX, Numbers, kernel_rows
 
-TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(unlike, 1e6)  # contacts
+TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(wrong_contacts, 1e6)  # contacts
 
 
 class Touches(NamedTuple):
@@ -86,7 +86,7 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
 
 LOCATE = InterpretWhenSmall(locate_on_outlines, 2e5)  # contacts
 ON_EDGE = g.EDGE_CORNER, g.CORNER_EDGE  # codes of contacts on an edge of block KB1, and of block KB2
-DISORDERED = InterpretWhenSmall(disordered, 2e6)  # items
+DISORDERED = InterpretWhenSmall(contacts_out_of_order, 2e6)  # items
 
 
 def place(o: Outlines, touch: Touches, side: int) -> Numbers:

@@ -23,14 +23,14 @@ from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import Touches
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.kernels.audit.outline_arrays import Outlines, in_rounded
-from udec_ia.kernels.audit.outline_intersections import EDGE, crossing, lonely_meetings
+from udec_ia.kernels.audit.outline_intersections import EDGE, intersections_without_contact, mark_crossing
 from udec_ia.reader.field_reading import HOSTS, Numbers, kernel_rows
 
 CHUNK = 100_000  # pairs of blocks looked at together
 AROUND = 8  # directions in which it is looked whether a block holds a point
 LONELY_MEETINGS, CROSSING = (
-    InterpretWhenSmall(lonely_meetings, 1.7e4),
-    InterpretWhenSmall(crossing, 2e4),
+    InterpretWhenSmall(intersections_without_contact, 1.7e4),
+    InterpretWhenSmall(mark_crossing, 2e4),
 )  # pairs
 
 

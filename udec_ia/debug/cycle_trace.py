@@ -3,7 +3,7 @@
 The cycle is run as Python on a memory that reports each access. The accesses are recorded: so the state
 between any two writes can be shown, forwards and backwards, without running anything again.
 
-    pass    what run_cycles calls: move_all, accumulate, ford_all ...
+    pass    what run_cycles calls: move_blocks, accumulate, ford_all ...
     work    one call by a pass: of motion for a block, of ford for a contact
 """
 
@@ -82,7 +82,7 @@ class CycleTrace:
         self.state, seen = array.copy(), array
         with interpreted(), suppress(UdecError):
             bound = laws.bind(seen)
-            given = soft(seen), bound.blocks, bound.joints
+            given = soft(seen.h), bound.blocks, bound.joints
             for _ in range(MEMORY_LIMIT):
                 memory = seen.h
                 done = run_unwatched(observe(memory, self._record), 1, given)

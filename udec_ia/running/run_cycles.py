@@ -47,7 +47,7 @@ def prepare(array: MainArray) -> None:
         check_strained_edges(array)
         return
     if h.ci[g.MCTOT] == 0:
-        make_masses(h, soft(array))
+        make_masses(h, soft(array.h))
     settle_default(array)
     check_strained_edges(array)
     _check_deformable(array)
@@ -149,7 +149,7 @@ def _run(
             cycles = cycles_to_update(array, target - done)
             for one in observers:
                 cycles = one.cycles_ahead(array, cycles)
-            completed = recording.run(cycles, (soft(array), bound.blocks, bound.joints))
+            completed = recording.run(cycles, (soft(array.h), bound.blocks, bound.joints))
             done += completed
             settled()
             for one in observers if completed else ():

@@ -24,7 +24,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
 from udec_ia.ops.common.listed_groups import drop, list_of
-from udec_ia.ops.common.number_limits import finite, held, not_negative, positive, reals, whole
+from udec_ia.ops.common.number_limits import check_real_range, finite, not_negative, positive, reals, whole
 from udec_ia.reader.list_walks import chain
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
@@ -82,7 +82,7 @@ def boundary(
     pressure = (stress, xgrad, ygrad) if presses else None
     loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
     _check_free(array.h, [target[0] for target in loads if target[2] == 0], xvel=xvel, yvel=yvel)
-    held(array, "a force or an impedance", (value for load in loads.values() for value in load))
+    check_real_range(array, "a force or an impedance", (value for load in loads.values() for value in load))
     signal = find_function(array.h, function) if function is not None else 0
     if function is not None and not signal:
         advice = f"define it first: FUNCTION {function} t1 f1 t2 f2 ..."

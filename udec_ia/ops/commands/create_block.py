@@ -11,7 +11,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.block_shape import density_of, makeb
-from udec_ia.kernels.geometry.box_sweep import meeting
+from udec_ia.kernels.geometry.box_sweep import overlapping_boxes
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
@@ -22,7 +22,7 @@ from udec_ia.ops.common.number_limits import (
     EDGE_DIGITS,
     NMAT,
     ROUNDING_DIGITS,
-    bearable,
+    check_mass_range,
     check_resolution,
     constitutive_number,
     finite,
@@ -46,9 +46,9 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     for k, (x, y) in enumerate(corners, 1):
         finite(array, **{f"x{k}": x, f"y{k}": y})
     size = _check_size(array, corners)
-    bearable(array, float(h.cr[g.DENS : g.DENS + NMAT].max()), size)
+    check_mass_range(array, float(h.cr[g.DENS : g.DENS + NMAT].max()), size)
     _check_outline(array, corners)
-    _check_edges(array, corners)
+    _check_edges(array, corners, size)
     require(array, size_of(h, g.NVBL) + len(corners) * size_of(h, g.NVCR) + size_of(h, g.NVDO))
     h = array.h
     ib = new_block(h, material, constitutive)
@@ -76,11 +76,13 @@ def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
     return size
 
 
-def _check_edges(array: MainArray, corners: Sequence[Point]) -> None:
-    """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings."""
+def _check_edges(array: MainArray, corners: Sequence[Point], size: float) -> None:
+    """Error 28 if the reals cannot resolve the shortest edge, error 14 if it cannot hold two roundings.
+
+    size: greatest |x| + |y| of the block.
+    """
     ends = zip(corners, (*corners[1:], corners[0]), strict=True)
     shortest, x, y = min((math.dist(a, b), *b) for a, b in ends)
-    size = max(abs(x) + abs(y) for x, y in corners)
     check_resolution(array, "x1", "an edge", shortest, EDGE_DIGITS, size)
     if array.h.ci[g.LROUND]:
         d = float(array.h.cr[g.DTOL])
@@ -115,7 +117,7 @@ def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[
     boxes = np.hstack([ends.min(axis=1), ends.max(axis=1)])
     if np.ptp(boxes[:, 1]) > np.ptp(boxes[:, 0]):  # the sweep is along x
         boxes = boxes[:, [1, 0, 3, 2]]
-    pairs = np.sort(meeting(np.ascontiguousarray(boxes), len(boxes)), axis=1)
+    pairs = np.sort(overlapping_boxes(np.ascontiguousarray(boxes), len(boxes)), axis=1)
     return [(i, j) for i, j in pairs[np.lexsort(pairs.T[::-1])].tolist()]
 
 

@@ -16,10 +16,15 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
+    kinetic_energy,
+    potential_energy,
+    strain_energy_of_blocks,
+)
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft_in
-from udec_ia.ops.common.number_limits import held
+from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.number_limits import check_real_range
 
 SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 
@@ -92,7 +97,7 @@ def begin(array: MainArray) -> None:
     if h.ci[g.LENER]:
         energy, reference = _energy(array), _height(array) - float(h.cd[g.EPOT])
         put = _put_in(h, energy)
-        held(array, "the energy put in by commands", [put, reference], SUM_BITS)
+        check_real_range(array, "the energy put in by commands", [put, reference], SUM_BITS)
         h.cd[g.EPUT], h.cd[g.ESTOR], h.cd[g.EREF] = put, energy, reference
 
 
@@ -102,27 +107,31 @@ def end(array: MainArray) -> None:
     if h.ci[g.LENER]:
         with np.errstate(over="ignore"):
             h.cd[g.ESTOR] = sum(_stored(h))
-            h.cd[g.EPOT] = float(height(h)) - float(h.cd[g.EREF])
+            h.cd[g.EPOT] = float(potential_energy(h)) - float(h.cd[g.EREF])
 
 
 def _height(array: MainArray) -> float:
     """Potential of gravity against the origin. Error 28 if 64-bit reals cannot hold it."""
-    potential = float(height(array.h))
-    held(array, "the potential of gravity", [potential], SUM_BITS)
+    potential = float(potential_energy(array.h))
+    check_real_range(array, "the potential of gravity", [potential], SUM_BITS)
     return potential
 
 
 def _energy(array: MainArray) -> float:
     """Kinetic and strain energy. Error 28 if 64-bit reals cannot hold it."""
     energy = sum(_stored(array.h))
-    held(array, "the kinetic and strain energy", [energy], SUM_BITS)
+    check_real_range(array, "the kinetic and strain energy", [energy], SUM_BITS)
     return energy
 
 
 def _stored(h: Memory) -> tuple[float, float, float]:
     """Kinetic energy, and strain energy of contacts and of blocks."""
-    soft = soft_in(h)
-    return float(kinetic(h, soft)), float(strain_of_contacts(h)), float(strain_of_blocks(h, soft))
+    kinds = soft(h)
+    return (
+        float(kinetic_energy(h, kinds)),
+        float(contact_strain_energy(h)),
+        float(strain_energy_of_blocks(h, kinds)),
+    )
 
 
 def _put_in(h: Memory, energy: float) -> float:

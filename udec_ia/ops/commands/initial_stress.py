@@ -16,7 +16,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
 from udec_ia.ops.common.deformable_scene import renew_forces
-from udec_ia.ops.common.number_limits import finite, held
+from udec_ia.ops.common.number_limits import check_real_range, finite
 from udec_ia.reader.list_walks import chain
 
 
@@ -38,10 +38,9 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
     stresses: dict[int, dict[int, Triple]] = {}
     for ib in blocks_in(array, where):
         inside = {iad: at(x, y) for iad, x, y in _pieces(h, ib)}
-        # no force on a grid-point is more than a stress times this length
-        length = 4 * float(getr(h, ib, g.KBRO)) * len(inside)
-        for what, factor in (("stress", 1.0), ("force", length)):
-            held(array, f"a {what} in block@{ib}", (factor * s for triple in inside.values() for s in triple))
+        length = max(1.0, 4 * float(getr(h, ib, g.KBRO)) * len(inside))  # greatest force over stress
+        forces = (length * s for triple in inside.values() for s in triple)
+        check_real_range(array, f"a stress or a force in block@{ib}", forces)
         if inside:
             stresses[ib] = inside
     if not stresses:

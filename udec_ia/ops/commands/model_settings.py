@@ -8,7 +8,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import greatest_block
-from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
 from udec_ia.layout import offsets as g
@@ -16,7 +16,14 @@ from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.common.block_ranges import Range, blocks_in
 from udec_ia.ops.common.deformable_scene import renew_forces
-from udec_ia.ops.common.number_limits import bearable, finite, material_number, not_negative, positive, whole
+from udec_ia.ops.common.number_limits import (
+    check_mass_range,
+    finite,
+    material_number,
+    not_negative,
+    positive,
+    whole,
+)
 from udec_ia.reader.list_walks import chain
 
 DEFAULT_FRACTION = 0.1
@@ -39,7 +46,7 @@ def set_property(array: MainArray, material: int, **values: float | None) -> Non
     lame = {"K + 4G/3": bulk + 4 * shear / 3, "K - 2G/3": bulk - 2 * shear / 3}  # constants of plane strain
     finite(array, **lame)
     if "density" in given:
-        bearable(array, given["density"], float(greatest_block(array.h)))
+        check_mass_range(array, given["density"], float(greatest_block(array.h)))
     for name, value in given.items():
         cr[PROPERTIES[name] + i] = value
     cr[g.ALAM1 + i], cr[g.ALAM2 + i] = lame.values()
@@ -144,7 +151,7 @@ def _stop(h: Memory, ib: int) -> None:
     """Set all velocities and strain rates of block `ib`, its corners and grid-points to 0."""
     for k in (g.KXD, g.KYD, g.KTD):
         putr(h, ib, k, 0.0)
-    carry_corners(h, ib)
+    set_corner_velocities(h, ib)
     ie = iget(h, ib, g.KBEX)
     if iget(h, ib, HEAD) == g.MSDEF:
         put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)

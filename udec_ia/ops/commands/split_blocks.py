@@ -103,7 +103,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
         room *= 2
     if status != DONE:
         _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
-    for ib in boxes.blocks[rows[:found]].tolist() if soft(array) else ():
+    for ib in boxes.blocks[rows[:found]].tolist() if soft(array.h) else ():
         if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
     boxes.make_room(array, boxes.n + cuts)

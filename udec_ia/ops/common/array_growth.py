@@ -91,8 +91,8 @@ def all_or_nothing(array: MainArray) -> Iterator[None]:
         yield
     except UdecError:
         h.ia[used : int(array.h.ci[g.MFREE]) - 1] = 0  # as FIND leaves what it has not handed out
-        for part, kept in zip(parts, before, strict=True):
-            part[:] = kept
+        for part, old in zip(parts, before, strict=True):
+            part[:] = old
         array.h = h
         forget_kinds(h.ia)
         raise

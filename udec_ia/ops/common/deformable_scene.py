@@ -13,13 +13,8 @@ from udec_ia.kernels.contact.ford import sum_all_forces
 from udec_ia.layout import offsets as g
 
 
-def soft(array: MainArray) -> Any:
+def soft(h: Memory) -> Any:
     """None if all blocks are rigid, else True."""
-    return soft_in(array.h)
-
-
-def soft_in(h: Memory) -> Any:
-    """The same of a memory."""
     return True if h.ci[g.NSOFT] else None
 
 
@@ -30,4 +25,4 @@ def soft_or_loaded_in(h: Memory) -> Any:
 
 def renew_forces(array: MainArray) -> None:
     """Sum the forces of all contacts again, after a change of blocks between two cycles."""
-    sum_all_forces(array.h, soft(array))
+    sum_all_forces(array.h, soft(array.h))

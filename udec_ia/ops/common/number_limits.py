@@ -99,7 +99,7 @@ def finite(array: MainArray, **numbers: float) -> None:
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
 
 
-def held(array: MainArray, what: str, values: Iterable[float], bits: int | None = None) -> None:
+def check_real_range(array: MainArray, what: str, values: Iterable[float], bits: int | None = None) -> None:
     """Error 28 unless reals of so many bits can hold all calculated values; default: of the word scheme."""
     bits = bits or array.scheme.real_bits
     largest = float(np.finfo(f"f{bits // 8}").max)
@@ -108,10 +108,11 @@ def held(array: MainArray, what: str, values: Iterable[float], bits: int | None 
         raise UdecError(28, detail, f"they end at {largest:.2g}")
 
 
-def bearable(array: MainArray, density: float, radius: float) -> None:
+def check_mass_range(array: MainArray, density: float, radius: float) -> None:
     """Error 28 unless the reals can hold mass and moment of inertia of a square of side 2 `radius`."""
     mass = density * 4 * radius * radius
-    held(array, f"mass or moment of inertia at a density of {density:g}", [mass, mass * radius * radius])
+    what = f"mass or moment of inertia at a density of {density:g}"
+    check_real_range(array, what, [mass, mass * radius * radius])
 
 
 def not_negative(array: MainArray, **numbers: float) -> None:

@@ -108,7 +108,7 @@ class LawBook:
         for one in self.given.values():
             one.failed_at[:] = np.nan
         own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)
-        return Bound(laws if soft(array) else None, laws if followed else None, self, own_blocks)
+        return Bound(laws if soft(array.h) else None, laws if followed else None, self, own_blocks)
 
     def pack(self, array: MainArray) -> Laws:
         """The laws with the present materials of `array`, for kernels; valid until the next call."""
