@@ -12,7 +12,7 @@ from udec_ia import Model
 from udec_ia.kernels.drive import cycle as module
 from udec_ia.kernels.drive import history_recording
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 
 ALWAYS = {"change_map"}
 

@@ -13,7 +13,7 @@ import pytest
 from support.random_scenes import play
 
 from udec_ia import Model
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.dat"))
 

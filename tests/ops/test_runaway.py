@@ -21,7 +21,7 @@ from udec_ia import Model, UdecError
 from udec_ia.advice import energy_monitor
 from udec_ia.cli import main
 from udec_ia.layout import offsets as g
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 
 STACK = """START
 PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5

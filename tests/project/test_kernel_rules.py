@@ -23,7 +23,7 @@ IN_DOUBLES = {  # they sum up over a run, or judge, or solve for what is the sam
     "detect/passage_through_block.py",
     "drive/critical_stiffness.py",
     "drive/kinetic_damping.py",
-    "drive/dynamic_relaxation.py",
+    "drive/damped_forces.py",
     "drive/unbalanced_force.py",
     "energy/stored_energy.py",
     "energy/work_account.py",

@@ -22,7 +22,7 @@ from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.drive.cycle import STRIDE
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.listed_groups import list_of
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 from udec_ia.running.group_names import contact_name
 
 JUDGE = 1000  # cycles of a window

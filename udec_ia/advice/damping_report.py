@@ -8,7 +8,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, integers
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.listed_groups import list_of
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 
 UNDAMPED = Remark("undamped", "damping: none; only friction takes energy")
 

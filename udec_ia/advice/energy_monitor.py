@@ -37,7 +37,7 @@ from udec_ia.kernels.energy.stored_energy import (
     strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import last_digit
 from udec_ia.running.critical_step import bound

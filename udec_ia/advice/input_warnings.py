@@ -21,7 +21,7 @@ from udec_ia.ops.commands.generate_zones import inertia_ratio
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, last_digit
 from udec_ia.printable_text import counted
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}

@@ -17,10 +17,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of
 from udec_ia.kernels.energy.stored_energy import contact_strain_energy, strain_energy_of_blocks
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.group_names import contact_name
 from udec_ia.running.solve_result import Solution

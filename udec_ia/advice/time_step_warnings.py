@@ -9,7 +9,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.damping_modes import BY_CODE
 from udec_ia.layout import offsets as g
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 from udec_ia.running.critical_step import estimate
 from udec_ia.running.group_names import name_and_place
 from udec_ia.running.stiffness_bound import StepLimit, damped_step

@@ -19,7 +19,7 @@ import numpy as np
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.untrusted_lists import groups_along
-from udec_ia.heap_tools.row_matching import Pairs, fold, longest_rising, unique_pairs
+from udec_ia.heap_tools.table_row_matching import Pairs, fold, longest_rising, unique_pairs
 from udec_ia.layout import offsets as g
 from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Word
 

@@ -26,7 +26,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap_tools.block_matching import Side, blocks_of, match_blocks
-from udec_ia.heap_tools.row_matching import Pairs, exclusive_pairs, fold, frequent_pairs, pairs_in_order
+from udec_ia.heap_tools.table_row_matching import Pairs, exclusive_pairs, fold, frequent_pairs, pairs_in_order
 from udec_ia.layout import offsets as g
 from udec_ia.reader.word_map import KINDS, TABLE, choices
 

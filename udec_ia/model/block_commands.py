@@ -7,7 +7,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.offsets import DTOL, KTD
-from udec_ia.model.method_forms import takes_keywords
+from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks

@@ -30,7 +30,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
-from udec_ia.model.method_forms import InSession, of_session, on_sound_outlines, takes_keywords
+from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
 from udec_ia.ops.commands import boundary_command as bounds

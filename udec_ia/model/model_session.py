@@ -37,7 +37,7 @@ from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import in_short

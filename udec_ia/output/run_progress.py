@@ -16,7 +16,7 @@ from udec_ia.compiling.compile_duration import working_time
 from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
+from udec_ia.ops.common.kernel_arguments import soft_or_loaded_in
 from udec_ia.printable_text import counted, printable
 from udec_ia.running.critical_step import fraction_in_words
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_with_records
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.history_series import NEVER, NO_MARKS, nothing_recorded

@@ -18,7 +18,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
 from udec_ia.ops.common.array_growth import keep_spare
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
 from udec_ia.reader.list_walks import chain
 from udec_ia.running.critical_step import time_step

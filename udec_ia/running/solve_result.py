@@ -18,9 +18,9 @@ from udec_ia.kernels.drive.unbalanced_force import (
     unbalanced_force,
 )
 from udec_ia.kernels.energy.stored_energy import greatest_motion
-from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
+from udec_ia.ops.common.kernel_arguments import soft_or_loaded_in
 from udec_ia.printable_text import counted
-from udec_ia.remark_key import Remark
+from udec_ia.remark import Remark
 from udec_ia.running.group_names import name_of
 
 MAX, MEAN = "max", "mean"  # criterion of SOLVE: the greatest unbalanced force, or the mean of all

@@ -38,8 +38,8 @@ from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
 from udec_ia.kernels.detect.domain_pass import accumulate
 from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.detect.update import updating
+from udec_ia.kernels.drive.damped_forces import relax
 from udec_ia.kernels.drive.damping_modes import mode_of
-from udec_ia.kernels.drive.dynamic_relaxation import relax
 from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.work_account import (

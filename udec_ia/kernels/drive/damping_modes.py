@@ -1,7 +1,7 @@
 """The damping modes that only lead to rest, in one table: LOCAL, COMBINED, KINETIC, ADAPTIVE.
 
 DAMPING, the passes of a run, the safe time-step, warnings and `udec info` read it. The effect of a mode on
-forces and velocities is in dynamic_relaxation.py and kinetic_damping.py. At most one mode acts at a time
+forces and velocities is in damped_forces.py and kinetic_damping.py. At most one mode acts at a time
 (LREST, RESTF). Rayleigh damping (ALPHA, BETA) is separate.
 """
 
@@ -20,7 +20,7 @@ class DampingMode(NamedTuple):
     keyword: in DAMPING; its upper-case letters must be typed. code: value of LREST. help: for HELP DAMPING.
     report: for the beginning of a run, with {f} for the fraction RESTF. fraction: name of its number, 0 to 1;
     "" without a number. motion_pass: kernel that evaluates the motion of the whole model before each step;
-    None if not needed. changes_forces: kernels/drive/dynamic_relaxation.py replaces the unbalanced forces.
+    None if not needed. changes_forces: kernels/drive/damped_forces.py replaces the unbalanced forces.
     keeps_forces: it needs those of the previous cycle. stiffens: for motion that reverses in every cycle
     joints are 1 + f times as stiff, so the safe step is shorter. sets_alpha: the mode calculates ALPHA and
     ALPB.

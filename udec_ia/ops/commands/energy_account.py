@@ -23,7 +23,7 @@ from udec_ia.kernels.energy.stored_energy import (
     strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.number_limits import check_real_range
 
 SUM_BITS = 64  # of the reals that hold the account, in every word scheme

@@ -30,7 +30,7 @@ from udec_ia.ops.commands.remove_edge_points import flag_around
 from udec_ia.ops.commands.triangulation import Mesh, mesh
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, items, why_no_block
-from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import chain
 

@@ -15,7 +15,7 @@ from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
-from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import check_real_range, finite
 from udec_ia.reader.list_walks import chain
 

@@ -15,7 +15,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.common.block_ranges import Range, blocks_in
-from udec_ia.ops.common.deformable_scene import renew_forces
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import (
     check_mass_range,
     finite,
@@ -89,7 +89,7 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
 def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> None:
     """DAMPING LOCAL f and the other modes of the table, which replace mass damping.
 
-    f: fraction of the unbalanced force, or of critical damping (kernels.drive.dynamic_relaxation), up to 1.
+    f: fraction of the unbalanced force, or of critical damping (kernels.drive.damped_forces), up to 1.
     The modes act on strain rates of simply-deformable blocks, too. Stiffness damping stays as it is.
     """
     not_negative(array, **{mode.argument: f})

@@ -26,7 +26,7 @@ from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
-from udec_ia.ops.common.deformable_scene import renew_forces, soft, soft_or_loaded_in
+from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
 
 CROSSINGS = 64  # room for the crossings of one block at first

@@ -18,7 +18,7 @@ from udec_ia.kernels.constitutive.block_laws import AT_JOINTS, IN_BLOCKS, number
 from udec_ia.kernels.constitutive.joint_properties import material_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.material import ARRAYS, Material
-from udec_ia.ops.common.deformable_scene import soft
+from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.number_limits import NCONS, NMAT
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
 from udec_ia.printable_text import printable
