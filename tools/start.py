@@ -121,7 +121,7 @@ def test(python: Path, options: list[str], typed: bool) -> int:
     if not options:  # all tests: what they need is compiled once, and not by each of the workers
         step(python, "tools/compile_for_tests.py", str(WORKERS + 1))  # five tasks in two turns
     statuses = [
-        step(python, "-m", "pytest", "-n", str(WORKERS), *options),
+        step(python, "-m", "pytest", "-n", str(WORKERS), "--dist", "worksteal", *options),
         step(python, "-m", "ruff", "check", "."),
         step(python, "-m", "ruff", "format", "--check", "."),
         step(python, "-m", "mypy") if typed else 0,

@@ -15,7 +15,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from threading import current_thread, main_thread
-from typing import Any
+from typing import Any, NoReturn
 
 import udec_ia
 from udec_ia.command_line import VERBS as WORKSHOP
@@ -31,9 +31,16 @@ ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
 VERBS = ("run", *WORKSHOP)
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose messages repeat no control characters of the arguments to the terminal."""
+
+    def error(self, message: str) -> NoReturn:
+        super().error(visible(message))
+
+
 def arguments() -> argparse.ArgumentParser:
     """The command line."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="udec",
         description="The distinct element program UDEC. Alone, it takes commands from the terminal; with the "
         "name of a deck it runs it.",

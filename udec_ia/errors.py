@@ -1,8 +1,7 @@
 """The numbered errors of Appendix I-2, and the few that this program adds.
 
-Numbers 1 to 26 are those of 1980, without 21 (DELETE takes fully-deformable blocks away); from 27 on they are
-ours. An error carries the place in the deck
-where it arose, when it arose in a deck.
+Numbers 1 to 26 are those of 1980, without 21 (DELETE takes fully-deformable blocks away); 27 and above are
+new. An error that arises in a deck carries its place there.
 """
 
 from __future__ import annotations
@@ -10,46 +9,25 @@ from __future__ import annotations
 from udec_ia.printable_text import MESSAGE, printable
 
 ERRORS = {  # number: message, and what to do about it
-    1: (
-        "memory overflow",
-        "use a larger --mtop, or omit --mtop and choose a --build with wider integers",
-    ),
-    2: (
-        "unrecognisable command",
-        "HELP lists the commands",
-    ),
+    1: ("memory overflow", "use a larger --mtop, or omit --mtop and choose a --build with wider integers"),
+    2: ("unrecognisable command", "HELP lists the commands"),
     3: (
         "not START or RESTART as first command",
         "put START before this line, or RESTART to continue from a saved state",
     ),
-    4: (
-        "material number out of range",
-        "material numbers run from 1 to 50",
-    ),
-    5: (
-        "block has less than 3 corners",
-        "give at least three corners, clockwise",
-    ),
+    4: ("material number out of range", "material numbers run from 1 to 50"),
+    5: ("block has less than 3 corners", "give at least three corners, clockwise"),
     6: (
         "negative or zero block area",
         "give the corners in clockwise order, along an outline that does not cross itself",
     ),
-    7: (
-        "missing parameter",
-        "HELP and the name of the command show its form",
-    ),
-    8: (
-        "missing y-value",
-        "x and y of a point must stand on one line",
-    ),
+    7: ("missing parameter", "HELP and the name of the command show its form"),
+    8: ("missing y-value", "x and y of a point must stand on one line"),
     9: (
         "constitutive number out of range",
         "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
     ),
-    10: (
-        "unrecognised parameter",
-        "HELP and the name of the command list its parameters",
-    ),
+    10: ("unrecognised parameter", "HELP and the name of the command list its parameters"),
     11: (
         "contact stiffnesses undefined: cannot cycle",
         "give KN and KS of every material in use: PROPERTY MAT=1 KN=... KS=...",
@@ -82,10 +60,7 @@ ERRORS = {  # number: message, and what to do about it
         "only one block may be created at present: use SPLIT for more",
         "make the first block large enough, then SPLIT it and DELETE the parts not needed",
     ),
-    19: (
-        "cannot delete final contact in problem",
-        "at least two blocks must remain",
-    ),
+    19: ("cannot delete final contact in problem", "at least two blocks must remain"),
     20: (
         "internal error, the main array is damaged",
         "check the last RSET, or go back to a state that was saved before it",
@@ -98,38 +73,23 @@ ERRORS = {  # number: message, and what to do about it
         "not available yet",
         'AUTOMATIC zones need one more package: python -m pip install "pythoncdt>=2.0"',
     ),
-    24: (
-        "cannot find block in range",
-        "a block counts by its centroid: PRINT BLOCKS shows the centroids",
-    ),
+    24: ("cannot find block in range", "a block counts by its centroid: PRINT BLOCKS shows the centroids"),
     25: (
         "zone pointer references non-existent grid-point",
         "zones refer to grid-points by number; the last grid-point given is number 1",
     ),
-    26: (
-        "missing data",
-        "the three grid-points of a zone must stand on one line",
-    ),
+    26: ("missing data", "the three grid-points of a zone must stand on one line"),
     27: (
         "split line runs too close to a corner or an edge",
         "move the line: it may pass exactly through a corner, but not graze one",
     ),
-    28: (
-        "value out of range",
-        "HELP and the name of the command show what it takes",
-    ),
+    28: ("value out of range", "HELP and the name of the command show what it takes"),
     29: (
         "restart file cannot be used",
         "check the name of the file and whether it is complete: udec info FILE",
     ),
-    30: (
-        "address outside the main array",
-        "addresses run from 1 to MFREE: DUMP 1 1 shows it",
-    ),
-    31: (
-        "file cannot be written",
-        "check the name of the folder, and that it can be written to",
-    ),
+    30: ("address outside the main array", "addresses run from 1 to MFREE: DUMP 1 1 shows it"),
+    31: ("file cannot be written", "check the name of the folder, and that it can be written to"),
     32: (
         "zone or block has turned inside out",
         "use a stiffer material, a smaller FRACTION or smaller loads",
@@ -138,10 +98,7 @@ ERRORS = {  # number: message, and what to do about it
         "zones do not fill the block",
         "the zones must cover the block side to side, each side between two grid-points once",
     ),
-    34: (
-        "constitutive law cannot be used",
-        "correct the file that --constitutive names",
-    ),
+    34: ("constitutive law cannot be used", "correct the file that --constitutive names"),
     35: (
         "constitutive law returned no finite number",
         "check divisions and square roots in the law, and the properties of the material",
@@ -150,16 +107,13 @@ ERRORS = {  # number: message, and what to do about it
         "coordinate or force beyond the precision",
         "FIX or DELETE the blocks that fly away, apply smaller loads, or use 64-bit reals",
     ),
-    37: (
-        "more energy than was put in",
-        "take a smaller FRACTION, or FRACTION f SAFE",
-    ),
+    37: ("more energy than was put in", "take a smaller FRACTION, or FRACTION f SAFE"),
 }
 MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
 ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
 
 
-# Numbers that kernels put into NERR, or that are asked for elsewhere
+# Numbers that kernels put into NERR, or that other modules test
 OVERFLOW = 1
 TOO_SHORT = 14  # an edge can no longer hold its roundings
 OVERLAP_TOO_GREAT = 15  # blocks overlap by more than DTOL2, or without a contact
@@ -169,12 +123,7 @@ LAW_FAILED = 35
 TOO_FAR = 36
 OUT_OF_NOWHERE = 37
 
-DISORDERED = (
-    TOO_SHORT,
-    OVERLAP_TOO_GREAT,
-    INSIDE_OUT,
-    TOO_FAR,
-)  # leave blocks too deep or too thin
+DISORDERED = TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR  # leave blocks too deep or too thin
 
 
 def spoilt(number: int, cycle: int) -> str:
@@ -219,9 +168,9 @@ class UdecError(Exception):
         if self.source is not None and self.column is not None:
             lines += [f"    {self.source}", "    " + " " * (self.column - 1) + "^"]
         lines += [printable(self.advice, MESSAGE)] if self.advice else []
-        what = "the damaged state is" if self.number == DAMAGED else "the results so far are"
-        saved = f"{what} saved in {self.saved}"
-        lines += [printable(saved, MESSAGE)] if self.saved else []
+        if self.saved:
+            what = "the damaged state is" if self.number == DAMAGED else "the results so far are"
+            lines.append(printable(f"{what} saved in {self.saved}", MESSAGE))
         return "\n".join(lines)
 
 

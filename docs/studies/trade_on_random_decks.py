@@ -151,7 +151,7 @@ def truth(study: AccuracyStudy, runner: SettingRunner) -> dict[str, float]:
     runner.run_rows(rows)
     values = [[row.result.quantities[name] for row in rows if row.result] for name in study.known]
     found = [extrapolate(one, 12.0) for one in values]
-    return {name: one.value for name, one in zip(study.known, found, strict=True) if one}
+    return {name: one.value for name, one in zip(study.known, found, strict=True)}
 
 
 def error(quantities: dict[str, float], true: dict[str, float]) -> float:

@@ -80,9 +80,9 @@ def test_passes_and_groups_come_in_their_order(trace: CycleTrace) -> None:
     while (one := trace.here()) is not None:
         passes.append(one.work.of)
         trace.go(trace.next_stop("pass", 1))
-    assert [name for name in passes if name != "run_cycles"] == ["move_all", "accumulate", "ford_all"]
+    assert [name for name in passes if name != "run_cycles"] == ["move_blocks", "accumulate", "ford_all"]
     trace.go(0)
-    while (one := trace.here()) is not None and one.work.of == "move_all":
+    while (one := trace.here()) is not None and one.work.of == "move_blocks":
         groups.append(one.work.group)
         trace.go(trace.next_stop("group", 1))
     blocks = Atlas(trace.state.h).groups["block"].tolist()
@@ -105,7 +105,7 @@ def test_who_wrote_a_word(debugger: Debugger) -> None:
         told = "\n".join(explain_write(timeline, event, word))
         if find_number(atlas, f"block@{block}.KBFIX").value(atlas.h):
             continue
-        found = re.search(r"-> (\S+) .* in (\w+) \((\w+\.py):(\d+)\), move_all, \w+ of block@(\d+)", told)
+        found = re.search(r"-> (\S+) .* in (\w+) \((\w+\.py):(\d+)\), move_blocks, \w+ of block@(\d+)", told)
         assert found, told
         assert float(found[1]) == word.value(timeline.at(event).h)
         source = next(Path(__file__).parents[2].glob(f"udec_ia/kernels/*/{found[3]}"))

@@ -41,7 +41,7 @@ def test_no_memory_left_in_a_run_does_not_say_that_nothing_was_done(
     def none_left(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("udec_ia.running.history_series.run_watched", none_left)
+    monkeypatch.setattr("udec_ia.running.history_series.run_with_records", none_left)
     with pytest.raises(UdecError, match="the results so far are kept") as caught:
         m.run("CYCLE 5\n")
     assert caught.value.number == 1
@@ -63,7 +63,7 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
     """After the cycle was completed with more memory, or at once if there is none."""
     m = side_by_side(mtop=mtop)
     m.cycle(3)
-    run, calls = history_series.run_watched, []
+    run, calls = history_series.run_with_records, []
 
     def run_short(h: object, n: int, *given: object) -> tuple[int, bool]:
         calls.append(n)
@@ -73,7 +73,7 @@ def test_an_error_of_a_cycle_that_runs_out_of_memory_is_raised(
         room(m.array.h, len(m.array.h.ia) + 1)
         return 0, False
 
-    monkeypatch.setattr(history_series, "run_watched", run_short)
+    monkeypatch.setattr(history_series, "run_with_records", run_short)
     with pytest.raises(UdecError) as caught:
         m.cycle(5)
     assert caught.value.number == 15

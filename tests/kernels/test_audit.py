@@ -76,7 +76,7 @@ def test_lists_are_followed_as_far_as_they_can_be(links: list[int], firsts: list
 def test_cycles_of_a_permutation(order: list[int], nowhere: set[int]) -> None:
     """What leads nowhere, the last place, is in no cycle; nor is what leads there."""
     following = np.array([9 if k in nowhere else to for k, to in enumerate(order)] + [9])
-    _, (_, smallest) = both(domain_faces.cycles, following, np.zeros(10, np.int64))
+    _, (_, smallest) = both(domain_faces.label_cycles, following, np.zeros(10, np.int64))
     for start in range(9):
         walk, k = [start], int(following[start])
         while k not in walk and k != 9:
@@ -93,7 +93,7 @@ def test_pieces_hang_together(joined: list[tuple[int, int]]) -> None:
             if a >= 0 and b >= 0:
                 expected[a] = expected[b] = min(expected[a], expected[b])
     pairs = np.array(joined, np.int32).reshape(-1, 2)
-    _, after = both(domain_faces.pieces, pairs[:, 0].copy(), pairs[:, 1].copy(), np.zeros(12, np.int32))
+    _, after = both(domain_faces.label_pieces, pairs[:, 0].copy(), pairs[:, 1].copy(), np.zeros(12, np.int32))
     assert after[-1].tolist() == expected
 
 

@@ -10,8 +10,9 @@ from naive.relocate import differences, essence
 from support.mechanics_scenes import G, sound
 
 from udec_ia import Model
-from udec_ia.kernels.drive.unbalanced_force import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout.offsets import ALPHA, MCTOT, TIME
+from udec_ia.reader.group_lists import Lists
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"
 GAP = (20.0, 40.0, 10.0, 20.0)
@@ -31,10 +32,13 @@ def test_the_deck_is_the_rigid_part_of_the_reports() -> None:
     assert commands(DECK)[: len(rigid)] == rigid
 
 
-def links(m: Model) -> list[tuple[int, ...]]:
+def links(m: Model) -> bytes:
     """The contacts with what they stand on and between: while these stay, no group changes its neighbours."""
-    rows = m.table("contact")
-    return list(zip(*(rows[name].tolist() for name in ("address", *LINKS)), strict=True))
+    lists = Lists(m.array)
+    contacts = lists.addresses("contact")
+    return b"".join(
+        column.tobytes() for column in (contacts, *(lists.read(contacts, name) for name in LINKS))
+    )
 
 
 def played(last: int, watched: int = CYCLES) -> Model:
@@ -44,7 +48,7 @@ def played(last: int, watched: int = CYCLES) -> Model:
     """
     m = Model()
     now = 0
-    before: list[tuple[int, ...]] = []
+    before = b""
     for line in commands(DECK):
         word, *numbers = line.split()
         if word == "CYCLE":
@@ -92,7 +96,7 @@ def test_the_wall_settles_and_collapses() -> None:
     assert len(blocks) == 25
     free = blocks["KBM"][blocks["KBFIX"] == 0]
     first = G * float(free.max() * free.sum()) ** 0.5
-    assert unbalanced(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cd[TIME]) / 2)
+    assert unbalanced_force(m.h, None)[0] <= first * exp(-float(m.h.cr[ALPHA] * m.h.cd[TIME]) / 2)
 
     height = float((blocks["KBM"] * blocks["KY"]).sum())
     inside = [
@@ -106,7 +110,7 @@ def test_the_wall_settles_and_collapses() -> None:
     above = height - lost - float((blocks["KBM"] * blocks["KY"]).sum())
     two_heavy_blocks = 2 * 8000 * 100.0
     assert above > two_heavy_blocks * 8  # they have come down by most of a course
-    assert unbalanced(m.h, None)[0] < 1e-3 * first  # and come to rest
+    assert unbalanced_force(m.h, None)[0] < 1e-3 * first  # and come to rest
 
 
 def test_the_deck_runs(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from udec_ia.compiling.interpreted_kernels import interpreted, observe
 from udec_ia.heap.accessors import int64, size_of
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.contact.ford import ford
-from udec_ia.kernels.energy.work_account import note_contact
+from udec_ia.kernels.energy.work_account import add_contact_work
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.laws.registered_laws import LawBook
@@ -92,7 +92,7 @@ def test_a_force_needs_no_other_contact(own: bool, kept: bool, build: str, modul
         for ic in contacts["address"][contacts["KCCOD"] != g.VIRTUAL].tolist():
             touched.begin()
             with interpreted():
-                account = note_contact if kept else 0
+                account = add_contact_work if kept else 0
                 waits = ford(observe(model.h, touched.tell), int64(ic), True, laws, account, False)
             assert waits in (0, -ic if own else ic)
             found.append(waits != 0)

@@ -8,7 +8,7 @@ from udec_ia import Model, UdecError
 from udec_ia.compiling.non_inlined_calls import entry
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.kernels.detect.passage_through_block import gone_through
+from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.drive import cycle as passes
 from udec_ia.layout import offsets as g
 from udec_ia.running import history_series
@@ -41,7 +41,7 @@ def runs_of(monkeypatch: pytest.MonkeyPatch, found: bool) -> list[int]:
         phases.append(int(h.ci[g.JPHASE]))
         these = list(find(h, *others))
         wanted = found or phases[-1] == g.AT_WAYS
-        these[passes.TUNNELLING] = entry(gone_through, h) if wanted else 0
+        these[passes.TUNNELLING] = entry(detect_passages, h) if wanted else 0
         return tuple(these)
 
     monkeypatch.setattr(history_series, "passes", told)

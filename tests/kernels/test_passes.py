@@ -38,15 +38,23 @@ def loaded() -> Model:
     [
         (rigid, None, set()),
         (rigid, lambda m: m.damping(0.5, 10.0), set()),
-        (rigid, lambda m: m.energy("on"), {"note_rigid", "note_contact"}),
+        (rigid, lambda m: m.energy("on"), {"add_rigid_work", "add_contact_work"}),
         (rigid, lambda m: m.damping(local=0.8), {"relax"}),
-        (rigid, lambda m: m.damping(kinetic=True), {"look_at_motion", "relax"}),
-        (rigid, lambda m: m.damping(adaptive=1.0), {"look_at_motion"}),
+        (rigid, lambda m: m.damping(kinetic=True), {"damp_by_motion", "relax"}),
+        (rigid, lambda m: m.damping(adaptive=1.0), {"damp_by_motion"}),
         (rigid, lambda m: m.fraction(0.9, scaled=True), {"relax"}),
         (strained, None, set()),
-        (strained, lambda m: m.energy("on"), {"note_forces", "note_stresses", "note_contact"}),
-        (loaded, None, {"apply_bounds"}),
-        (loaded, lambda m: m.energy("on"), {"apply_bounds", "note_rigid", "note_loads", "note_contact"}),
+        (
+            strained,
+            lambda m: m.energy("on"),
+            {"add_work_before_motion", "add_work_after_motion", "add_contact_work"},
+        ),
+        (loaded, None, {"apply_boundary_conditions"}),
+        (
+            loaded,
+            lambda m: m.energy("on"),
+            {"apply_boundary_conditions", "add_rigid_work", "add_load_work", "add_contact_work"},
+        ),
     ],
 )
 def test_a_cycle_asks_for_what_it_runs(

@@ -14,7 +14,7 @@ from support.mechanics_scenes import G, block, box, model, on_base
 from support.safe_step_scenes import draw
 
 from udec_ia import Model, UdecError
-from udec_ia.kernels.energy.stored_energy import kinetic
+from udec_ia.kernels.energy.stored_energy import kinetic_energy
 from udec_ia.layout import offsets as g
 
 KN, DENSITY = 1e8, 1000.0
@@ -32,14 +32,14 @@ def sign(v: float) -> float:
 
 def bounces(way: str, f: float, dt: float, cycles: int) -> list[float]:
     """Velocities of a block of 1 x 1 m, dropped without a gap on two springs of KN, cycle by cycle."""
-    m, v, fall, before, kinetic, alpha = DENSITY, 0.0, 0.0, 0.0, 0.0, 0.0
+    m, v, fall, before, kinetic_energy, alpha = DENSITY, 0.0, 0.0, 0.0, 0.0, 0.0
     found = []
     for _ in range(cycles):
         now = m * v * v / 2
         if way == "kinetic":
-            if now < kinetic:
+            if now < kinetic_energy:
                 v, now = 0.0, 0.0
-            kinetic = now
+            kinetic_energy = now
         force = 2 * KN * max(-fall, 0.0) - m * G
         damped = force
         if way == "adaptive":
@@ -49,7 +49,7 @@ def bounces(way: str, f: float, dt: float, cycles: int) -> list[float]:
             damped = force - f * abs(force) * sign(v)
         elif way == "combined":
             damped = force - f * abs(force) * (sign(v) - sign(force - before)) / 2
-        elif way == "kinetic" and kinetic == 0:  # half a step from rest
+        elif way == "kinetic" and kinetic_energy == 0:  # half a step from rest
             damped = force / 2
         before = force
         v = (v * (1 - alpha * dt / 2) + damped / m * dt) / (1 + alpha * dt / 2)
@@ -153,9 +153,9 @@ def test_a_slanted_block_that_strains_stays_stable_near_the_bound(way: dict[str,
         if row["KBFIX"] == 0:
             v = float(rng.uniform(-1, 1)) * 1e-8 * float(row["KBRO"]) / float(m.h.cr[g.TDEL])
             m.rset(v, int(row["address"]), speed)
-    first = float(kinetic(m.h, True))
+    first = float(kinetic_energy(m.h, True))
     m.cycle(2000)
-    assert float(kinetic(m.h, True)) < 0.5 * first
+    assert float(kinetic_energy(m.h, True)) < 0.5 * first
 
 
 @pytest.mark.parametrize("way", [*WAYS, {}], ids=lambda way: next(iter(way), "static"))

@@ -8,7 +8,7 @@ import pytest
 from support.mechanics_scenes import G
 
 from udec_ia import Model
-from udec_ia.kernels.drive.unbalanced_force import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout.offsets import TDEL
 
 DECK = Path(__file__).parents[2] / "examples" / "collapse-rigid.dat"
@@ -36,18 +36,18 @@ def test_a_step_that_damping_makes_unstable_is_warned_of_once() -> None:
     rattling = 0.0
     for _ in range(10):
         m.cycle(20)
-        rattling = max(rattling, float(unbalanced(m.h, None)[0]))
+        rattling = max(rattling, float(unbalanced_force(m.h, None)[0]))
     assert rattling > weight(m)
     fraction = float(printed.partition("FRACTION ")[2].split()[0])
     m, printed = wall(RAYLEIGH, 0.95 * fraction)  # it is printed with two digits
     assert "stiffness damping BETA" not in printed
-    assert unbalanced(m.h, None)[0] < 0.05 * weight(m)
+    assert unbalanced_force(m.h, None)[0] < 0.05 * weight(m)
 
 
 def test_mass_damping_makes_no_step_unstable() -> None:
     m, printed = wall(f"{RAYLEIGH} MASS")
     assert "stiffness damping BETA" not in printed
-    assert unbalanced(m.h, None)[0] < weight(m)
+    assert unbalanced_force(m.h, None)[0] < weight(m)
 
 
 def test_python_hears_of_it_in_the_log(caplog: pytest.LogCaptureFixture) -> None:

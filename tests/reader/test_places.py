@@ -166,3 +166,12 @@ def test_names_of_files_cannot_steer_a_terminal(
         said = capsys.readouterr()
         assert "\x1b" not in said.out + said.err, words
         assert said.out + said.err
+
+
+@pytest.mark.parametrize("words", [["run", "--x\x1b[31m"], ["run", "a.dat", "b\x1b[31m"], ["x\x1b[31m"]])
+def test_arguments_cannot_steer_a_terminal(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(words)
+    message = capsys.readouterr().err
+    assert "\\x1b[31m" in message
+    assert "\x1b" not in message

@@ -118,7 +118,7 @@ CASES: dict[str, tuple[Change, str]] = {
     "grid-points miscounted": (put("fdef", "KFNG", 3), "KFNG of fdef@"),
     "zones miscounted": (put("fdef", "KFNZ", 9), "KFNZ of fdef@"),
     "KFMIX": (put("fdef", "KFMIX", 2), "is 2, not 0 to 1"),
-    "KBFIX": (put("block", "KBFIX", 3), "is 3, not 0 to 2, 4 or 6"),
+    "KBFIX": (put("block", "KBFIX", 3), "is 3, not 0 to 2 or 4 or 6"),
     "KGFIX": (put("gridpoint", "KGFIX", 4), "is 4, not 0 to 3"),
     "KGEDGE": (put("gridpoint", "KGEDGE", -1), "is -1, not 0 to 1"),
     "KGEDGE of a rounded corner": (put("gridpoint", "KGEDGE", 1, "KCOR"), "which is rounded"),

@@ -11,7 +11,7 @@ import pytest
 
 from udec_ia.cli import main
 from udec_ia.studies.accuracy_report import answer, study_table, table_rows
-from udec_ia.studies.accuracy_study import AccuracyStudy, depends_on_step, path_differences, study_accuracy
+from udec_ia.studies.accuracy_study import AccuracyStudy, path_differences, study_accuracy
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import Extrapolation
 from udec_ia.studies.model_levers import COLUMNS, vary_lever
@@ -44,10 +44,10 @@ def test_what_is_the_same_at_all_steps_recommends_nothing_alone(tmp_path: Path) 
     assert lines[CHANGE].startswith(
         "to change: no recommendation: without a reference that is known well enough: way"
     )
-    assert "way converges to" in lines[ACCURACY]
+    assert "way converges, " in lines[ACCURACY]
     assert "force is 0 at all these steps" in lines[ACCURACY]
     assert not any("within" in str(row[-1]) for row in table_rows(study))
-    one = replace(study, levels=study.levels[:1], separation=None, rows=study.rows[:1])
+    one = replace(study, levels=study.levels[:1], rows=study.rows[:1])
     assert "no run with half the time-step has ended" in answer(one)[CHANGE]
 
 
@@ -59,13 +59,13 @@ def test_an_answer_has_five_lines_and_names_what_it_does_not_hold_for(tmp_path: 
     assert "known well enough: cycles" in lines[UNKNOWN]
 
 
-def test_which_quantities_are_enough_to_choose_by() -> None:
-    same, moves = Extrapolation(0.0, 0.0), Extrapolation(1.0, 1e-6, 1.0)
-    assert depends_on_step({"a": moves}, ["a"])
-    assert depends_on_step({"a": moves, "b": None}, ["a"])
-    assert not depends_on_step({"a": same}, ["a"])
-    assert not depends_on_step({"a": same, "b": None}, ["a"])
-    assert not depends_on_step({"a": moves}, [])
+@pytest.mark.parametrize(
+    ("known", "enough"), [(["moves"], True), (["same", "moves"], True), (["same"], False), ([], False)]
+)
+def test_which_quantities_are_enough_to_choose_by(known: list[str], enough: bool) -> None:
+    references = {"same": Extrapolation(0.0, 0.0), "moves": Extrapolation(1.0, 1e-6, 1.0)}
+    study = AccuracyStudy(Deck(FALL, "x.dat"), 1e-3, references=references, known=known)
+    assert study.can_recommend == enough
 
 
 def test_a_run_that_did_not_reach_its_ratio_is_no_reference(tmp_path: Path) -> None:
@@ -107,7 +107,6 @@ def test_the_table_has_the_value_and_error_of_every_quantity_at_every_setting(tm
         rows = {row["run"]: row for row in csv.DictReader(text)}
     assert {*rows} == {row.setting.name for row in study.rows}
     reference = study.references["way"]
-    assert reference is not None
     for row in study.rows:
         assert row.result is not None
         assert float(rows[row.setting.name]["value of way"]) == row.result.quantities["way"]
@@ -125,6 +124,23 @@ def test_a_quantity_that_tends_to_0_has_no_relative_error(tmp_path: Path) -> Non
     off = [row[COLUMNS.index("off its limit")] for row in rows]
     assert off == pytest.approx([1, 0.5, 0.25], rel=0.05)
     assert all("tends to 0" in str(row[-1]) for row in rows)
+
+
+def test_types_of_blocks_are_compared_with_those_of_the_deck(tmp_path: Path) -> None:
+    with SettingRunner(Deck(MESHED, "x.dat"), Options((FORCE,), jobs=0), tmp_path) as runner:
+        runner.run_own_deck()
+        assert runner.own.result is not None
+        own = runner.own.result.quantities["force"]
+        _, rows = vary_lever(runner, "types")
+    assert [row[COLUMNS.index("times")] for row in rows] == ["", "rigid", "sdef"]
+    values, off = ([row[COLUMNS.index(name)] for row in rows] for name in ("value", "off its limit"))
+    assert values[0] == own
+    assert len({*values}) == 3
+    assert off == [abs(value - own) / own for value in values]  # type: ignore[operator]
+    for name, zones, soft in (("", 1, 0), (",rigid", 0, 0), (",sdef", 0, 1)):
+        deck = (tmp_path / "runs" / f"model,i32r64,step=1{name}" / "deck.dat").read_text().splitlines()
+        assert sum(line.startswith("GEN") for line in deck) == zones
+        assert sum(line.endswith("SDEF") for line in deck) == soft
 
 
 def test_finer_zones_leave_joints_as_stiff_as_they_are(tmp_path: Path) -> None:

@@ -20,9 +20,9 @@ from udec_ia.studies.accuracy_study import AccuracyStudy, Row, recommended, stud
 from udec_ia.studies.deck_rewriting import Deck, list_changes
 from udec_ia.studies.setting_runner import Options, SettingRunner
 from udec_ia.studies.settings import Fraction, Numbers, Setting
-from udec_ia.studies.significant_digits import Ensemble, FieldBlame, PerturbedRun, measure_digits
+from udec_ia.studies.significant_digits import Ensemble, PerturbedRun, blame_fields, measure_digits
 from udec_ia.studies.study_run import ENDED, RunResult
-from udec_ia.studies.survey_run import find_separation, read_segments
+from udec_ia.studies.survey_run import read_segments
 from udec_ia.studies.worker_pool import RUNS, run_all
 
 PROPERTIES = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 FRICTION=0.5\n"
@@ -50,7 +50,6 @@ def fall(tmp_path_factory: pytest.TempPathFactory) -> AccuracyStudy:
 
 def test_the_reference_is_the_exact_way(fall: AccuracyStudy) -> None:
     limit = fall.references["way"]
-    assert limit is not None
     assert limit.value == pytest.approx(-0.5 * 10 * (200 * STEP) ** 2, rel=1e-9)
     assert limit.order == pytest.approx(1, abs=1e-6)
 
@@ -95,7 +94,7 @@ def test_short_reals_are_recommended_where_they_save_time(narrow: float, wide: f
         )
         for build, cost in (("i32r32", narrow), ("i32r64", wide))
     ]
-    best = recommended(rows, {"way": 0.0}, 1e-3)
+    best = recommended([row for row in rows if row.errors["way"] < 1e-3])
     assert best is not None
     assert best.setting.build == taken
 
@@ -114,7 +113,7 @@ def test_the_lines_to_change_make_the_recommended_run(fall: AccuracyStudy, tmp_p
 
 
 def test_the_survey_knows_the_time_steps(fall: AccuracyStudy) -> None:
-    found = read_segments(fall.folder / RUNS / Setting().name)
+    (found,) = (row.segments for row in fall.rows if row.setting == Setting())
     assert [one.asked for one in found] == [120, 80]
     assert [one.step for one in found] == pytest.approx([STEP] * 2)
     assert found[1].began == pytest.approx(120 * STEP)
@@ -132,7 +131,6 @@ def test_rest_is_sought_more_closely(tmp_path: Path) -> None:
     force = ("force = sum contact.KCFN",)
     found = priced(f"{WALL}SOLVE 1E-2\n", tmp_path, quantities=force, tolerance=1e-2)
     limit = found.references["force"]
-    assert limit is not None
     assert limit.value == pytest.approx(
         2 * 3 * 2000 * 10, rel=1e-3
     )  # the weight of six blocks above the joint
@@ -149,16 +147,6 @@ def test_a_budget_that_is_too_small_says_so(tmp_path: Path) -> None:
 def test_a_deck_that_fails_is_a_result(tmp_path: Path) -> None:
     found = priced(FALL.replace("CYCLE 80", "DELETE 0 1 0 1"), tmp_path, quantities=FELL)
     assert "gives nothing to compare" in answer(found)[-1]
-
-
-def test_runs_that_go_apart_part_somewhere(tmp_path: Path) -> None:
-    price = priced(FALL, tmp_path, quantities=FELL, half_step=True)
-    one, two = (price.path(row) for row in price.levels)
-    found = find_separation(one, two, 1e-3)
-    assert found is not None
-    assert (found.x, found.y) == (0.5, 0.5)
-    assert found.apart == pytest.approx(0.5 * 10 * (200 * STEP) ** 2 * (1 / 200 - 1 / 400))
-    assert find_separation(one, one, 1e-3) is None
 
 
 # ---- digits
@@ -193,9 +181,11 @@ def check_rounding(found: Ensemble) -> None:
     assert narrow is not None
     assert wide.digits - narrow.digits == pytest.approx(29 * math.log10(2), abs=1.5)
     assert "rounding takes" in str(found.rows()[1][-1])
-    blame = FieldBlame(found, "force")
-    assert blame.explains(["contact.KCFN", "contact.KCN", "corner.KXCP", "corner.KYCP", "block.KY"])
-    assert not blame.explains(["zone.KZS11"])
+    _, rows = blame_fields(found, "force")
+    shares = {str(row[0]): float(str(row[2])) for row in rows}
+    assert max(shares.values()) > 0.3
+    assert {name.partition(".")[0] for name in shares} <= {"block", "corner", "contact", "domain"}
+    assert [*shares.values()] == sorted(shares.values(), reverse=True)
 
 
 # ---- command line

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from support.study_decks import PILE, ROOT, piles, wait_until
+from support.study_decks import PILE, ROOT, outcome, piles, wait_until
 
 from udec_ia import UdecError
 from udec_ia.cli import main
@@ -82,7 +82,7 @@ def test_a_worker_that_is_killed_is_made_up_for(
     assert killed
     assert workers[0].wait(10) == -signal.SIGKILL
     assert workers[1].poll() is None
-    assert [one.outcome for one in results] == [one.outcome for one in serial]
+    assert [*map(outcome, results)] == [*map(outcome, serial)]
     assert [one.status for one in results] == ["ended"] * len(runs)
 
 

@@ -70,6 +70,19 @@ def test_levers_of_rest() -> None:
     assert not Deck(DECK, "x").rests
 
 
+def test_rigid_blocks_have_no_zones() -> None:
+    assert lines(Setting(types="rigid"))[9] == "* GEN 0 1 0 1 AUTO EDGE 0.25"
+
+
+def test_blocks_are_made_simply_deformable_before_the_first_run() -> None:
+    found = lines(Setting(types="sdef"))
+    assert found[9:12] == [
+        "* GEN 0 1 0 1 AUTO EDGE 0.25",
+        "CHANGE -1E30 1E30 -1E30 1E30 SDEF",
+        "CYCLE 100",
+    ]
+
+
 def test_a_restart_file_is_found_from_any_folder(tmp_path: Path) -> None:
     (tmp_path / "a.h5").touch()
     deck = Deck("RESTART a.h5\nCYCLE 5\n", "x", {}, tmp_path)

@@ -114,12 +114,12 @@ def test_a_second_sweep_is_refused_while_the_first_one_lives(tmp_path: Path) -> 
     first = started(*arguments, "N=100000000", cwd=tmp_path)
     try:
         runs = tmp_path / "pile-sweep" / RUNS
-        wait_until(lambda: any(runs.glob(f"{UNNAMED}*/begun")))
+        wait_until(lambda: any(runs.glob(f"{UNNAMED}*")))
         second = started(*arguments, "N=1", cwd=tmp_path)
         _, complaints = second.communicate(timeout=60)
         assert second.returncode == 1
         assert f"error 31: file cannot be written: {runs} is in use by another study" in complaints
-        assert [*runs.glob(f"{UNNAMED}*/begun")]
+        assert [*runs.glob(f"{UNNAMED}*")]
         assert first.poll() is None
     finally:
         os.kill(first.pid, signal.SIGKILL)

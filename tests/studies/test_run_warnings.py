@@ -14,7 +14,7 @@ from udec_ia.studies.execute_run import execute
 from udec_ia.studies.study_run import RunResult
 from udec_ia.studies.sweep import summarise_warnings
 
-TANGENT = "friction 10 of material 1 is a tangent, of 84.3 degrees: if an angle of 10 degrees is meant, "
+TANGENT = "friction 10 of material 1 is a tangent, of 84.3 degrees: for an angle of 10 degrees give 0.176"
 
 
 def test_a_result_has_the_warnings_of_its_run(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

@@ -78,7 +78,7 @@ def test_words_that_cannot_run_a_deck_are_left_out(tmp_path: Path) -> None:
     with SettingRunner(Deck(FINE, "x.dat"), Options(ASKED, jobs=0), tmp_path / "b") as runner:
         found = measure_digits(runner, 3)
     assert any("i32r32 is left out" in one for one in found.notes)
-    ((_, value, own, _, short, _, step, why),) = found.rows()
+    ((_, value, own, short, step, why),) = found.rows()
     assert isinstance(own, float)
     assert (short, value != "", isinstance(step, float)) == ("", True, True)
     assert "too few runs have shorter reals" in str(why)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.study_decks import KILLS, KILLS_ONCE, PILE, piles, started, wait_until
+from support.study_decks import KILLS, KILLS_ONCE, PILE, outcome, piles, started, wait_until
 
 from udec_ia.cli import main
 from udec_ia.printable_text import counted
@@ -20,8 +20,8 @@ FRICTIONS = (0.1, 0.3, 0.5, -1)
 SWEEP = ("sweep", "pile.dat", "--set", "F=0.1:0.6:6", "--set", "N=8000", "--jobs", "2")
 
 
-def outcomes(results: list[RunResult]) -> list[dict[str, object]]:
-    return [one.outcome for one in results]
+def outcomes(results: list[RunResult]) -> list[str]:
+    return [*map(outcome, results)]
 
 
 def test_serial_and_by_joblib_bit_for_bit(tmp_path: Path) -> None:

@@ -6,10 +6,11 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic, sleep
 
-from udec_ia.studies.study_run import StudyRun
+from udec_ia.studies.study_run import RunResult, StudyRun
 
 ROOT = Path(__file__).parents[2]
 PILE = """START
@@ -37,6 +38,11 @@ def clj2(fn, fs, dun, dus, un, us, m):
 def piles(*frictions: float, cycles: int = 200) -> list[StudyRun]:
     """A run of PILE for each friction."""
     return [StudyRun(f"F={f}", PILE, "pile.dat", {"F": f, "N": cycles}) for f in frictions]
+
+
+def outcome(result: RunResult) -> str:
+    """All of a result that does not depend on the machine."""
+    return repr(replace(result, seconds=0.0, limit=None))
 
 
 def started(*arguments: str, cwd: Path) -> subprocess.Popen[str]:

@@ -30,11 +30,11 @@ from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.boundary_conditions import power_of_loads
 from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
     energy_of_motion,
-    height,
-    liveliest,
-    strain_of_blocks,
-    strain_of_contacts,
+    greatest_motion,
+    potential_energy,
+    strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
@@ -139,7 +139,7 @@ class EnergyMonitor:
 
     def _error(self, array: MainArray, there: float, came: float) -> UdecError:
         h = array.h
-        _, largest, at = liveliest(h, soft(h))
+        _, largest, at = greatest_motion(h, soft(h))
         step = float(h.cr[g.TDEL])
         share = step / damped_step(h, self.safe.step)
         self._account = None
@@ -156,9 +156,9 @@ class EnergyMonitor:
 def _stock(h: Memory) -> Stock:
     """The energies of the model as it is."""
     kinds = soft(h)
-    moving = liveliest(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
-    strained = float(strain_of_contacts(h)) + float(strain_of_blocks(h, kinds))
-    return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(height(h)))
+    moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
+    strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, kinds))
+    return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
 
 
 def _grain(array: MainArray) -> float:

@@ -2,12 +2,10 @@
 
 Every contact can be passed in two ways: from the list of KB1 to that of KB2, and back. To go on along a block
 to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
-of the map, and each must be the loop of one domain.
-
-A domain is on the left of its loop, so the polygon of the loop has a positive area, but for the overlaps. The
-outer domain has minus the area of all that it encloses: no other is as low. The loop passes a virtual contact
-in both directions, so each block's part counts as if it closed at the item before the contact. After an error
-that let blocks into each other areas prove nothing, and this is left out.
+of the map, and each must be the loop of one domain. A domain is on the left of its loop, so only the outer
+domain has a negative area. The loop passes a virtual contact in both directions, so each block's part counts
+as if it closed at the item before the contact. After an error that let blocks into each other areas prove
+nothing.
 """
 
 from __future__ import annotations
@@ -19,14 +17,17 @@ import numpy as np
 from udec_ia.checker.checked_state import State, corner_before
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import DISORDERED
-from udec_ia.kernels.audit.domain_faces import areas, cycles, passages, pieces
+from udec_ia.kernels.audit.domain_faces import label_cycles, label_pieces, link_passages, sum_areas
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.list_walks import clockwise_link
 
-PASSAGES, CYCLES = InterpretWhenSmall(passages, 1.7e6), InterpretWhenSmall(cycles, 3e6)  # items, passages
-PIECES = InterpretWhenSmall(pieces, 6e5)  # contacts
+PASSAGES, CYCLES = (
+    InterpretWhenSmall(link_passages, 1.7e6),
+    InterpretWhenSmall(label_cycles, 3e6),
+)  # items, passages
+PIECES = InterpretWhenSmall(label_pieces, 6e5)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")
 BACK = names("contact", "clockback")[:2]
@@ -114,10 +115,10 @@ def _check_virtual(state: State) -> None:
 
 
 def _passages(state: State) -> Numbers:
-    """For each passage the next one around its domain.
+    """For each passage the next one around its domain; the last stands for blocks whose list is broken.
 
     Passage 2 row + side is that of the contact in `row` after which block KB1 (side 0) or KB2 (side 1) is
-    walked. One more at the end stands for all that leads to a block whose list is broken.
+    walked.
     """
     rings = state.rings
     nowhere = 2 * len(state.address["contact"])
@@ -207,7 +208,7 @@ def _check_connected(state: State) -> None:
         state.report(5, f"no chain of contacts leads from block@{blocks[0]} to block@{block}")
 
 
-AREAS = InterpretWhenSmall(areas, 9e5)  # items
+AREAS = InterpretWhenSmall(sum_areas, 9e5)  # items
 
 
 def check_outer(state: State) -> None:

@@ -28,12 +28,10 @@ def add_commands(commands: Any) -> None:
     ):
         parser.add_argument(option, action="append", default=[], metavar=metavar, help=f"{text}; repeatable")
     study_options(parser, "column of the table", "NAME-sweep")
-    parser.add_argument(
-        "--every", type=int, metavar="N", help="cycles from one check of the rules to the next (default: 100)"
-    )
-    parser.add_argument(
-        "--limit", metavar="TIME", help="processor time after which a run is ended: 60s, 5m, 1h"
-    )
+    text = "cycles from one check of the rules to the next (default: 100)"
+    parser.add_argument("--every", type=int, metavar="N", help=text)
+    text = "processor time after which a run is ended: 60s, 5m, 1h"
+    parser.add_argument("--limit", metavar="TIME", help=text)
     parser.add_argument("--dask", default="", metavar="ADDRESS", help="run on the workers of this scheduler")
 
 

@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 
 VERBS = ("trade",)
 TEXT = "find the cheapest time-step and word scheme that keep the results of a deck to a tolerance"
+VALUES = (  # options with a value, and their defaults
+    ("--tolerance", "1e-3", "SHARE", "greatest relative error, as 1e-3 or 0.1%% (default: 1e-3)"),
+    ("--budget", "5m", "TIME", "time for all runs: 60s, 5m, 1h (default: 5m)"),
+    ("--builds", None, "A,B", "word schemes to try (default: the one with 32-bit reals)"),
+)
+INSTEAD = (  # what to do instead
+    ("--half-step", "only compare the deck with half its time-step (report 4.6)"),
+    ("--digits", "show how many digits of each quantity the deck determines"),
+    ("--blame", "the same, and the fields in which the other digits are lost"),
+)
 
 
 def add_commands(commands: Any) -> None:
@@ -28,47 +38,26 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("deck", type=Path, metavar="DECK", help="file of commands")
     variables(parser)
     study_options(parser, "quantity that must be right", "NAME-trade")
-    parser.add_argument(
-        "--tolerance", metavar="SHARE", help="greatest relative error, as 1e-3 or 0.1%% (default: 1e-3)"
-    )
-    parser.add_argument(
-        "--budget", default="5m", metavar="TIME", help="time for all runs: 60s, 5m, 1h (default: 5m)"
-    )
-    parser.add_argument(
-        "--builds", metavar="A,B", help="word schemes to try (default: the one with 32-bit reals)"
-    )
+    for option, default, metavar, text in VALUES:
+        parser.add_argument(option, default=default, metavar=metavar, help=text)
     parser.add_argument("--table", action="store_true", help="print a line for each setting as well")
     what = parser.add_mutually_exclusive_group()
+    for option, text in INSTEAD:
+        what.add_argument(option, action="store_true", help=text)
     what.add_argument(
-        "--half-step", action="store_true", help="only compare the deck with half its time-step (report 4.6)"
-    )
-    what.add_argument(
-        "--digits", action="store_true", help="show how many digits of each quantity the deck determines"
-    )
-    what.add_argument(
-        "--blame", action="store_true", help="the same, and the fields in which the other digits are lost"
-    )
-    what.add_argument(
-        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness"
+        "--levers", metavar="A,B", help="vary and refine the model instead: round,zones,stiffness,types"
     )
     parser.add_argument(
-        "--runs", type=int, metavar="N", help="perturbed runs for --digits and --blame (default: 16)"
+        "--runs", type=int, default=16, metavar="N", help="perturbed runs for --digits and --blame"
     )
 
 
 def _trade(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.reader.printed_listing import Listing
-    from udec_ia.studies.accuracy_report import (
-        COLUMNS,
-        answer,
-        draw_costs,
-        half_step,
-        study_table,
-        table_rows,
-    )
+    from udec_ia.studies import accuracy_report as report
     from udec_ia.studies.accuracy_study import study_accuracy
     from udec_ia.studies.study_run import read_deck
-    from udec_ia.studies.study_table import check_paths, picture_paths, table_path
+    from udec_ia.studies.study_table import check_outputs
 
     if args.digits or args.blame:
         return _digits(args)
@@ -76,17 +65,18 @@ def _trade(args: argparse.Namespace) -> Listing | Tables:
         return _levers(args)
     base, options = _folder(args) / f"{args.deck.stem}-trade", _options(args)
     if not args.half_step:
-        check_paths([table_path(base), *picture_paths(base)])
+        check_outputs(base)
     text, values = read_deck(args.deck), given(args.set)
     study = study_accuracy(text, args.deck.name, values, _folder(args), options, args.deck.parent)
     if args.half_step:
-        return Listing(half_step(study), status=int(len(study.levels) < 2))
+        return Listing(report.half_step(study), status=int(len(study.levels) < 2))
     if not study.rows:
-        return Listing(answer(study), status=1)
-    files = [study_table(study).write(base)]
-    files += draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
-    lines = [*answer(study), f"written: {', '.join(map(str, files))}"]
-    return Listing(lines, COLUMNS, table_rows(study)) if args.table or args.json else Listing(lines)
+        return Listing(report.answer(study), status=1)
+    files = [report.study_table(study).write(base)]
+    files += report.draw_costs(study, f"{args.deck.name}: what accuracy costs", base)
+    lines = [*report.answer(study), f"written: {', '.join(map(str, files))}"]
+    rows = report.table_rows(study) if args.table or args.json else []
+    return Listing(lines, report.COLUMNS, rows)
 
 
 def _runner(args: argparse.Namespace) -> SettingRunner:
@@ -100,33 +90,26 @@ def _runner(args: argparse.Namespace) -> SettingRunner:
 
 def _digits(args: argparse.Namespace) -> Listing | Tables:
     from udec_ia.reader.printed_listing import Listing, Tables
-    from udec_ia.studies.significant_digits import (
-        COLUMNS,
-        ENSEMBLE,
-        FIELD_COLUMNS,
-        FieldBlame,
-        measure_digits,
-    )
+    from udec_ia.studies import significant_digits
 
-    runs = args.runs if args.runs is not None else ENSEMBLE
-    if runs < 3:
-        raise ValueError(f"--runs {runs}: give 3 or more")
+    if args.runs < significant_digits.FEWEST:
+        raise ValueError(f"--runs {args.runs}: give {significant_digits.FEWEST} or more")
     with _runner(args) as runner:
-        found = measure_digits(runner, runs)
+        found = significant_digits.measure_digits(runner, args.runs)
         if not found.results:
             return Listing(found.notes, status=1)
-        listing = Listing(found.notes, COLUMNS, found.rows())
+        listing = Listing(found.notes, significant_digits.COLUMNS, found.rows())
         if not args.blame:
             return listing
-        line, rows = FieldBlame(found).search()
-        return Tables({"digits": listing, "blame": Listing([line], FIELD_COLUMNS, rows)})
+        line, rows = significant_digits.blame_fields(found)
+        return Tables({"digits": listing, "blame": Listing([line], significant_digits.FIELD_COLUMNS, rows)})
 
 
 def _levers(args: argparse.Namespace) -> Listing:
     from udec_ia.reader.printed_listing import Listing
-    from udec_ia.studies.model_levers import COLUMNS, FACTORS, vary_lever
+    from udec_ia.studies.model_levers import COLUMNS, LEVERS, vary_lever
 
-    levers = names("--levers", args.levers, FACTORS)
+    levers = names("--levers", args.levers, LEVERS)
     with _runner(args) as runner:
         why = runner.run_own_deck()
         if why:
@@ -142,26 +125,23 @@ def _folder(args: argparse.Namespace) -> Path:
 
 def _options(args: argparse.Namespace) -> Options:
     from udec_ia.heap.word_scheme import ALL_SCHEMES
-    from udec_ia.studies.setting_runner import Options
+    from udec_ia.studies.setting_runner import QUANTITIES, Options
 
-    named: dict[str, Any] = {
-        "quantities": tuple(args.quantity),
-        "tolerance": _share(args.tolerance),
-        "budget": seconds("--budget", args.budget),
-        "build": args.build,
-        "builds": tuple(names("--builds", args.builds, ALL_SCHEMES)),
-        "constitutive": tuple(args.constitutive),
-        "jobs": args.jobs,
-        "half_step": args.half_step,
-        "stream": sys.stderr,
-    }
-    return Options(**{name: value for name, value in named.items() if value not in (None, ())})
+    return Options(
+        quantities=tuple(args.quantity) or QUANTITIES,
+        tolerance=_share(args.tolerance),
+        budget=seconds("--budget", args.budget),
+        build=args.build,
+        builds=tuple(names("--builds", args.builds, ALL_SCHEMES)),
+        constitutive=tuple(args.constitutive),
+        jobs=args.jobs,
+        half_step=args.half_step,
+        stream=sys.stderr,
+    )
 
 
-def _share(text: str | None) -> float | None:
-    """The share that is written as a number or in per cent; None without one. ValueError for a wrong one."""
-    if text is None:
-        return None
+def _share(text: str) -> float:
+    """The share that is written as a number or in per cent. ValueError for a wrong one."""
     number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
     try:
         share = float(number) / (100 if percent else 1)
@@ -173,14 +153,14 @@ def _share(text: str | None) -> float | None:
 
 
 def _script(args: argparse.Namespace) -> str:
-    asked = f", quantities={tuple(args.quantity)!r}" if args.quantity else ""
+    options = _options(args)
     where = f"{given(args.set)!r}, Path({str(_folder(args))!r}), options"
     return (
         "from pathlib import Path\n\n"
         "from udec_ia.studies.accuracy_report import answer\n"
         "from udec_ia.studies.accuracy_study import study_accuracy\n"
         "from udec_ia.studies.setting_runner import Options\n\n"
-        f"options = Options(tolerance={_share(args.tolerance) or 1e-3!r}{asked})\n"
+        f"options = Options({options.quantities!r}, {options.tolerance!r}, {options.budget!r})\n"
         f"deck = Path({str(args.deck)!r})\n"
         f"study = study_accuracy(deck.read_text(), deck.name, {where}, deck.parent)\n"
         "print(*answer(study), sep='\\n')"

@@ -15,7 +15,7 @@ from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
     from udec_ia.reader.printed_listing import Listing
-    from udec_ia.studies.verification import Problem, ProblemResult
+    from udec_ia.studies.verification import ProblemResult
 
 VERBS = ("verify",)
 COLUMNS = (
@@ -28,21 +28,11 @@ TEXT = "run problems with exact or published answers; exit status 1 if an error 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
     parser = command(commands, "verify", TEXT, _verify, _script)
-    parser.add_argument(
-        "names",
-        nargs="*",
-        metavar="NAME",
-        help="a problem, or a Python file with one (default: all problems)",
-    )
+    text = "a problem, or a Python file with one (default: all problems)"
+    parser.add_argument("names", nargs="*", metavar="NAME", help=text)
     parser.add_argument("--build", metavar="A,B", help="word schemes (default: i32r64)")
     parser.add_argument("--blocks", metavar="A,B", help="types of blocks (default: rigid,sdef,fdef)")
     parser.add_argument("--list", action="store_true", help="list the problems without running them")
-
-
-def _problems(args: argparse.Namespace) -> list[Problem]:
-    from udec_ia.studies.verification import find_problem, problem_names
-
-    return [find_problem(name) for name in args.names or problem_names()]
 
 
 def _cases(args: argparse.Namespace) -> tuple[list[str], list[str]]:
@@ -57,14 +47,13 @@ def _cases(args: argparse.Namespace) -> tuple[list[str], list[str]]:
 def _verify(args: argparse.Namespace) -> Listing:
     from udec_ia.heap.word_scheme import scheme
     from udec_ia.reader.printed_listing import Listing
-    from udec_ia.studies.verification import solve_problems
+    from udec_ia.studies.verification import find_problem, problem_names, solve_problems
 
-    problems, (builds, blocks) = _problems(args), _cases(args)
+    problems = [find_problem(name) for name in args.names or problem_names()]
+    builds, blocks = _cases(args)
     if args.list:
-        named: list[tuple[Any, ...]] = [
-            (one.name, ", ".join(one.blocks), one.reals, one.title) for one in problems
-        ]
-        return Listing([], ("problem", "blocks", "bits of a real", "what is asked"), named)
+        rows = [(one.name, ", ".join(one.blocks), one.reals, one.title) for one in problems]
+        return Listing([], ("problem", "blocks", "bits of a real", "what is asked"), rows)
     results = []
     for result in solve_problems(problems, builds, blocks):
         print(result.line(), file=sys.stderr, flush=True)
@@ -75,13 +64,11 @@ def _verify(args: argparse.Namespace) -> Listing:
             "choose other --blocks or --build, as --list shows"
         )
     wrong = sum(not one.holds for one in results)
-    many = counted(len(results), "case")
-    lines = [f"{many}, {f'{wrong} not within tolerance' if wrong else 'all within tolerance'}"]
+    verdict = f"{wrong} not within tolerance" if wrong else "all within tolerance"
+    lines = [f"{counted(len(results), 'case')}, {verdict}"]
     short = [one.name for one in problems if any(scheme(build).real_bits < one.reals for build in builds)]
     if short:
-        lines.append(
-            f"not run with 32-bit reals, which are too coarse for what they measure: {', '.join(short)}"
-        )
+        lines.append(f"not run with 32-bit reals, which are too coarse for them: {', '.join(short)}")
     return Listing(lines, COLUMNS, [*_result_rows(results)], int(wrong > 0))
 
 

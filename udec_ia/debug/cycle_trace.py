@@ -3,7 +3,7 @@
 The cycle is run as Python on a memory that reports each access. The accesses are recorded: so the state
 between any two writes can be shown, forwards and backwards, without running anything again.
 
-    pass    what run_cycles calls: move_all, accumulate, ford_all ...
+    pass    what run_cycles calls: move_blocks, accumulate, ford_all ...
     work    one call by a pass: of motion for a block, of ford for a contact
 """
 

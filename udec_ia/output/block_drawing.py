@@ -269,8 +269,9 @@ def draw_domains(axes: Axes, domains: tuple[Domain, ...], inches: float) -> None
         PolyCollection(polygons, facecolors=faces, edgecolors=edges, linewidths=1.2, zorder=3)
     )
     for domain, tint in inner:
-        if np.ptp(domain.polygon, axis=0).max() * inches / POINT > LEGIBLE:
-            axes.annotate(str(domain.address), tuple(domain.polygon.mean(axis=0)), color=tint, **style)
+        low, high = domain.polygon.min(axis=0), domain.polygon.max(axis=0)
+        if (high - low).max() * inches / POINT > LEGIBLE:
+            axes.annotate(str(domain.address), tuple((low + high) / 2), color=tint, **style)
 
 
 def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from udec_ia.compiling.compile_duration import working_time
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.drive.unbalanced_force import unbalanced
+from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.printable_text import counted, printable
@@ -75,7 +75,7 @@ class RunProgress:
         """Speed, time, time-step, largest force sum of a free block, and contacts made and broken so far."""
         h, elapsed = self.memory(), working_time() - self.started
         rate = done / elapsed if elapsed > 0.0 else 0.0
-        force = float(unbalanced(h, soft_or_loaded_in(h))[0])
+        force = float(unbalanced_force(h, soft_or_loaded_in(h))[0])
         return (
             f"{rate:,.0f} cycles/s, t = {h.cd[g.TIME]:.4g} s, "
             f"dt {h.cr[g.TDEL]:.3g} s ({fraction_in_words(h)}), "

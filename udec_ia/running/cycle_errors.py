@@ -18,7 +18,7 @@ from udec_ia.errors import (
 from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
-from udec_ia.kernels.drive.finite_check import not_finite
+from udec_ia.kernels.drive.finite_check import first_not_finite
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.corner_rounding import crowded
@@ -28,7 +28,7 @@ from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.critical_step import fraction_in_words
 from udec_ia.running.group_names import contact_name, strained_name
 
-NOT_FINITE = InterpretWhenSmall(not_finite, 2e3)
+NOT_FINITE = InterpretWhenSmall(first_not_finite, 2e3)
 SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # the state is impossible
 KINDS = {head.value: head.group for head in read_table().heads}
 

@@ -6,7 +6,7 @@ A replay stops at the same errors as the run.
 from __future__ import annotations
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_watched
+from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_with_records
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.laws.registered_laws import LawBook
@@ -31,7 +31,9 @@ class Replay:
         while done < n:
             h = self.array.h
             cycles = cycles_to_update(self.array, n - done)
-            completed, _ = run_watched(h, cycles, self._given, NEVER, *self._recorded, NO_MARKS, self._passes)
+            completed, _ = run_with_records(
+                h, cycles, self._given, NEVER, *self._recorded, NO_MARKS, self._passes
+            )
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:

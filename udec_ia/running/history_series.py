@@ -13,7 +13,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import has_to_judge, passes, run_watched
+from udec_ia.kernels.drive.cycle import passes, run_with_records, step_check_is_due
 from udec_ia.kernels.drive.history_recording import measures, record
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions, places
@@ -26,13 +26,13 @@ NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 
 
 def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-    """Up to `n` cycles without recording; returns their number. laws, marks: see drive.cycle.run_watched."""
+    """Up to `n` cycles without recording; returns their number. laws, marks: as in run_with_records."""
     called = passes(h, laws[0], (), NEVER, False, marks)
-    return int(run_watched(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
+    return int(run_with_records(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
 
 
 def nothing_recorded() -> tuple[Any, Any, Any]:
-    """Arguments of run_watched for a run without recording: places, rows and count."""
+    """Arguments of run_with_records for a run without recording: places, rows and count."""
     return NO_PLACES, NO_ROWS, np.zeros(1, np.int64)
 
 
@@ -153,11 +153,13 @@ class Recording:
         called = passes(h, laws[0], recorded if len(self._places) else (), self.ratio, self.mean, marks)
         while done < n and full:
             try:
-                completed, self.reached = run_watched(h, n - done, laws, self.ratio, *recorded, marks, called)
+                completed, self.reached = run_with_records(
+                    h, n - done, laws, self.ratio, *recorded, marks, called
+                )
             finally:
                 full = self.hand_on() == ROWS
             done += int(completed)
-            if full and has_to_judge(h):
+            if full and step_check_is_due(h):
                 break
         return done
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import has_to_judge
+from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import bound
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
@@ -37,7 +37,7 @@ def update_step(array: MainArray) -> None:
     if h.ci[g.LSCALE]:
         if h.ci[g.MCTOT] % RESCALE == 0:
             scale_anew(array)
-    elif h.ci[g.LSAFE] and (has_to_judge(h) or h.ci[g.MCTOT] % JUDGE == 0):
+    elif h.ci[g.LSAFE] and (step_check_is_due(h) or h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
         step = float(h.cr[g.FRAC]) * damped_step(h, bound(array).step)
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):

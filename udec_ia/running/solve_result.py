@@ -15,9 +15,9 @@ from udec_ia.kernels.drive.unbalanced_force import (
     at_rest_in_mean,
     force_ratios,
     motion_ratio,
-    unbalanced,
+    unbalanced_force,
 )
-from udec_ia.kernels.energy.stored_energy import liveliest
+from udec_ia.kernels.energy.stored_energy import greatest_motion
 from udec_ia.ops.common.deformable_scene import soft_or_loaded_in
 from udec_ia.printable_text import counted
 from udec_ia.remark_key import Remark
@@ -113,7 +113,7 @@ def solution_of(array: MainArray, wanted: float, criterion: str, cycles: int) ->
     h, kinds, mean = array.h, soft_or_loaded_in(array.h), criterion == MEAN
     reached = cycles > 0 and bool((at_rest_in_mean if mean else at_rest)(h, float(wanted)))
     largest, average = map(float, force_ratios(h, kinds))
-    groups = unbalanced(h, kinds)[1], liveliest(h, kinds)[2]
+    groups = unbalanced_force(h, kinds)[1], greatest_motion(h, kinds)[2]
     worst, greatest_energy = (name_of(h, int(at)) if at else "" for at in groups)
     motion = float(motion_ratio(h, kinds))
     return Solution(reached, wanted, largest, cycles, worst, motion, greatest_energy, criterion, average)

@@ -1,78 +1,96 @@
-"""`udec trade DECK`: what accuracy costs for the user's deck, and the cheapest setting within a tolerance.
+"""Studies what accuracy costs for a deck, and finds the cheapest setting within a tolerance (docs/trade.md).
 
 A quantity whose values converge as the time-step is halved has a reference (extrapolation.py); others are not
-compared, and neither are runs that did not reach the force ratio of their SOLVE. The settings (settings.py)
-run as long as the budget lasts (setting_runner.py). The cheapest one is recommended whose error plus that of
-the reference is within the tolerance, for every quantity with a reference. docs/trade.md says more.
+compared, and neither are runs that did not reach the force ratio of their SOLVE. The cheapest setting is
+recommended whose error plus that of the reference is within the tolerance, for every known quantity.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from udec_ia.deck.deck_variables import Values
 from udec_ia.heap.word_scheme import scheme
-from udec_ia.printable_text import counted
 from udec_ia.studies.deck_rewriting import Deck
 from udec_ia.studies.extrapolation import HIGHEST, Extrapolation, converges, extrapolate, share
 from udec_ia.studies.setting_runner import Options, Row, SettingRunner
-from udec_ia.studies.settings import Fraction, Setting, longer_steps, reference_setting, shorter_steps
-from udec_ia.studies.survey_run import RunSeparation, find_separation
-from udec_ia.studies.worker_pool import RUNS
+from udec_ia.studies.settings import BEYOND, Fraction, Setting, rounded, share_of_bound
 
 WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
 REST_ORDER = 12.0  # greatest order where rest is sought more closely from level to level
 SPREAD = 0.5  # of the tolerance: what the error of a reference may be
+RUNG = 2**0.5  # of the ladder of time-steps: the cheapest on it is so to within that factor
+LONGEST = 16.0  # times the step of the deck
+SAFE = (0.9, 0.5)
+TIGHTER = 0.1  # ratio of SOLVE, from one level of the reference to the next
 SCATTER = 0.2, 0.02  # share, and seconds, by which two times differ before one is the shorter
 
 
 @dataclass
 class AccuracyStudy:
-    """The study of one deck. rows: all settings. references: of the quantities, None without a value.
+    """The study of one deck. rows: all settings, the cheapest first; best: the recommended one.
 
-    known: quantities that are compared. levels: rows of the reference, the step halved from one to the next.
-    best: the recommended one. fraction: that of the deck at first, None if it does not matter. separation:
-    where the finest runs part. solved: what SOLVE reports in the deck as it is. notes: sentences.
+    levels: rows of the reference, the step halved from one to the next. references: what quantities tend to;
+    known: those that are compared. fraction: that of the deck at first, None if it does not matter. solved:
+    what SOLVE reports in the deck as it is. notes: sentences.
     """
 
     deck: Deck
     tolerance: float
-    folder: Path
     rows: list[Row] = field(default_factory=list)
     levels: list[Row] = field(default_factory=list)
-    references: dict[str, Extrapolation | None] = field(default_factory=dict)
+    references: dict[str, Extrapolation] = field(default_factory=dict)
     known: list[str] = field(default_factory=list)
     best: Row | None = None
     fraction: Fraction | None = None
-    separation: RunSeparation | None = None
     solved: str = ""
     notes: list[str] = field(default_factory=list)
 
     @property
-    def margins(self) -> dict[str, float]:
-        """By how much measured errors may be wrong: the errors of the references."""
-        return {name: one.share for name in self.known if (one := self.references[name])}
-
-    @property
     def can_recommend(self) -> bool:
         """True if a known quantity is not the same number at all steps."""
-        return depends_on_step(self.references, self.known)
+        return any(self.references[name].error > 0 for name in self.known)
 
-    def path(self, row: Row) -> Path:
-        """The folder of a run."""
-        return self.folder / RUNS / row.setting.name
+    def values(self, name: str, rows: Iterable[Row] | None = None) -> list[float]:
+        """A quantity in rows, by default all, that are compared."""
+        some = self.rows if rows is None else rows
+        return [row.result.quantities[name] for row in some if row.result and row.compared]
 
-    def values(self, name: str) -> list[float]:
-        """A quantity in all runs that are compared."""
-        return [row.result.quantities[name] for row in self.rows if row.result and row.compared]
+    def is_within(self, row: Row) -> bool:
+        """True if all errors, with those of the references, are within the tolerance."""
+        errors = [error + self.references[name].share for name, error in row.errors.items()]
+        return row.compared and bool(errors) and max(errors) <= self.tolerance
 
-    def add_rows(self, rows: Iterable[Row]) -> None:
-        """Add settings that are not in it yet."""
+    def run_rows(self, runner: SettingRunner, settings: Iterable[Setting]) -> list[Row]:
+        """Run settings as far as the budget lasts."""
+        rows = [runner.row(one) for one in settings]
         self.rows += [row for row in rows if row not in self.rows]
+        runner.run_rows(rows)
+        return rows
+
+    def choose(self) -> None:
+        """Find the quantities that can be compared, the errors of all rows, and the recommended one.
+
+        Values of a motion that scatter may be near each other by chance: where the deck only has CYCLEs, a
+        quantity without an order must be known ten times as well as others.
+        """
+        solves = self.deck.has("solve")
+        wanted = {
+            name: WANTED if math.isnan(one.order) and not solves else SPREAD
+            for name, one in self.references.items()
+        }
+        shares = {name: one.share / self.tolerance for name, one in self.references.items()}
+        self.known = [name for name, share in shares.items() if share <= wanted[name]]
+        compared = self.known if self.can_recommend else []
+        for row in self.rows:
+            if row.result is not None and row.compared:
+                found = row.result.quantities
+                row.errors = {name: self.references[name].error_of(found[name]) for name in compared}
+        self.best = recommended([row for row in self.rows if self.is_within(row)])
 
 
 def study_accuracy(
@@ -83,129 +101,103 @@ def study_accuracy(
     Raises UdecError for what is wrong with the deck, and if nothing can be written.
     """
     deck = Deck(text, name, values, where)
-    study = AccuracyStudy(deck, options.tolerance, folder)
+    study = AccuracyStudy(deck, options.tolerance)
     with SettingRunner(deck, options, folder) as runner:
         why = runner.run_own_deck()
-        if why:
+        if why or runner.own.result is None:
             study.notes.append(why)
             return study
-        study.fraction = runner.fraction
-        if runner.own.result:
-            study.solved = runner.own.result.message
-            study.references = dict.fromkeys([*runner.own.result.quantities][1:])
+        study.fraction, study.solved = runner.fraction, runner.own.result.message
+        study.references = dict.fromkeys(runner.own.result.quantities, Extrapolation(math.nan, math.inf))
         if options.half_step:
-            study.rows = [runner.own, runner.row(Setting(runner.wide, 0.5))]
-            runner.run_rows(study.rows)
-            study.levels = [row for row in study.rows if row.compared]
+            study.levels = study.run_rows(runner, [Setting(runner.wide), Setting(runner.wide, 0.5)])
+            study.levels = [row for row in study.levels if row.compared]
             return study
         runner.drop_unable_builds()
         _reference(study, runner)
         if len(study.levels) > 1:
-            _settings(study, runner)
+            study.run_rows(runner, _longer_steps(runner))
+            study.choose()
+            if study.can_recommend and (study.best is None or study.best.setting.step < 1):
+                finest = min(row.setting.step for row in ([study.best] if study.best else study.levels))
+                study.run_rows(runner, _shorter_steps(runner, finest))
+                study.choose()
         dropped = [row.setting.name for row in study.rows if row.result is None]
         if dropped:
             study.notes.append(f"not run, as they go beyond the budget: {', '.join(dropped)}")
         study.notes += runner.notes
+    study.rows.sort(key=lambda row: (row.cost, row.predicted))
     return study
 
 
 def _reference(study: AccuracyStudy, runner: SettingRunner) -> None:
     """Halve the step until the references are good enough, or the budget ends, or nothing converges."""
-    own, deck = Setting(runner.wide), study.deck
-    solves, stepped = deck.has("solve"), deck.is_stepped
-    highest = REST_ORDER if solves else HIGHEST
-    wanted = [runner.row(reference_setting(own, k, stepped, solves)) for k in range(LEVELS + 1)]
+    highest = REST_ORDER if study.deck.has("solve") else HIGHEST
+    wanted = [_level(runner, k) for k in range(LEVELS + 1)]
     while True:
-        runner.options.show(f"reference: {', '.join(row.setting.name for row in wanted)}")
-        study.add_rows(wanted)
-        runner.run_rows(wanted)
-        study.levels += [row for row in wanted if row.compared]
-        if len(study.levels) > 1:
-            one, two = (study.path(row) for row in study.levels[-2:])
-            study.separation = find_separation(one, two, study.tolerance)
-        values = {
-            name: [row.result.quantities[name] for row in study.levels if row.result]
-            for name in study.references
-        }
-        study.references = {name: extrapolate(found, highest) for name, found in values.items()}
-        enter_errors(study)
-        unknown = any(
-            one and one.share > WANTED * study.tolerance and converges(values[name])
+        rows = study.run_rows(runner, wanted)
+        study.levels += [row for row in rows if row.compared]
+        values = {name: study.values(name, study.levels) for name in study.references}
+        if study.levels:
+            study.references = {name: extrapolate(found, highest) for name, found in values.items()}
+        study.choose()
+        is_unknown = any(
+            one.share > WANTED * study.tolerance and converges(values[name])
             for name, one in study.references.items()
         )
         k = len(study.levels)
-        if not unknown or k > FINEST or any(not row.compared for row in wanted):
+        if not is_unknown or k > FINEST or any(not row.compared for row in rows):
             return
-        wanted = [runner.row(reference_setting(own, k, stepped, solves))]
-        if runner.predicted_seconds(wanted) > runner.left / 2:
+        wanted = [_level(runner, k)]
+        if runner.predicted_seconds([runner.row(one) for one in wanted]) > runner.left / 2:
             return
 
 
-def _settings(study: AccuracyStudy, runner: SettingRunner) -> None:
-    """Run what may be cheaper than the reference, and choose."""
-    deck, builds = study.deck, runner.builds
-    solves, stepped = deck.has("solve"), deck.is_stepped
-    _try(study, runner, longer_steps(runner.survey, builds, stepped, solves, deck.rests))
-    if study.can_recommend and (study.best is None or study.best.setting.step < 1):
-        finest = study.best.setting.step if study.best else min(row.setting.step for row in study.levels)
-        _try(study, runner, shorter_steps(builds, finest, stepped, solves))
+def _level(runner: SettingRunner, k: int) -> Setting:
+    """The reference after `k` halvings; where the deck has a SOLVE also closer to rest."""
+    ratio = TIGHTER**k if runner.deck.has("solve") else 1.0
+    step = 2.0**-k if runner.deck.is_stepped else 1.0
+    return Setting(runner.wide, step, ratio=float(f"{ratio:.6g}"))
 
 
-def _try(study: AccuracyStudy, runner: SettingRunner, settings: Iterable[Setting]) -> None:
-    """Run settings, and choose."""
-    rows = [runner.row(one) for one in settings]
-    many, seconds = counted(len(rows), "setting"), runner.predicted_seconds(rows)
-    runner.options.show(f"{many} to run, about {seconds:.3g} s; {runner.left:.3g} s of the budget are left")
-    study.add_rows(rows)
-    runner.run_rows(rows)
-    enter_errors(study)
-    if study.can_recommend:
-        study.best = recommended(study.rows, study.margins, study.tolerance)
+def _longer_steps(runner: SettingRunner) -> list[Setting]:
+    """Steps of the deck and above, as far as they can be stable; FRACTION f SAFE; SOLVE ... STATIC."""
+    deck, survey = runner.deck, runner.survey
+    if not deck.is_stepped:
+        return _with_tighter(runner, [Setting(build) for build in runner.builds])
+    largest = min((1 / one.fraction for one in survey if one.safe and not one.static), default=math.inf)
+    steps = [RUNG**k for k in range(9) if RUNG**k <= min(LONGEST * 1.01, largest)]
+    found: list[Setting] = []
+    for build in runner.builds:
+        ladder = [Setting(build, rounded(step)) for step in steps]
+        found += [one for one in ladder if one.step == 1 or share_of_bound(survey, one) <= BEYOND]
+        if any(0 < one.bound < math.inf for one in survey):
+            found += [Setting(build, safe=safe) for safe in SAFE]
+        if deck.rests:
+            found.append(Setting(build, static=True))
+    return _with_tighter(runner, found)
 
 
-# ---- errors and choice
+def _shorter_steps(runner: SettingRunner, finest: float) -> list[Setting]:
+    """Steps below that of the deck, down to `finest`, if they matter to it."""
+    found: list[Setting] = []
+    step = 1 / RUNG
+    while runner.deck.is_stepped and step > finest * 0.99:
+        found += [Setting(build, rounded(step)) for build in runner.builds]
+        step /= RUNG
+    return _with_tighter(runner, found)
 
 
-def enter_errors(study: AccuracyStudy) -> None:
-    """Find the quantities that can be compared, and enter the errors of all rows.
-
-    If the finest runs have parted for good, two numbers may still be near each other by chance: then only
-    quantities that converge with an order, or are the same, are compared.
-    """
-    study.known = [
-        name
-        for name, one in study.references.items()
-        if one
-        and one.share <= SPREAD * study.tolerance
-        and (study.separation is None or math.isfinite(one.order) or one.error == 0)
-    ]
-    for row in study.rows:
-        if row.result is not None and row.compared:
-            found = row.result.quantities
-            known = [(name, study.references[name]) for name in study.known if study.can_recommend]
-            row.errors = {name: one.error_of(found[name]) for name, one in known if one}
+def _with_tighter(runner: SettingRunner, settings: list[Setting]) -> list[Setting]:
+    """These settings, and with a SOLVE the same closer to rest."""
+    closer = settings if runner.deck.has("solve") else []
+    return settings + [replace(one, ratio=one.ratio * TIGHTER) for one in closer]
 
 
-def depends_on_step(references: Mapping[str, Extrapolation | None], known: Sequence[str]) -> bool:
-    """True if one of the known quantities is not the same number at all steps, as 0 is above all."""
-    return any((one := references[name]) is not None and one.error > 0 for name in known)
-
-
-def is_within(row: Row, margins: Mapping[str, float], tolerance: float) -> bool:
-    """True if all errors, with what they may be wrong by, are within the tolerance."""
-    if not row.compared or not row.errors:
-        return False
-    return all(error + margins[name] <= tolerance for name, error in row.errors.items())
-
-
-def recommended(rows: Sequence[Row], margins: Mapping[str, float], tolerance: float) -> Row | None:
-    """The cheapest setting within the tolerance; of equals the one that needs less memory.
-
-    With 32-bit reals only where they are faster by more than times scatter: they lose more in another deck.
-    """
-    fit = [row for row in rows if is_within(row, margins, tolerance)]
-    wide = [row for row in fit if scheme(row.setting.build).real_bits == 64]
-    best, safe = (min(some, key=lambda row: (row.cost, row.memory), default=None) for some in (fit, wide))
+def recommended(rows: Sequence[Row]) -> Row | None:
+    """The cheapest of rows within the tolerance; 32-bit reals only if they save more than times scatter."""
+    wide = [row for row in rows if scheme(row.setting.build).real_bits == 64]
+    best, safe = (min(some, key=lambda row: (row.cost, row.memory), default=None) for some in (rows, wide))
     if best is None or safe is None:
         return best
     part, seconds = SCATTER
@@ -214,26 +206,23 @@ def recommended(rows: Sequence[Row], margins: Mapping[str, float], tolerance: fl
 
 def pareto_set(rows: Sequence[Row]) -> list[Row]:
     """Rows to which no other is better in error, time and memory, or as good in all and better in one."""
-    ran = [row for row in rows if math.isfinite(row.error)]
-    marks = {id(row): (row.error, row.cost, row.memory) for row in ran}
+    marks = [(row.error, row.cost, row.memory) for row in rows if math.isfinite(row.error)]
 
-    def is_beaten(own: tuple[float, ...]) -> bool:
-        others = (one for one in marks.values() if one != own)
+    def is_beaten(row: Row) -> bool:
+        own = row.error, row.cost, row.memory
+        others = (one for one in marks if one != own)
         return any(all(x <= y for x, y in zip(one, own, strict=True)) for one in others)
 
-    return [row for row in ran if not is_beaten(marks[id(row)])]
+    return [row for row in rows if math.isfinite(row.error) and not is_beaten(row)]
 
 
 def path_differences(study: AccuracyStudy) -> dict[str, float]:
-    """By how much quantities differ on another loading path, that of SOLVE ... STATIC; {} if none was run.
-
-    As shares of their values in the finest run of the reference.
-    """
-    static = [row.result for row in study.rows if row.result and row.compared and row.setting.static]
+    """Shares by which quantities differ on the loading path of SOLVE ... STATIC; {} if that was not run."""
+    static = [row for row in study.rows if row.compared and row.setting.static]
     if not static or not study.levels or study.levels[-1].setting.static:
         return {}
-    (own,) = (row.result.quantities for row in study.levels[-1:] if row.result)
-    return {
-        name: max(share(abs(one.quantities[name] - own[name]), own[name]) for one in static)
-        for name in study.references
-    }
+    found = {}
+    for name in study.references:
+        (own,) = study.values(name, study.levels[-1:])
+        found[name] = max(share(abs(one - own), own) for one in study.values(name, static))
+    return found

@@ -6,14 +6,14 @@ show or save something become comments: they take as long at any setting.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import zip_longest
+from collections.abc import Sequence
+from itertools import takewhile, zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
 from udec_ia.deck.command_forms import Kind, match
 from udec_ia.deck.command_table import COMMANDS
-from udec_ia.deck.deck_statements import CONTINUATION, Statement, Token, obeyed, statements
+from udec_ia.deck.deck_statements import Statement, Token, statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import Call, command_of, parse
 from udec_ia.running.history_series import SOLVE_LIMIT
@@ -23,25 +23,20 @@ SHOWS = {one.name for one in COMMANDS if one.kind is Kind.SHOWS}  # become comme
 FILLED = "default"  # its values are in the lines
 RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
 ENDS = {one.name for one in COMMANDS if one.ends}
+EVERYWHERE = "-1E30 1E30 -1E30 1E30"
 OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
 
 
 class Piece(NamedTuple):
-    """Lines of a rewritten deck. one: their statement, None for added lines.
-
-    number: of the first line with a word of it, or of the line that added lines follow.
-    """
+    """Lines of a rewritten deck. one: their statement, None for lines added behind the line `number`."""
 
     one: Statement | None
-    number: int
     lines: list[str]
+    number: int = 0
 
 
 class _Change(NamedTuple):
-    """What a setting changes in a statement.
-
-    longer: time-step of the deck over the new one there. cycles: of a CYCLE, None as they are.
-    """
+    """longer: time-step of the deck over the new one. cycles: of a CYCLE, None as they are."""
 
     setting: Setting
     numbers: Numbers
@@ -50,10 +45,7 @@ class _Change(NamedTuple):
 
 
 class Deck:
-    """A deck with the values of its variables. Raises UdecError for a wrong one.
-
-    name: as errors call it. folder: where the names of its restart files begin.
-    """
+    """A deck, called `name` in errors, with values of its variables. folder: of its restart files."""
 
     def __init__(
         self, text: str, name: str, values: Values | None = None, folder: Path | None = None
@@ -62,12 +54,12 @@ class Deck:
         variables = Variables(values)
         variables.check(text.splitlines(), name)
         self.statements = [*variables.filled(statements(text.splitlines(), name))]
-        self.commands = [_command(one) for one in self.statements]
+        self.commands = [found.name if (found := command_of(one)) else "" for one in self.statements]
         ends = [k for k, command in enumerate(self.commands) if command in ENDS]
         self.obeyed = ends[0] if ends else len(self.commands)  # statements before STOP
-        for k in range(self.obeyed):
-            if self.commands[k]:
-                parse(self.statements[k])
+        for one in self.statements[: self.obeyed]:
+            if one.tokens:
+                parse(one)
         self._saves = "restart" in self.commands[1:]
 
     def has(self, *commands: str) -> bool:
@@ -76,7 +68,8 @@ class Deck:
 
     def calls(self, *commands: str) -> list[Call]:
         """Its statements of these commands, in order."""
-        return [parse(one) for one, name in self._named() if name in commands]
+        obeyed = zip(self.statements[: self.obeyed], self.commands, strict=False)
+        return [parse(one) for one, name in obeyed if name in commands]
 
     @property
     def rests(self) -> bool:
@@ -93,30 +86,29 @@ class Deck:
         """True if the time-step that FRACTION gives matters to a CYCLE or SOLVE."""
         return not all(self.statics)
 
-    def _named(self) -> Iterator[tuple[Statement, str]]:
-        yield from zip(self.statements[: self.obeyed], self.commands[: self.obeyed], strict=True)
-
     def pieces(
         self, setting: Setting, numbers: Numbers | None = None, fraction: Fraction | None = None
     ) -> list[Piece]:
-        """The deck for `setting`, as many pieces for all settings, in the order of lines.
+        """The deck for `setting`, as many pieces for all settings of the same types, in the order of lines.
 
         fraction: that of the deck, where no line states it; None: it stays so.
         """
         numbers = numbers or Numbers()
-        stated = "fraction" in self._until_run() or not self.is_stepped
+        before_run = takewhile(lambda name: name not in RUNS, self.commands[: self.obeyed])
+        stated = "fraction" in before_run or not self.is_stepped
         found: list[Piece] = []
         counts = dict(enumerate(zip_longest(numbers.longer, numbers.cycles)))
         run = 0  # CYCLEs and SOLVEs until here
         for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
             is_obeyed = k < self.obeyed
+            if is_obeyed and name in RUNS and run == 0 and setting.types == "sdef":
+                found.append(Piece(None, [f"CHANGE {EVERYWHERE} SDEF"]))
             longer, cycles = counts.get(run, (None, None))
             change = _Change(setting, numbers, longer or 1.0, cycles)
             lines = self._lines(one, name, change) if is_obeyed else _unchanged(one)
-            first = one.tokens[0].line if one.tokens else one.lines[0]
-            found.append(Piece(one, first.number, lines))
+            found.append(Piece(one, lines))
             if is_obeyed and name in ("start", "restart") and not stated and fraction is not None:
-                found.append(Piece(None, one.lines[-1].number, [_fraction(setting, numbers, fraction)]))
+                found.append(Piece(None, [_fraction(setting, numbers, fraction)], one.lines[-1].number))
             run += name in RUNS
         return found
 
@@ -127,11 +119,6 @@ class Deck:
         pieces = self.pieces(setting, numbers, fraction)
         return "".join(f"{line}\n" for piece in pieces for line in piece.lines)
 
-    def _until_run(self) -> list[str]:
-        found = self.commands[: self.obeyed]
-        ends = [k for k, name in enumerate(found) if name in RUNS]
-        return found[: ends[0]] if ends else found
-
     def _lines(self, one: Statement, name: str, change: _Change) -> list[str]:
         """The lines of a statement that is obeyed."""
         if name in SHOWS or name == FILLED or (name == "save" and not self._saves):
@@ -140,17 +127,6 @@ class Deck:
             path = (self.folder / str(parse(one).named.get("path", "restart.h5"))).absolute()
             return _replaced(one, f'RESTART "{path}"') if path.is_file() else _unchanged(one)
         return _changed(one, name, change)
-
-
-def _command(statement: Statement) -> str:
-    """Name of the command of a statement, "" for comments."""
-    command = command_of(statement)
-    if statement.tokens and command is None:
-        parse(statement)  # raises error 2
-    return command.name if command else ""
-
-
-# ---- the lines of a statement
 
 
 def _changed(one: Statement, name: str, change: _Change) -> list[str]:
@@ -170,13 +146,13 @@ def _changed(one: Statement, name: str, change: _Change) -> list[str]:
         return _with_texts(one, {one.tokens[1]: str(every)})
     if name == "round":
         return _multiplied(one, one.tokens[1:2], setting.rounding)
-    if name == "property" and setting.contact != 1:
-        return _multiplied(one, _numbers_after(one, *OF_CONTACTS), setting.contact)
     if name == "property":
-        return _multiplied(one, _numbers_after(one, "KN", "KS"), setting.stiffness)
+        numbers = _numbers_after(one, *(OF_CONTACTS if setting.contact != 1 else ("KN", "KS")))
+        return _multiplied(one, numbers, setting.contact * setting.stiffness)
     if name == "generate" and setting.edge != 1:
         return _multiplied(one, _numbers_after(one, "Edge"), setting.edge)
-    return _unchanged(one)
+    makes_soft = name == "generate" or (name == "change" and parse(one).named.get("type") is not None)
+    return _as_comment(one) if setting.types and makes_soft else _unchanged(one)
 
 
 def _fraction(setting: Setting, numbers: Numbers, own: Fraction) -> str:
@@ -251,17 +227,8 @@ def list_changes(deck: Deck, setting: Setting, numbers: Numbers, fraction: Fract
             continue
         if new.one is None:
             found += [f"after line {new.number}: {line}" for line in new.lines]
-        else:
-            found.append(_change_of(new.one, own, new.lines))
+            continue
+        for line, text in zip(new.one.lines, new.lines, strict=True):
+            if text != line.text:
+                found.append(f"line {line.number}: {own[line.number - 1].strip()} -> {text.strip()}")
     return found
-
-
-def _change_of(one: Statement, own: list[str], new: list[str]) -> str:
-    """The lines with the words of a statement, from the first to the last, and what to write instead."""
-    held = {token.line.number for token in one.tokens}
-    first, last = min(held), max(held)
-    lines = f"line {first}" if first == last else f"lines {first}-{last}"
-    old = " ".join(own[number - 1].strip() for number in range(first, last + 1) if number in held)
-    begin = first - one.lines[0].number
-    texts = (obeyed(text).strip() for text in new[begin : begin + last - first + 1])
-    return f"{lines}: {old} -> {' '.join(text.removeprefix(CONTINUATION).strip() for text in texts if text)}"

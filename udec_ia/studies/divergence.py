@@ -10,19 +10,17 @@ greatest block. Groups that only one has, codes and pointers differ always. The 
 
 from __future__ import annotations
 
-import sys
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
+from itertools import groupby
 from pathlib import Path
-from types import FrameType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.compiling.interpreted_kernels import interpreted, observe
-from udec_ia.debug.cycle_snapshots import StateCopy, copy_state
-from udec_ia.debug.cycle_trace import ROOT, UNDER
+from udec_ia.debug.cycle_trace import ROOT, CycleTrace
 from udec_ia.debug.debugged_run import count_cycles, cycle_statement
 from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
 from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
@@ -36,20 +34,16 @@ from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field
 from udec_ia.ops.common.array_growth import keep_spare
-from udec_ia.ops.common.deformable_scene import soft
-from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.printable_text import counted
 from udec_ia.reader.word_map import KINDS
-from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.cycle_replay import Replay
-from udec_ia.running.history_series import SOLVE_LIMIT, run_unwatched
+from udec_ia.running.history_series import SOLVE_LIMIT
 from udec_ia.running.run_cycles import prepare
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
-STOPS = 1000  # times that a cycle may stop for memory
 SHARE, TIMES = 1e-6, 100
 ARMS = {"rad/s": ("m/s", -1), "N": ("N/m", 1)}  # units that are others times or over a length
-States = tuple[StateCopy, StateCopy]
+States = tuple[MainArray, MainArray]
 
 
 # ---- comparison of two states
@@ -69,10 +63,7 @@ class Difference(NamedTuple):
 
 
 def find_difference(one: MainArray, two: MainArray, share: float | None) -> Difference | None:
-    """The worst difference that counts between two states, None if there is none.
-
-    share: of the greatest number of a unit, by which a real may be off; None for that of the real types.
-    """
+    """The worst difference of more than `share`, by default that of the real types; None if there is none."""
     found = compare(one.h, two.h, KINDS)
     for k, what in enumerate(("deleted", "made")):
         for kind, alone in found.alone.items():
@@ -108,13 +99,13 @@ def _greatest(sides: tuple[Side, Side], unit: str) -> float:
     return found
 
 
-def _in_states(sides: tuple[Side, Side], is_meant: Callable[[Field], bool]) -> float:
+def _in_states(sides: tuple[Side, Side], is_wanted: Callable[[Field], bool]) -> float:
     """The greatest finite number in certain real fields of two states, without its sign."""
     found = 0.0
     for atlas in (side.atlas for side in sides):
         for kind, words in atlas.shapes.items():
             for word in words:
-                if word.field.real and is_meant(word.field):
+                if word.field.real and is_wanted(word.field):
                     values = np.abs(atlas.gather(word, atlas.groups[kind]))
                     found = max(found, float(np.max(values[np.isfinite(values)], initial=0.0)))
     return found
@@ -123,87 +114,69 @@ def _in_states(sides: tuple[Side, Side], is_meant: Callable[[Field], bool]) -> f
 # ---- runs in steps
 
 
-class Step(NamedTuple):
-    """The state that a run has come to. line: the line of the deck that is next, or was last, "" for none."""
-
-    copy: StateCopy
-    cycle: int
-    line: str
+Step = tuple[MainArray, str]  # a copy of the state, and the last or next line of the deck, "" without one
 
 
 class SteppedRun(NamedTuple):
-    """model: the model of the run. steps: gives its states, as they are asked for."""
+    """steps: iterates over the states that the model comes to."""
 
     model: Any
     steps: Iterator[Step]
 
 
-def of_state(model: Any, cycles: int) -> SteppedRun:
-    """So many cycles from the state of a model."""
-    return SteppedRun(model, _cycles(model, cycles))
-
-
 def of_deck(
-    model: Any, text: str, name: str = "deck", values: Values | None = None, beside: Sequence[Path] = ()
+    model: Any, text: str, name: str = "deck", values: Values | None = None, folders: Sequence[Path] = ()
 ) -> SteppedRun:
-    """The deck `text`, on a new model. values: of its variables, by name.
-
-    beside: folders of files that RESTART finds if the deck wrote none.
-    """
-    return SteppedRun(model, _deck(_Monitor(model, values, beside), text, name))
+    """The deck `text`, on a model. name: of the deck, "" to name no lines. folders: of restart files."""
+    return SteppedRun(model, _deck(_Monitor(model, values, folders), text, name))
 
 
 class _Monitor(Monitor):
-    """Obeys a deck whose own files are in a folder that had none."""
+    """Obeys a deck; a restart file that it has not written is looked for in other folders."""
 
-    def __init__(self, model: Any, values: Values | None, beside: Sequence[Path]) -> None:
+    def __init__(self, model: Any, values: Values | None, folders: Sequence[Path]) -> None:
         super().__init__(model, StringIO(), values=values)
-        self._beside = beside
+        self._folders = folders
 
     def place(self, command: str, name: str | None) -> Path | None:
-        """As Monitor.place; a restart file that is not there is looked for in the other folders."""
-        if command == "restart" and not (self.model.session.out / (name or RESTART_FILE)).exists():
-            for folder in self._beside:
-                if (folder / (name or RESTART_FILE)).exists():
-                    return folder / (name or RESTART_FILE)
+        """As Monitor.place."""
+        file = name or RESTART_FILE
+        if command == "restart" and not (self.model.session.out / file).exists():
+            for folder in self._folders:
+                if (folder / file).exists():
+                    return folder / file
         return super().place(command, name)
-
-
-def _cycles(model: Any, cycles: int) -> Iterator[Step]:
-    yield _step(model)
-    last = int(model.array.h.ci[g.MCTOT]) + cycles
-    while (left := last - int(model.array.h.ci[g.MCTOT])) > 0:
-        model.cycle(min(left, _to_next(model)))
-        yield _step(model)
 
 
 def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
     model: Any = monitor.model
+    if model.session.started:
+        yield model.array.copy(), ""
     monitor.variables.check(text.splitlines(), name)
     for statement in monitor.variables.filled(statements(text.splitlines(), name)):
         if not statement.tokens or monitor.ended:
             continue
-        line = f"{name}:{statement.tokens[0].line.number}: {statement.tokens[0].line.shown.strip()}"
+        first = statement.tokens[0].line
+        line = f"{name}:{first.number}: {first.shown.strip()}" if name else ""
         ratio, left = _rest_of(statement)
         if not left:
             monitor.obey(statement)
             continue
         monitor.obey(cycle_statement(statement, 0))
-        yield _step(model, line)
+        yield model.array.copy(), line
         while left > 0:
-            piece = min(left, _to_next(model))
+            piece = min(left, EVERY - int(model.array.h.ci[g.MCTOT]) % EVERY)
             monitor.obey(_part(statement, ratio, piece))
             left -= piece
-            yield _step(model, line)
+            yield model.array.copy(), line
             if ratio is not None and at_rest(model.array.h, ratio):
                 break
 
 
 def _rest_of(statement: Statement) -> tuple[float | None, int]:
-    """The force ratio that a SOLVE asks for, and how many cycles it or a CYCLE has at most; 0 for others.
+    """The force ratio of a SOLVE, and the greatest number of cycles of a SOLVE or CYCLE; 0 for others.
 
-    SOLVE ... STATIC is one of the others: all stands still at its end, so it cannot be done in parts. So is
-    SOLVE ... MEAN, which is seldom.
+    SOLVE ... STATIC, at the end of which all velocities are 0, and SOLVE ... MEAN are not split: also 0.
     """
     call = parse(statement)
     if call.command.name != "solve":
@@ -214,63 +187,12 @@ def _rest_of(statement: Statement) -> tuple[float | None, int]:
 
 
 def _part(statement: Statement, ratio: float | None, n: int) -> Statement:
-    """So many cycles of a CYCLE or SOLVE. A SOLVE in such parts ends after the same cycle as a whole one."""
+    """`n` cycles of a CYCLE or SOLVE. A SOLVE in parts of EVERY ends after the same cycle as a whole one."""
     if ratio is None:
         return cycle_statement(statement, n)
     first = statement.tokens[0].line
     line = Line(first.file, first.number, f"SOLVE {ratio!r} LIMIT {n}")
     return Statement([line], tokens(line))
-
-
-def _to_next(model: Any) -> int:
-    """Cycles until the next comparison."""
-    return EVERY - int(model.array.h.ci[g.MCTOT]) % EVERY
-
-
-def _step(model: Any, line: str = "") -> Step:
-    return Step(copy_state(model.array), int(model.array.h.ci[g.MCTOT]), line)
-
-
-# ---- the passes of one cycle
-
-
-class _PassStates:
-    """The cycle that follows the state in `array`, which is changed. after: name of each pass, and a copy."""
-
-    def __init__(self, array: MainArray, laws: LawBook) -> None:
-        self.after: list[tuple[str, StateCopy]] = []
-        self._array, self._name = array, ROOT
-        with interpreted(), suppress(UdecError):
-            bound = laws.bind(array)
-            given = soft(array.h), bound.blocks, bound.joints
-            cycle = int(array.h.ci[g.MCTOT])
-            for _ in range(STOPS):
-                run_unwatched(observe(array.h, self._observe), 1, given)
-                raise_error(array, bound.book)
-                if array.h.ci[g.MCTOT] > cycle:
-                    break
-        self._end()
-
-    def _observe(self, part: str, where: Any, value: Any, written: bool) -> None:
-        name = _pass_of(sys._getframe(2))
-        if name != self._name:
-            self._end()
-            self._name = name
-
-    def _end(self) -> None:
-        """The pass is over. What the loop of the passes itself counts is no pass."""
-        if self._name != ROOT:
-            self.after.append((self._name, copy_state(self._array)))
-
-
-def _pass_of(frame: FrameType | None) -> str:
-    """The routine that the loop of the passes has called; that loop itself if it has called none."""
-    name = ROOT
-    while frame is not None and frame.f_code.co_name != ROOT:
-        if not frame.f_globals["__name__"].startswith(UNDER):
-            name = frame.f_code.co_name
-        frame = frame.f_back
-    return name
 
 
 # ---- search
@@ -291,81 +213,75 @@ class Divergence(NamedTuple):
 
 def find_divergence(one: SteppedRun, two: SteppedRun, share: float | None) -> Divergence | int:
     """Where two runs differ first, or how many cycles they agree. Raises the UdecError that ends one."""
-    before: tuple[Step, Step] | None = None
+    before: States | None = None
     agreed = 0
-    for now in zip(one.steps, two.steps, strict=False):
-        if now[0].cycle != now[1].cycle:
-            places = [f"{counted(one.cycle, 'cycle')} {one.line and 'after '}{one.line}" for one in now]
+    for (a, line), (b, other) in zip(one.steps, two.steps, strict=False):
+        cycle, of_other = (int(state.h.ci[g.MCTOT]) for state in (a, b))
+        if cycle != of_other:
             raise UdecError(
                 26,
-                f"the first run has {places[0]}, the second {places[1]}",
+                f"the first run has {counted(cycle, 'cycle')} {line and 'after '}{line}, the second "
+                f"{counted(of_other, 'cycle')} {other and 'after '}{other}",
                 "only runs with the same CYCLEs, and SOLVEs that end after as many cycles, can be compared",
             )
-        cycle = now[0].cycle
-        agreed += max(cycle - before[0].cycle, 0) if before else 0  # START begins at 0 again
-        off = find_difference(now[0].copy.array(), now[1].copy.array(), share)
+        done = cycle - int(before[0].h.ci[g.MCTOT]) if before else 0
+        agreed += max(done, 0)  # START begins at 0 again
+        off = find_difference(a, b, share)
         if off is not None:
-            if before is None or before[0].cycle == cycle:
-                return Divergence(cycle, "", off, now[0].line, (now[0].copy, now[1].copy))
-            return _within((one, two), before, now, share)
-        before = now
+            if before is None or done <= 0:
+                return Divergence(cycle, "", off, line, (a, b))
+            return _within((one, two), before, done, line, share)
+        before = a, b
     return agreed
 
 
 def _within(
-    runs: tuple[SteppedRun, SteppedRun],
-    before: tuple[Step, Step],
-    now: tuple[Step, Step],
-    share: float | None,
+    runs: tuple[SteppedRun, SteppedRun], start: States, cycles: int, line: str, share: float | None
 ) -> Divergence:
-    """The same, where the runs differ within a step."""
-    low, high = before[0].cycle, now[0].cycle
-    start = before[0].copy, before[1].copy
-    while high - low > 1:
-        middle = (low + high) // 2
-        states = _on(runs, start, middle - low)
-        if find_difference(states[0].array(), states[1].array(), share) is None:
-            low, start = middle, states
+    """The same, where the runs differ within some cycles from a state on."""
+    while cycles > 1:
+        states = _on(runs, start, cycles // 2)
+        if find_difference(*states, share) is None:
+            start, cycles = states, cycles - cycles // 2
         else:
-            high = middle
-    in_pass, off = _first_pass(runs, start, share)
+            cycles //= 2
+    in_pass, off = "", None
+    passes = [[*_passes(_ready(state), run)] for state, run in zip(start, runs, strict=True)]
+    for (name, a), (other, b) in zip(*passes, strict=False):
+        off = find_difference(a, b, share)
+        if off is not None:
+            in_pass = name if name == other else f"{name} and {other}"
+            break
     states = _on(runs, start, 1)
-    off = off or find_difference(states[0].array(), states[1].array(), share)
+    off = off or find_difference(*states, share)
     if off is None:
-        raise UdecError(
-            26,
-            f"the runs differ in the cycles {low + 1} to {now[0].cycle}, but not when these are repeated",
-            "a law of yours may depend on more than what it is given",
-        )
-    return Divergence(high, in_pass, off, now[0].line, states)
+        what = "the runs differ after some cycles, but not when these are repeated"
+        raise UdecError(26, what, "a user law may depend on more than its arguments")
+    return Divergence(int(start[0].h.ci[g.MCTOT]) + 1, in_pass, off, line, states)
 
 
 def _on(runs: tuple[SteppedRun, SteppedRun], start: States, cycles: int) -> States:
-    """The states so many cycles later."""
-    arrays = [_ready(copy) for copy in start]
-    for run, array in zip(runs, arrays, strict=True):
+    """The states `cycles` cycles later."""
+    states = _ready(start[0]), _ready(start[1])
+    for run, array in zip(runs, states, strict=True):
         with suppress(UdecError):  # which the run has ended with
             Replay(array, run.model.session.laws).step(cycles)
-    return copy_state(arrays[0]), copy_state(arrays[1])
+    return states
 
 
-def _ready(copy: StateCopy) -> MainArray:
-    """The state, prepared to be cycled as CYCLE does."""
-    array = copy.array()
+def _ready(state: MainArray) -> MainArray:
+    """A copy of the state, prepared to be cycled as CYCLE does."""
+    array = state.copy()
     prepare(array)
     keep_spare(array)
     return array
 
 
-def _first_pass(
-    runs: tuple[SteppedRun, SteppedRun], start: States, share: float | None
-) -> tuple[str, Difference | None]:
-    """The first pass of the next cycle after which the runs differ, and by what; "" if it is none alone."""
-    passes = [
-        _PassStates(_ready(copy), run.model.session.laws) for copy, run in zip(start, runs, strict=True)
-    ]
-    for (name, a), (other, b) in zip(passes[0].after, passes[1].after, strict=False):
-        off = find_difference(a.array(), b.array(), share)
-        if off is not None:
-            return (name if name == other else f"{name} and {other}"), off
-    return "", None
+def _passes(array: MainArray, run: SteppedRun) -> Iterator[tuple[str, MainArray]]:
+    """The passes of the cycle that follows the state in `array`: the name of each, and the state after it."""
+    trace = CycleTrace(array, run.model.session.laws)
+    for name, accesses in groupby(enumerate(trace.accesses), key=lambda one: one[1].work.of):
+        *_, (last, _) = accesses
+        trace.go(bisect_right(trace.writes, last))
+        if name != ROOT:  # the loop of the passes itself
+            yield name, trace.state.copy()

@@ -1,8 +1,4 @@
-"""Executes one run of a study, on a new model and in a folder of its own; measures its processor time.
-
-Nothing that it writes names the place where it was executed. Observing a run changes no digit of it: how a
-CYCLE is cut into pieces has no influence on its result.
-"""
+"""Executes one run of a study, on a new model and in a folder of its own; measures its processor time."""
 
 from __future__ import annotations
 
@@ -15,7 +11,6 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from io import TextIOWrapper
 from pathlib import Path
 from time import monotonic, thread_time
 from typing import TextIO
@@ -32,20 +27,10 @@ from udec_ia.model import Model
 from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.solve_result import in_short, worth_reporting
 from udec_ia.studies.quantities import InitialState, NoValue, State, read_quantities, read_rule
-from udec_ia.studies.run_folder import BEGUN, incomplete, new_folder, publish
-from udec_ia.studies.study_run import (
-    DECK,
-    DIED,
-    ENDED,
-    ERROR,
-    LATE,
-    STOPPED,
-    RunResult,
-    StudyRun,
-    write_result,
-)
+from udec_ia.studies.run_folder import incomplete, new_folder, publish
+from udec_ia.studies.study_run import DIED, ENDED, ERROR, LATE, STOPPED, RunResult, StudyRun, write_result
 
-LOG = "log.txt"
+DECK, LOG = "deck.dat", "log.txt"  # in the folder of a run
 NOT_OF_DECK = (23, 31)  # a package is missing, a file cannot be written
 log = logging.getLogger("udec_ia")
 _run_lock = threading.Lock()  # held during a run, however many threads the process has
@@ -64,7 +49,6 @@ def execute(run: StudyRun, folder: Path, timed: bool = False) -> RunResult:
     with _run_lock:
         here = new_folder(folder, run.name)
         try:
-            (here / BEGUN).touch()
             result = _result(run, here)
             write_result(result, here)
             publish(here, folder / run.name)
@@ -84,71 +68,62 @@ def rehearse(run: StudyRun) -> None:
 
 def record_death(run: StudyRun, folder: Path) -> RunResult:
     """Write the result of a run whose process has died into its folder in `folder`."""
-    result = RunResult(
-        run.name,
-        dict(run.values),
-        DIED,
-        message="its process died, perhaps because memory ran out",
-        quantities=_no_values(run),
-        made_of=run.made_of,
-        limit=run.limit,
-        of_system=True,
-    )
+    message = "its process died, perhaps because memory ran out"
+    result = replace(_no_result(run), status=DIED, message=message, of_system=True)
     left = incomplete(run.name, folder)
     here = left[0] if left else new_folder(folder, run.name)
     write_result(result, here)
-    (here / BEGUN).touch()
     publish(here, folder / run.name)
     return result
 
 
-def _no_values(run: StudyRun) -> dict[str, float]:
-    return dict.fromkeys((one.name for one in read_quantities(run.quantities)), float("nan"))
+def _no_result(run: StudyRun) -> RunResult:
+    """The result of a run without cycles and quantities."""
+    values = dict.fromkeys(read_quantities(run.quantities), float("nan"))
+    return RunResult(
+        run.name, dict(run.values), ENDED, quantities=values, made_of=run.made_of, limit=run.limit
+    )
 
 
 def _result(run: StudyRun, here: Path) -> RunResult:
     """The result of `run`, whose files go to the folder `here`."""
-    observer, at_rest = None, True
-    status, error, message, of_system = ENDED, 0, "", False
-    found, remarks = _no_values(run), list[str]()
-    with _Log(here) as out, _logging_to(out):
+    observer, result = None, _no_result(run)
+    with (here / LOG).open("w", encoding="utf-8", errors="replace") as out, _logging_to(out):
         (here / DECK).write_text(_deck_with_values(run), encoding="utf-8")
         try:
             name, laws = Path(run.file or DECK).stem, run.constitutive or None
             observer = StudyObserver(run, Model(run.build, out=here, constitutive=laws, name=name))
             observer.obey(out)
-            solutions = observer.model.solutions()
-            status, message = observer.over or ENDED, observer.why or "; ".join(in_short(solutions))
-            at_rest = all(one.reached for one in worth_reporting(solutions))
-            found, remarks = observer.quantities()
+            result = observer.result(result)
         except UdecError as failure:
             print(failure, file=out)
-            status, error, message = ERROR, failure.number, str(failure).partition("\n")[0]
-            of_system = error in NOT_OF_DECK or isinstance(failure.__cause__, OSError | MemoryError)
+            of_system = failure.number in NOT_OF_DECK or isinstance(failure.__cause__, OSError | MemoryError)
+            message = str(failure).partition("\n")[0]
+            result = replace(result, status=ERROR, error=failure.number, message=message, of_system=of_system)
         except Exception as failure:  # of the system, or a fault of the program: it ends this run only
             traceback.print_exc(file=out)
-            status, message, of_system = ERROR, f"{type(failure).__name__}: {failure}", True
-        print(*(f"{remark}\n" for remark in remarks), sep="", end="", file=out)
-    cycles, time, words = observer.size if observer else (0, 0.0, 0)
-    warnings = observer.warnings if observer else []
-    return RunResult(
-        run.name,
-        dict(run.values),
-        status,
-        error,
-        out.without_folder(message),
-        found,
-        tuple(remarks),
-        cycles,
-        time,
-        words,
-        seconds=observer.clock.seconds if observer else 0.0,
-        made_of=run.made_of,
-        limit=run.limit,
-        warnings=tuple(dict.fromkeys(map(out.without_folder, warnings))),
-        of_system=of_system,
-        at_rest=at_rest,
-    )
+            message = f"{type(failure).__name__}: {failure}"
+            result = replace(result, status=ERROR, message=message, of_system=True)
+        print(*(f"{remark}\n" for remark in result.remarks), sep="", end="", file=out)
+    if observer is not None:
+        h = observer.model.array.h
+        result = replace(
+            result,
+            cycles=int(h.ci[g.MCTOT]),
+            time=float(h.cd[g.TIME]),
+            words=int(h.ci[g.MFREE]) - 1,
+            seconds=observer.clock.seconds,
+            warnings=tuple(dict.fromkeys(observer.warnings)),
+        )
+    return _without_folder(result, here)
+
+
+def _without_folder(result: RunResult, here: Path) -> RunResult:
+    """The same without the name of the folder `here`; also the log."""
+    name, file = str(here) + os.sep, here / LOG
+    file.write_text(file.read_text(encoding="utf-8").replace(name, ""), encoding="utf-8")
+    warnings = tuple(text.replace(name, "") for text in result.warnings)
+    return replace(result, message=result.message.replace(name, ""), warnings=warnings)
 
 
 def _deck_with_values(run: StudyRun) -> str:
@@ -157,22 +132,6 @@ def _deck_with_values(run: StudyRun) -> str:
         filled = Variables(run.values).filled(statements(run.deck.splitlines(), run.file))
         return "".join(f"{line.text}\n" for statement in filled for line in statement.lines)
     return run.deck
-
-
-class _Log(TextIOWrapper):
-    """The file for what a run prints, in the folder `here`, without the name of that folder."""
-
-    def __init__(self, here: Path) -> None:
-        super().__init__((here / LOG).open("wb"), encoding="utf-8", errors="replace")
-        self._prefix = str(here) + os.sep
-
-    def without_folder(self, text: str) -> str:
-        """`text` without the name of the folder."""
-        return text.replace(self._prefix, "")
-
-    def write(self, text: str) -> int:
-        """As of any text file."""
-        return super().write(self.without_folder(text))
 
 
 @contextmanager
@@ -191,8 +150,7 @@ def _logging_to(out: TextIO) -> Iterator[None]:
 class CpuTime:
     """Processor time of a thread since now, without the time that compiling kernels takes.
 
-    Of compiling only the time by the clock is known. On a busy machine a process does not have the processor
-    all of that time: where something was compiled it counts with the same share of the processor as the rest.
+    Of compiling only the time by the clock is known: it counts with the share of the processor of the rest.
     """
 
     def __init__(self) -> None:
@@ -212,9 +170,6 @@ class CpuTime:
         return thread_time(), monotonic(), compile_seconds()
 
 
-# ---- observers
-
-
 class RunObserver(Observer):
     """An observer of cycles that is called between commands as well."""
 
@@ -232,12 +187,11 @@ class StudyObserver(RunObserver):
         self.run, self.model, self.clock = run, model, CpuTime()
         self.over = self.why = ""
         self.warnings: list[str] = []
-        self._named, self._rules = read_quantities(run.quantities), [read_rule(text) for text in run.stop]
-        asked = [one.quantity for one in self._named] + [rule.quantity for rule in self._rules]
+        self._quantities, self._rules = read_quantities(run.quantities), [*map(read_rule, run.stop)]
+        asked = [*self._quantities.values(), *(rule.quantity for rule in self._rules)]
         self._start = InitialState(frozenset(one.place for one in asked if one.place is not None))
         self._done = 0  # cycles of this CYCLE or SOLVE
         self._others: list[RunObserver] = run.observers(model)
-        self._unknown: dict[str, str] = {}  # rules without a value, and why; "" for those that have had one
 
     def obey(self, out: TextIO) -> None:
         """Obey the deck of the run, whose output goes to `out`."""
@@ -248,23 +202,24 @@ class StudyObserver(RunObserver):
         monitor.run(text.splitlines(), name)
         monitor.stop()
 
-    @property
-    def size(self) -> tuple[int, float, int]:
-        """Cycles and time of the model, and words in use."""
-        h = self.model.array.h
-        return int(h.ci[g.MCTOT]), float(h.cd[g.TIME]), int(h.ci[g.MFREE]) - 1
-
-    def quantities(self) -> tuple[dict[str, float], list[str]]:
-        """The quantities of the run, by name, with NaN for those without a value; and why they have none."""
+    def result(self, empty: RunResult) -> RunResult:
+        """The result of the run, which has ended: quantities, NaN for those without a value, and why."""
         found, remarks, state = dict[str, float](), list[str](), self._state()
-        for name, quantity in self._named:
+        for name, quantity in self._quantities.items():
             try:
                 found[name] = quantity.value(state)
             except (NoValue, UdecError) as reason:
                 found[name] = float("nan")
-                remarks.append(f"{name} has no value: {_reason(reason)}")
-        never = (f"{rule} has never had a value: {why}" for rule, why in self._unknown.items() if why)
-        return found, [*remarks, *never]
+                why = reason.detail if isinstance(reason, UdecError) else reason
+                remarks.append(f"{name} has no value: {why}")
+        return replace(
+            empty,
+            status=self.over or ENDED,
+            message=self.why or "; ".join(in_short(state.solutions)),
+            quantities=found,
+            remarks=tuple(remarks),
+            at_rest=all(one.reached for one in worth_reporting(state.solutions)),
+        )
 
     def command_obeyed(self, array: MainArray) -> None:
         """See RunObserver."""
@@ -295,16 +250,10 @@ class StudyObserver(RunObserver):
         self._done += cycles
         if not (self._rules and between_cycles(array.h) and array.h.ci[g.MCTOT] % self.run.every == 0):
             return
-        state = self._state()
         for rule in self._rules:
-            try:
-                holds = rule.holds(state)
-            except (NoValue, UdecError) as reason:
-                self._unknown.setdefault(rule.text, _reason(reason))
-                continue
-            self._unknown[rule.text] = ""
-            if holds and not self.over:
-                self.over, self.why = STOPPED, rule.text
+            with suppress(NoValue, UdecError):  # a quantity without a value
+                if rule.holds(self._state()) and not self.over:
+                    self.over, self.why = STOPPED, rule.text
 
     def is_over(self) -> bool:
         """True if the run is to end: a rule holds, or the time is up; or if the rehearsed cycle is done."""
@@ -312,10 +261,6 @@ class StudyObserver(RunObserver):
 
     def _state(self) -> State:
         return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
-
-
-def _reason(error: Exception) -> str:
-    return error.detail if isinstance(error, UdecError) else str(error)
 
 
 class _Monitor(Monitor):

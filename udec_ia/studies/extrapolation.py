@@ -5,13 +5,12 @@ d2 = v3 - v2 have one sign and d1/d2 = 2^p with p from 0.5 to 3, the error goes 
 
     v = v3 + d2 / (2^p - 1)
 
-(Richardson 1911; p observed, as Roache, Perspective: a method for uniform reporting of grid refinement
-studies, J. Fluids Eng. 116, 1994, asks for). The error of v is the whole correction or, with four values,
-the change of v by the fourth, if that is less; both with a factor of safety. An order above 2.2 is not that
-of the formulation but chance: then p = 2, and the whole of d2 is the error, three times the correction
-(Oberkampf and Roy, Verification and validation in scientific computing, 2010, 8.6). Where rest is sought more
-closely from value to value as well (`highest`), p may be greater. Without an order the result is v3, and its
-error twice the greatest of the last differences.
+(Richardson 1911; p observed, as in Roache, J. Fluids Eng. 116, 1994). The error of v is the whole correction
+or, with four values, the change of v by the fourth, if that is less; both with a factor of safety. An order
+above 2.2 is not that of the formulation but chance: then p = 2, and the whole of d2 is the error (Oberkampf
+and Roy, Verification and validation in scientific computing, 2010, 8.6). Where rest is sought more closely
+from value to value as well (`highest`), p may be greater. Without an order the result is v3, and its error
+twice the greatest of the last differences.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ class Extrapolation:
 
     @property
     def is_zero(self) -> bool:
-        """True if the value cannot be told from 0, so that shares of it have no meaning."""
+        """True if the value cannot be distinguished from 0: shares of it mean nothing."""
         return 0 < self.error >= abs(self.value) and math.isfinite(self.error)
 
     def error_of(self, value: float) -> float:
@@ -57,16 +56,11 @@ def share(error: float, value: float) -> float:
     return error / abs(value) if value else math.inf
 
 
-def extrapolate(values: Sequence[float], highest: float = HIGHEST) -> Extrapolation | None:
-    """What values tend to whose steps are halved from one to the next; None if the last is NaN.
-
-    highest: the greatest order that is accepted.
-    """
+def extrapolate(values: Sequence[float], highest: float = HIGHEST) -> Extrapolation:
+    """What values tend to whose steps are halved; an infinite error if unknown. highest: order accepted."""
     finite = [value for value in values if math.isfinite(value)]
-    if not finite or not math.isfinite(values[-1]):
-        return None
-    if len(finite) == 1:
-        return Extrapolation(finite[0], math.inf)
+    if len(finite) < 2 or not math.isfinite(values[-1]):
+        return Extrapolation(values[-1], math.inf)
     extrapolated = _by_order(finite[-3:], highest)
     if extrapolated is not None:
         before = _by_order(finite[-4:-1], highest)

@@ -1,7 +1,6 @@
 """Folders of runs: hidden while a run goes on, renamed to the run's name when complete, locked for one study.
 
-A folder with the name of a run is complete, whatever happened to the process. Only folders that the program
-has made are replaced: those with a result in them, and empty ones.
+A folder with the name of a run is complete. Only folders with a result in them, and empty ones, are replaced.
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from udec_ia.errors import UdecError
 from udec_ia.printable_text import MESSAGE, printable
 
 RESULT = "result.json"  # in the folder of a run; no folder gets the name of a run without it
-BEGUN = "begun"  # file in the folder of a run that is not complete
 UNNAMED = ".run-"  # how the name of such a folder begins
 HIDDEN = re.compile(rf"{re.escape(UNNAMED)}.*~[0-9a-f]{{8}}", re.DOTALL)
 LOCK = ".lock"
@@ -27,11 +25,7 @@ OTHER = "give another folder (--out, or out=... in Python)"
 
 @contextmanager
 def lock_folder(folder: Path) -> Iterator[None]:
-    """Make `folder`, clear incomplete runs, and keep other studies out until the end.
-
-    The system releases the lock when the process ends, however it ends. Error 31 if another study uses the
-    folder or if it cannot be written.
-    """
+    """Make `folder`, clear incomplete runs, and keep other studies out. Error 31 if that cannot be done."""
     from filelock import FileLock, Timeout
 
     lock = FileLock(folder / LOCK)
@@ -41,10 +35,8 @@ def lock_folder(folder: Path) -> Iterator[None]:
             lock.acquire(timeout=0)
         clear(folder)
     except Timeout:
-        name = printable(str(folder), MESSAGE)
-        raise UdecError(
-            31, f"{name} is in use by another study", f"wait until it has ended, or {OTHER}"
-        ) from None
+        what = f"{printable(str(folder), MESSAGE)} is in use by another study"
+        raise UdecError(31, what, f"wait until it has ended, or {OTHER}") from None
     except OSError as error:
         raise UdecError(31, f"{folder}: {error.strerror or error}") from error
     try:
@@ -55,18 +47,15 @@ def lock_folder(folder: Path) -> Iterator[None]:
 
 def new_folder(folder: Path, name: str) -> Path:
     """A new hidden folder for the run `name` in `folder`."""
-    here = folder / f"{_hidden(name)}{secrets.token_hex(4)}"
+    here = folder / f"{UNNAMED}{name}~{secrets.token_hex(4)}"
     here.mkdir()
     return here
 
 
 def publish(here: Path, there: Path) -> None:
-    """Give the folder of a run its name. FileNotFoundError if another process has cleared it meanwhile.
-
-    Error 31 if something that the program has not made is there by now.
-    """
+    """Give the folder of a run its name. Error 31; FileNotFoundError if another process has cleared it."""
     check_replaceable(there)
-    (here / BEGUN).unlink()
+    here.stat()  # raises FileNotFoundError
     if there.is_dir():
         old = new_folder(there.parent, there.name)
         os.replace(there, old)
@@ -84,25 +73,17 @@ def check_replaceable(there: Path) -> None:
         what = f"was not made by this program: it is no folder with {RESULT} in it"
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
-    raise UdecError(
-        31, f"{printable(str(there), MESSAGE)}, the place of a run, {what}", f"move it away, or {OTHER}"
-    )
+    place = f"{printable(str(there), MESSAGE)}, the place of a run,"
+    raise UdecError(31, f"{place} {what}", f"move it away, or {OTHER}")
 
 
 def incomplete(name: str, folder: Path) -> list[Path]:
-    """Folders in which the run `name` was begun and not completed."""
-    return [path for path in _all_incomplete(folder) if path.name.startswith(_hidden(name))]
+    """Folders in which the run `name`, "" for any, was begun and not completed."""
+    hidden = [path for path in folder.glob(f"{UNNAMED}*") if HIDDEN.fullmatch(path.name)]
+    return [path for path in hidden if not name or path.name.startswith(f"{UNNAMED}{name}~")]
 
 
 def clear(folder: Path) -> None:
     """Remove the incomplete runs in `folder`; a process that still works on one cannot publish it."""
-    for path in _all_incomplete(folder):
+    for path in incomplete("", folder):
         shutil.rmtree(path, ignore_errors=True)
-
-
-def _all_incomplete(folder: Path) -> list[Path]:
-    return [path for path in folder.glob(f"{UNNAMED}*") if HIDDEN.fullmatch(path.name)]
-
-
-def _hidden(name: str) -> str:
-    return f"{UNNAMED}{name}~"

@@ -1,9 +1,8 @@
 """Runs settings of one deck within a budget of time, and learns what they cost.
 
 A run costs seconds of preparing and seconds a cycle: at first those of the deck as it is, then those of all
-runs of a word scheme until now. Settings run in the order of their predicted costs, SOLVE ... STATIC first.
-The budget is time by the clock from the creation of the runner: creating and starting runs count. What does
-not come within it is not run.
+runs of a word scheme until now. The budget is time by the clock from the creation of the runner: creating and
+starting runs count. Settings beyond it are not run.
 """
 
 from __future__ import annotations
@@ -11,12 +10,11 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 from time import monotonic
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.ops.laws.law_file import read_laws
@@ -39,11 +37,9 @@ QUANTITIES = (
     "mean displacement = mean block.DISPLACEMENT",
     "force = max contact.KCFN",
 )
-END_TIME = "end of time = time"  # the first quantity of every run
-TOLERANCE, BUDGET = 1e-3, 300.0
 NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes with half the reals
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
-LONGEST = 5.0  # a run ends after so many times the predicted seconds, and so many seconds at least
+LONGEST = 5.0  # times the predicted seconds, and least seconds, after which a run is ended
 TIME_OFF = 0.05  # share of the time of all CYCLEs by which a run may be off, as cycles are whole
 NOT_AT_REST = "its SOLVE did not reach the force ratio"
 
@@ -57,8 +53,8 @@ class Options:
     """
 
     quantities: tuple[str, ...] = QUANTITIES
-    tolerance: float = TOLERANCE
-    budget: float = BUDGET
+    tolerance: float = 1e-3
+    budget: float = 300.0
     build: str = DEFAULT_SCHEME
     builds: tuple[str, ...] = ()
     constitutive: tuple[str, ...] = ()
@@ -66,17 +62,14 @@ class Options:
     half_step: bool = False
     stream: TextIO = field(default_factory=io.StringIO)
 
-    def show(self, text: str) -> None:
-        """Show the progress."""
-        print(text, file=self.stream, flush=True)
-
 
 @dataclass
 class Row:
     """A setting and its run.
 
-    predicted: seconds. result: None if it was not run. cost: seconds by the rates of all runs and the cycles
-    that it took. errors: share of the reference, by quantity. why: it is not compared, though it ran.
+    predicted: seconds. result: None if it was not run; segments: its CYCLEs and SOLVEs. cost: seconds by the
+    rates of all runs and the cycles that it took. errors: share of the reference, by quantity. why: it is not
+    compared, though it ran.
     """
 
     setting: Setting
@@ -86,6 +79,7 @@ class Row:
     cost: float = math.inf
     errors: dict[str, float] = field(default_factory=dict)
     why: str = ""
+    segments: list[Segment] = field(default_factory=list)
 
     @property
     def ran(self) -> bool:
@@ -115,17 +109,12 @@ class Rates(NamedTuple):
     preparing: float
     cycle: float
 
-    def seconds(self, cycles: float) -> float:
-        """Seconds of a run with so many cycles."""
-        return self.preparing + cycles * self.cycle
-
 
 class SettingRunner:
     """Runs settings of one deck in `folder`, which it keeps until the end of `with`. notes: sentences.
 
     own, survey: the deck as it is, and its CYCLEs and SOLVEs. fraction: of the deck at first, None if it does
-    not matter. Raises UdecError 34 for a law that cannot be used, 31 for a deck whose runs would save to one
-    file.
+    not matter. UdecError 34 for a law that cannot be used, 31 for a deck whose runs would save to one file.
     """
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
@@ -140,51 +129,39 @@ class SettingRunner:
         self.rates: dict[str, Rates] = {}
         self.notes: list[str] = []
         self._done: dict[str, list[Row]] = {build: [] for build in self.builds}
-        self._open = ExitStack()
         self._pool = WorkerPool(folder, jobs=options.jobs, timed=True)
         self.processes = max(self._pool.jobs, 1)  # runs that go on at a time
         check_saves([self.run(Setting(self.wide), name=name) for name in ("one", "other")])
 
     def __enter__(self) -> SettingRunner:
-        self._open.enter_context(self._pool)
+        self._pool.__enter__()
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self._open.close()
+    def __exit__(self, *error: object) -> None:
+        self._pool.__exit__(*error)
 
     @property
     def left(self) -> float:
         """Seconds of the budget that are left."""
         return self._end - monotonic()
 
-    def run(
-        self,
-        setting: Setting,
-        numbers: Numbers | None = None,
-        more: tuple[str, ...] = (),
-        **named: object,
-    ) -> SurveyRun:
-        """The run of a setting. more: quantities beside those that are asked for.
-
-        Errors name the user's deck, or deck.dat in the folder of the run if that has more lines.
-        """
+    def run(self, setting: Setting, numbers: Numbers | None = None, **named: Any) -> SurveyRun:
+        """The run of a setting. named: fields of the run that are not those of all settings."""
         text = self.deck.written(setting, numbers, self.fraction)
-        same = len(text.splitlines()) == len(self.deck.text.splitlines())
-        run: dict[str, object] = {
-            "name": setting.name,
-            "deck": text,
-            "file": self.deck.name if same else "",
-            "quantities": (END_TIME, *self.options.quantities, *more),
-            "build": setting.build,
-            "constitutive": self.options.constitutive,
-        }
-        return SurveyRun(**run | named)  # type: ignore[arg-type]
+        same = len(text.splitlines()) == len(self.deck.text.splitlines())  # else errors name another file
+        run = SurveyRun(
+            setting.name,
+            text,
+            self.deck.name if same else "",
+            quantities=self.options.quantities,
+            build=setting.build,
+            constitutive=self.options.constitutive,
+        )
+        return replace(run, **named)
 
     def run_own_deck(self) -> str:
         """Run the deck as it is. Returns why there is nothing to compare with, "" if there is."""
-        (self.own.result,) = (result,) = self.results(
-            [self.run(self.own.setting, bounds=True, limit=max(self.left, 1.0))]
-        )
+        (result,) = self.results([self.run(self.own.setting, bounds=True, limit=max(self.left, 1.0))])
         self.survey = self.segments(self.own.setting.name)
         if result.status == LATE:
             budget = f"the budget of {self.options.budget:g} s: give a greater --budget"
@@ -194,8 +171,7 @@ class SettingRunner:
             return f"the deck as it is gives nothing to compare: {reason}"
         one = next((one for one in self.survey if not one.static), None)
         if one is not None:
-            words = " SCALED" if one.scaled else " SAFE" if one.safe else ""
-            self.fraction = Fraction(one.fraction, words)
+            self.fraction = Fraction(one.fraction, " SCALED" if one.scaled else " SAFE" if one.safe else "")
         self.own.numbers = count_cycles(self.survey, self.own.setting)
         self._enter(self.own, result)
         self.rates = dict.fromkeys(self.builds, self.rates[self.wide])
@@ -212,8 +188,8 @@ class SettingRunner:
                 self.notes.append(f"{row.setting.build} is left out, as it cannot run the deck: {reason}")
 
     def row(self, setting: Setting) -> Row:
-        """A setting, with its predicted cost."""
-        for row in (self.own, *self._done[setting.build]):
+        """A setting, with its predicted cost; the same row if it has been run."""
+        for row in self._done[setting.build]:
             if row.setting == setting:
                 return row
         row = Row(setting, count_cycles(self.survey, setting), 0.0)
@@ -221,8 +197,8 @@ class SettingRunner:
         return row
 
     def _predicted(self, row: Row) -> float:
-        cycles = expected_cycles(self.survey, row.numbers, row.setting)
-        return self.rates[row.setting.build].seconds(cycles)
+        rates = self.rates[row.setting.build]
+        return rates.preparing + rates.cycle * expected_cycles(self.survey, row.numbers, row.setting)
 
     def predicted_seconds(self, rows: Sequence[Row]) -> float:
         """Seconds by the clock that rows take."""
@@ -238,44 +214,37 @@ class SettingRunner:
             if waiting[0].predicted > self.left:
                 break
             some, waiting = waiting[: self.processes], waiting[self.processes :]
-            runs = [
-                self.run(row.setting, row.numbers, limit=min(self._longest(row), max(self.left, 1.0)))
-                for row in some
-            ]
+            runs = []
+            for row in some:
+                limit = min(LONGEST * max(1.0, row.predicted), max(self.left, 1.0))
+                runs.append(self.run(row.setting, row.numbers, limit=limit))
             for row, result in zip(some, self.results(runs), strict=True):
                 self._enter(row, result)
         return waiting
 
-    def _longest(self, row: Row) -> float:
-        return LONGEST * max(1.0, row.predicted)
-
     def _enter(self, row: Row, result: RunResult) -> None:
-        """Enter the result of a row, and learn the costs of its word scheme from all its runs until now.
-
-        The times of a single run of a small model differ by a quarter from one time to the next.
-        """
+        """Enter the result of a row, and learn the costs of its word scheme from all its runs until now."""
         row.result = result
         if not row.ran:
             return
+        row.segments = self.segments(row.setting.name)
         row.why = self._why_not_compared(row, result)
         done = self._done[row.setting.build]
         done.append(row)
-        found = [self.segments(one.setting.name) for one in done]
-        spent = [sum(one.seconds for one in some) for some in found]
-        cycles = sum(one.done for some in found for one in some)
-        spare = [one.result.seconds - own for one, own in zip(done, spent, strict=True) if one.result]
-        rates = Rates(max(median(spare), 0.0), sum(spent) / max(cycles, 1))
+        spent = [sum(one.seconds for one in row.segments) for row in done]
+        cycles = [sum(one.done for one in row.segments) for row in done]
+        spare = [row.result.seconds - own for row, own in zip(done, spent, strict=True) if row.result]
+        rates = Rates(max(median(spare), 0.0), sum(spent) / max(sum(cycles), 1))
         self.rates[row.setting.build] = rates
-        for one, some in zip(done, found, strict=True):
-            one.cost = rates.seconds(sum(segment.done for segment in some))
+        for one, number in zip(done, cycles, strict=True):
+            one.cost = rates.preparing + rates.cycle * number
 
     def _why_not_compared(self, row: Row, result: RunResult) -> str:
         """Why a row that has run is not compared, "" if it is."""
-        found = self.segments(row.setting.name)
-        if not has_its_fraction(self.survey, found, row.setting, row.numbers):
+        if not has_its_fraction(self.survey, row.segments, row.setting, row.numbers):
             return "the deck sets its time-step itself, which cannot be varied; write FRACTION instead"
         own = self.own.result or result
-        time, wanted = cycled_time(found, result.time), cycled_time(self.survey, own.time)
+        time, wanted = cycled_time(row.segments, result.time), cycled_time(self.survey, own.time)
         if abs(time - wanted) > TIME_OFF * abs(wanted):
             return f"the CYCLEs of {row.setting.name} last {time:.4g} s, those of the deck {wanted:.4g} s"
         return "" if result.at_rest else NOT_AT_REST

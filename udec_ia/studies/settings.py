@@ -1,15 +1,15 @@
-"""Settings of a deck: what a run of it is made with, how many cycles that needs, and which are tried.
+"""Settings of a deck: what a run of it is made with, and how many cycles that needs.
 
-CYCLE counts cycles, but results belong to times. With another time-step each CYCLE gets the cycles of the
-same time. What whole cycles leave of it, half a step at most, goes to the next CYCLE. Of the fractions up to
-FIT below the one that is asked for, the one that leaves least is used, the greatest of equals.
+With another time-step each CYCLE gets the cycles of the same time. What whole cycles leave of it, half a step
+at most, goes to the next CYCLE. Of the fractions up to FIT below the one that is asked for, the one that
+leaves least is used, the greatest of equals.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
@@ -19,11 +19,7 @@ FIT = 0.06  # the greatest share by which a time-step may be smaller than asked 
 TRIED = 60  # fractions that are tried at most
 SAME_FRACTION = 1e-5  # share: what reals of 32 bits and ten digits of a deck leave
 SAME = 1e-9  # of the time: a difference that does not count
-RUNG = 2**0.5  # of the ladder of time-steps: the cheapest on it is so to within that factor
-LONGEST = 16.0  # times the step of the deck
 BEYOND = 1.4  # of the safe bound, which is 0.7 of the true one or more: nothing is stable above
-SAFE = (0.9, 0.5)
-TIGHTER = 0.1  # ratio of SOLVE, from one level of the reference to the next
 
 
 @dataclass(frozen=True)
@@ -33,7 +29,7 @@ class Setting:
     build: word scheme. step: times the time-step of the deck. safe: fraction of the safe bound instead, 0 for
     none. ratio: times the ratio of SOLVE. static: SOLVE ... STATIC. rounding, edge, stiffness: times the
     lengths of ROUND and of GENERATE ... EDGE, and KN and KS. contact: times KN, KS and the cohesions, which
-    are properties of one contact, instead.
+    are properties of one contact, instead. types: "" as they are, or "rigid" or "sdef" for all blocks.
     """
 
     build: str = DEFAULT_SCHEME
@@ -45,6 +41,7 @@ class Setting:
     edge: float = 1.0
     stiffness: float = 1.0
     contact: float = 1.0
+    types: str = ""
 
     @property
     def name(self) -> str:
@@ -56,7 +53,7 @@ class Setting:
             parts.append(f"step={self.step:.4g}")
         times = ("ratio", "rounding", "edge", "stiffness", "contact")
         parts += [f"{name}={getattr(self, name):.3g}" for name in times if getattr(self, name) != 1]
-        return ",".join([*parts, *["static"] * self.static])
+        return ",".join([*parts, *["static"] * self.static, *[self.types] * bool(self.types)])
 
     def step_of(self, one: Segment) -> float:
         """The time-step (s) that it makes for a CYCLE or SOLVE of the deck."""
@@ -84,9 +81,6 @@ class Fraction(NamedTuple):
     words: str = ""
 
 
-# ---- numbers of cycles
-
-
 def count_cycles(survey: Sequence[Segment], setting: Setting) -> Numbers:
     """What `setting` puts into the lines that count cycles. survey: of the deck as it is, with bounds."""
     if setting.static:
@@ -109,10 +103,7 @@ def count_cycles(survey: Sequence[Segment], setting: Setting) -> Numbers:
 def cycles_for(
     survey: Sequence[Segment], steps: Sequence[float]
 ) -> tuple[tuple[int | None, ...], list[float]]:
-    """Cycles of each CYCLE, None for SOLVE, for the time that it has in the deck, with other time-steps (s).
-
-    And the time that is left after each of them (s).
-    """
+    """Cycles of each CYCLE, None for SOLVE, for its time in the deck; and the time left after each (s)."""
     left, cycles, rests = 0.0, list[int | None](), list[float]()
     for one, step in zip(survey, steps, strict=True):
         if one.solve:
@@ -136,15 +127,12 @@ def expected_cycles(survey: Sequence[Segment], numbers: Numbers, setting: Settin
 def has_its_fraction(
     survey: Sequence[Segment], found: Sequence[Segment], setting: Setting, numbers: Numbers
 ) -> bool:
-    """True if all CYCLEs and SOLVEs of a run have the fraction of its setting.
-
-    A deck can set its time-step past FRACTION, by PATCH or RSET of the word FRAC or by a second START. Then a
-    setting that changes FRACTION has no effect, and its run cannot be compared.
-    """
+    """True if all CYCLEs and SOLVEs of a run have the fraction of its setting, which no PATCH has changed."""
     for own, one in zip(survey, found, strict=False):
         wanted = (setting.safe or own.fraction * setting.step) * numbers.fit
         same = math.isclose(one.fraction, wanted, rel_tol=SAME_FRACTION)
-        if not (own.static or setting.static) and not (same and one.safe == (own.safe or setting.safe > 0)):
+        same = same and one.safe == (own.safe or setting.safe > 0)
+        if not (same or own.static or setting.static):
             return False
     return True
 
@@ -153,52 +141,6 @@ def cycled_time(found: Sequence[Segment], end: float) -> float:
     """Time of the model in all CYCLEs of a run that ended at `end` (s); that in SOLVEs has no meaning."""
     ends = [*(one.began for one in found[1:]), end]
     return sum(stop - one.began for one, stop in zip(found, ends, strict=False) if not one.solve)
-
-
-# ---- settings to be tried
-
-
-def reference_setting(setting: Setting, k: int, stepped: bool, solves: bool) -> Setting:
-    """The reference after `k` halvings. stepped: FRACTION matters; solves: there is a SOLVE."""
-    ratio = TIGHTER**k if solves else 1.0
-    return replace(setting, step=2.0**-k if stepped else 1.0, ratio=float(f"{ratio:.6g}"))
-
-
-def longer_steps(
-    survey: Sequence[Segment], builds: Sequence[str], stepped: bool, solves: bool, rests: bool
-) -> list[Setting]:
-    """Steps of the deck and above, as far as they can be stable, and what else is cheaper.
-
-    rests: the deck only seeks rest, so SOLVE ... STATIC is one of them.
-    """
-    if not stepped:
-        return _with_tighter([Setting(build) for build in builds], solves)
-    largest = min((1 / one.fraction for one in survey if one.safe and not one.static), default=math.inf)
-    steps = [RUNG**k for k in range(9) if RUNG**k <= min(LONGEST * 1.01, largest)]
-    found: list[Setting] = []
-    for build in builds:
-        ladder = [Setting(build, rounded(step)) for step in steps]
-        found += [one for one in ladder if one.step == 1 or share_of_bound(survey, one) <= BEYOND]
-        if any(0 < one.bound < math.inf for one in survey):
-            found += [Setting(build, safe=safe) for safe in SAFE]
-        if rests:
-            found.append(Setting(build, static=True))
-    return _with_tighter(found, solves)
-
-
-def shorter_steps(builds: Sequence[str], finest: float, stepped: bool, solves: bool) -> list[Setting]:
-    """Steps below that of the deck, down to `finest`, if they matter to it."""
-    found: list[Setting] = []
-    step = 1 / RUNG
-    while stepped and step > finest * 0.99:
-        found += [Setting(build, rounded(step)) for build in builds]
-        step /= RUNG
-    return _with_tighter(found, solves)
-
-
-def _with_tighter(settings: list[Setting], solves: bool) -> list[Setting]:
-    """These settings, and with a SOLVE the same closer to rest."""
-    return settings + [replace(one, ratio=one.ratio * TIGHTER) for one in settings if solves]
 
 
 def rounded(step: float) -> float:

@@ -1,8 +1,7 @@
 """One run of a study: its input, its result, and the file that keeps the result.
 
-A result depends on nothing but the input and the program. So a kept result stands for the run if it was made
-of the same input (`StudyRun.made_of`). The file ends with a digest of its content: a damaged one is not used,
-and its run is repeated.
+A kept result is used if it was made of the same input (`StudyRun.made_of`). The file ends with a digest of
+its content: a damaged one is not used, and its run is repeated.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
@@ -29,7 +28,6 @@ from udec_ia.studies.quantities import DEFAULTS, read_quantities, read_rule
 from udec_ia.studies.run_folder import RESULT
 from udec_ia.version import __version__
 
-DECK = "deck.dat"  # in the folder of a run
 EVERY = 100  # cycles from one check of the rules to the next
 ENDED, ERROR, STOPPED, LATE, DIED = "ended", "error", "stopped", "timed out", "died"
 PACKAGE = Path(__file__).parent.parent
@@ -38,13 +36,13 @@ SEAL = "seal"  # field of the file: SHA-256 of the others
 
 @dataclass(frozen=True)
 class StudyRun:
-    """The input of a run. It can be sent to another process.
+    """The input of a run. It can be sent to another process. Raises ValueError for wrong input.
 
     name: of its folder, unique in its study. deck: the text. file: how errors name the deck; without it they
     name deck.dat in the folder of the run. values: of variables. quantities: see quantities.py. build,
     constitutive: as for Model; laws are files or names. stop: rules, checked every `every` cycles: the run
     ends with the first that holds. limit: processor seconds without compiling after which the run is ended.
-    rehearsal: each CYCLE and SOLVE has one cycle. Raises ValueError for what is wrong with any of these.
+    rehearsal: each CYCLE and SOLVE has one cycle.
     """
 
     name: str
@@ -108,10 +106,9 @@ class RunResult:
     """The result of a run.
 
     status: "ended", "error", "stopped" by a rule, "timed out" at the limit, or "died" if the process did.
-    error: number of the error, 0 for none or one without a number. message: of the error, or the rule; of a
-    run that ended, what its SOLVEs report, or "". quantities: in the order of the run's, NaN without a
-    value. remarks: why they have none. cycles, time (s): reached. words: of IA() in use. seconds: processor
-    time without compiling. made_of: see StudyRun. limit: of the run. warnings: of the program, in order.
+    error: its number, 0 without one. message: of the error, or the rule; of a run that ended, what its SOLVEs
+    report. quantities: NaN without a value; remarks: why. cycles, time (s): reached. words: of IA() in use.
+    seconds: processor time without compiling. made_of: see StudyRun. limit: of the run. warnings: in order.
     of_system: it was ended by something else than its deck: a file that cannot be written, no memory, a
     missing package, a process that died. at_rest: False if a SOLVE ended without reaching its ratio.
     """
@@ -133,13 +130,6 @@ class RunResult:
     of_system: bool = False
     at_rest: bool = True
 
-    @property
-    def outcome(self) -> dict[str, Any]:
-        """All of it that does not depend on the machine, with numbers as they are written."""
-        return {
-            name: value for name, value in _plain(asdict(self)).items() if name not in ("seconds", "limit")
-        }
-
 
 def read_deck(path: Path) -> str:
     """The text of the deck in a file. ValueError if it is none, OSError."""
@@ -157,16 +147,23 @@ def check_deck_text(text: str, name: str) -> None:
 
 
 def write_result(result: RunResult, folder: Path) -> None:
-    """Write the result into the folder of its run, which exists."""
-    fields = _plain(asdict(result))
-    text = json.dumps(fields | {SEAL: _sealed(fields)}, indent=1)
+    """Write the result into the folder of its run, which exists. NaN and infinite numbers become text."""
+    fields = asdict(result)
+    fields["quantities"] = {
+        name: value if math.isfinite(value) else str(value) for name, value in result.quantities.items()
+    }
+    text = json.dumps(fields | {SEAL: _seal(fields)}, indent=1)
     (folder / RESULT).write_text(text + "\n", encoding="utf-8")
 
 
 def kept_result(run: StudyRun, folder: Path) -> tuple[RunResult | None, str]:
     """The result of `run` in its folder in `folder`; or None and why it is not used, "" if there is none."""
     try:
-        result = _read_result(folder / run.name / RESULT)
+        fields = json.loads((folder / run.name / RESULT).read_text(encoding="utf-8"))
+        if fields.pop(SEAL, "") != _seal(fields):
+            raise ValueError("damaged")
+        fields["quantities"] = {name: float(value) for name, value in fields["quantities"].items()}
+        result = RunResult(**fields | {name: tuple(fields[name]) for name in ("remarks", "warnings")})
     except FileNotFoundError:
         return None, ""
     except (OSError, ValueError, TypeError, AttributeError, RecursionError):
@@ -182,26 +179,8 @@ def kept_result(run: StudyRun, folder: Path) -> tuple[RunResult | None, str]:
     return replace(result, name=run.name, values=dict(run.values)), ""
 
 
-def _read_result(path: Path) -> RunResult:
-    """The result in a file. Raises OSError, or one of several other errors if it is damaged."""
-    found = json.loads(path.read_text(encoding="utf-8"))
-    if found.pop(SEAL, "") != _sealed(found):
-        raise ValueError("damaged")
-    found["quantities"] = {name: float(value) for name, value in found["quantities"].items()}
-    return RunResult(**found | {name: tuple(found[name]) for name in ("remarks", "warnings")})
-
-
-def _sealed(fields: dict[str, Any]) -> str:
+def _seal(fields: dict[str, Any]) -> str:
     return _digest(json.dumps(fields, sort_keys=True).encode())
-
-
-def _plain(value: Any) -> Any:
-    """`value` as JSON has it: NaN and infinite numbers as text."""
-    if isinstance(value, Mapping):
-        return {name: _plain(one) for name, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _restart_files(run: StudyRun) -> list[str]:

@@ -1,8 +1,4 @@
-"""Sweep: runs one deck for all combinations of values of its variables.
-
-    0.3:0.9:7          seven values from 0.3 to 0.9 in equal steps
-    1e6:1e9:4:log      four values with a constant ratio
-    0.1,0.2,0.5        these; they may be words, too
+"""Sweep: runs one deck for all combinations of values of its variables (docs/sweep.md).
 
 The steps of a range are calculated in fractions and rounded once, so 0.3:0.9:7 contains 0.4, and not
 0.39999999999999997. A range of integers with integers only gives integers.
@@ -33,14 +29,12 @@ from udec_ia.studies.execute_run import LOG
 from udec_ia.studies.quantities import DEFAULTS, read_quantities
 from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck
 from udec_ia.studies.study_table import (
-    BEFORE,
     BEHIND,
     StudyTable,
-    check_paths,
+    check_outputs,
     draw_table,
+    output_paths,
     picture_axes,
-    picture_paths,
-    table_path,
 )
 from udec_ia.studies.worker_pool import StudyProgress, WorkerPool, processes
 
@@ -55,11 +49,7 @@ Given = Value | Iterable[Value]
 
 
 class Sweep(NamedTuple):
-    """The result of a sweep.
-
-    results: of all runs, in the order of the grid. table: a line for each. files: the table and its picture.
-    summary: sentences on how the runs ended and what they were warned of.
-    """
+    """Results of all runs, a table with a line for each, the files, and sentences on how the runs ended."""
 
     results: list[RunResult]
     table: StudyTable
@@ -84,35 +74,33 @@ def sweep(
 ) -> Sweep:
     """Run `deck`, a path or a text, for all combinations of `values`: a folder and a line of a table each.
 
-    values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7";
-    without any there is one run, of the deck as it is. quantities, stop, every, limit (s), build,
-    constitutive: of each run (StudyRun). out: folder of all files, by default NAME-sweep in the working
-    directory; results that it contains are used if their input is the same. jobs, dask: see WorkerPool.
-    stream: shows the progress.
+    values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7".
+    quantities, stop, every, limit (s), build, constitutive: of each run (StudyRun). out: folder of all files,
+    by default NAME-sweep; results that it contains are used if their input is the same. jobs, dask: see
+    WorkerPool. stream: shows the progress.
     A run that fails is a result. Raises ValueError for wrong arguments, UdecError 7 and 10 for variables of
     the deck, 31 if a file cannot be written, is not of the program, would be written by two runs, or is in
-    use by another study: before any run, as far as that can be known. Ctrl-C leaves the table of the
-    completed runs.
+    use by another study. Ctrl-C leaves the table of the completed runs.
     """
     text, file = _deck(deck)
     stem = Path(file).stem if file else "deck"
     folder = Path(f"{stem}-sweep" if out is None else out)
     base, points, asked = folder / stem, grid(values), tuple(quantities)
-    names = [one.name for one in read_quantities(asked)]
+    names = [*read_quantities(asked)]
     _check_names(points[0], names)
     Variables(points[0]).check(text.splitlines(), file or "text")
     laws, rules = tuple(constitutive), tuple(stop)
     run = StudyRun(stem, text, file, {}, asked, build, laws, rules, every, limit)
     runs = [replace(run, name=folder_name(point) or stem, values=point) for point in points]
     axes = picture_axes(points, names)
-    check_paths([table_path(base), *picture_paths(base)])
+    check_outputs(base)
     progress = StudyProgress(stream or io.StringIO(), len(runs))
 
     def write(results: list[RunResult]) -> Sweep:
-        table = StudyTable.of(results, points[0], names)
-        files = [table.write(base)]
-        for path in picture_paths(base):  # an earlier picture would show other runs than the table
+        table = StudyTable.of(results)
+        for path in output_paths(base)[1:]:  # an earlier picture would show other runs than the table
             path.unlink(missing_ok=True)
+        files = [table.write(base)]
         files += draw_table(table, axes, names, stem, base) if axes else []
         return Sweep(results, table, files, [*progress.summary, *summarise_warnings(results, LOG)])
 
@@ -136,10 +124,7 @@ def folder_name(values: Mapping[str, Value]) -> str:
 
 
 def summarise_warnings(results: Iterable[RunResult], log: str) -> list[str]:
-    """A few lines on the warnings of `results`, the most frequent first. log: the file with all of them.
-
-    Warnings that differ in their numbers only count as one: the first is shown, with its run.
-    """
+    """A few lines on the most frequent warnings, alike but for their numbers. log: the file with all."""
     runs = [*results]
     first: dict[str, str] = {}
     given = Counter[str]()
@@ -158,7 +143,7 @@ def summarise_warnings(results: Iterable[RunResult], log: str) -> list[str]:
 
 def _check_names(point: Mapping[str, Value], quantities: list[str]) -> None:
     """ValueError if a column of the table would have the name of another."""
-    taken = [*BEFORE, *point, *BEHIND]
+    taken = ["run", *point, *BEHIND]
     for name in quantities:
         if name in taken:
             raise ValueError(f"the table has another column {name}: give the quantity a name, as in X={name}")
@@ -172,11 +157,8 @@ def _deck(deck: str | Path) -> tuple[str, str]:
     return deck, ""
 
 
-# ---- the values of variables
-
-
 def values_of(name: str, given: Given) -> list[Value]:
-    """The values of the variable `name`: one, several, or a text as above. ValueError for others."""
+    """The values of the variable `name`: one, several, or a text as above. ValueError for wrong ones."""
     if not (isinstance(name, str) and NAME.fullmatch(name)):
         raise ValueError(f"{name!r} is not the name of a variable: use a letter, then letters, digits and _")
     found: list[Value]
@@ -225,19 +207,15 @@ def _range(name: str, text: str) -> list[Value]:
     if not 2 <= n <= VALUE_COUNT:
         raise ValueError(f"{name}={text}: a range has 2 to {VALUE_COUNT} values, not {n}")
     if how == "log":
-        return _logarithmic(name, text, float(a), float(b), n)
+        if not (a > 0 and b > 0):
+            raise ValueError(f"{name}={text}: a logarithmic range begins and ends above 0")
+        ends = float(a), float(b)
+        inner = (ends[0] * (ends[1] / ends[0]) ** (k / (n - 1)) for k in range(1, n - 1))
+        return [ends[0], *(float(f"{value:.{DIGITS}g}") for value in inner), ends[1]]
     steps = [a + (b - a) * k / (n - 1) for k in range(n)]
-    whole = all(isinstance(_read(end), int) for end in (first, last)) and all(
-        s.denominator == 1 for s in steps
-    )
+    is_whole = isinstance(_read(first), int) and isinstance(_read(last), int)
+    whole = is_whole and all(step.denominator == 1 for step in steps)
     return [int(step) if whole else float(step) for step in steps]
-
-
-def _logarithmic(name: str, text: str, a: float, b: float, n: int) -> list[Value]:
-    if not (a > 0 and b > 0):
-        raise ValueError(f"{name}={text}: a logarithmic range begins and ends above 0")
-    inner = [float(f"{a * (b / a) ** (k / (n - 1)):.{DIGITS}g}") for k in range(1, n - 1)]
-    return [a, *inner, b]
 
 
 def _read(text: str) -> Any:

@@ -1,7 +1,6 @@
 """Problems with exact or published answers: `udec verify`. Finds, executes and judges them.
 
-The problems are files of plain Python, in examples/verify of the checkout and in the folder
-`verification_problems` here when the program is installed. One such file has
+The problems are Python files, in examples/verify or, if installed, `verification_problems` here. One has
 
     a docstring   its title; the problem, its formula and why the tolerance is what it is; its source
     BLOCKS        the types of blocks that it makes sense for: "rigid", "sdef", "fdef"
@@ -17,7 +16,6 @@ import runpy
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from inspect import cleandoc
 from math import isfinite
 from pathlib import Path
@@ -37,11 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Answer:
-    """A number with its tolerance. within: reasons for an error, and how large it can be, in the unit.
-
-    The tolerance is the sum of these parts. Each is derived from the input of the run, as its reason says;
-    none is chosen so that the number holds.
-    """
+    """A number with its tolerance, the sum of `within`: reasons for an error, and how large it can be."""
 
     what: str
     unit: str
@@ -61,7 +55,7 @@ class Answer:
 
     @property
     def holds(self) -> bool:
-        """False also if any number is none."""
+        """False also if a number is NaN."""
         return isfinite(self.computed) and abs(self.error) <= self.tolerance
 
     @property
@@ -69,7 +63,7 @@ class Answer:
         """The parts of the tolerance, the largest first, without those below a thousandth of it."""
         parts = sorted(self.within.items(), key=lambda part: -part[1])
         return "; ".join(
-            f"{self.share(part)} {name}" for name, part in parts if part >= 1e-3 * self.tolerance
+            f"{self.share(size)} {name}" for name, size in parts if size >= 1e-3 * self.tolerance
         )
 
     def share(self, part: float) -> str:
@@ -93,7 +87,7 @@ class Case:
 
     @property
     def last_digit(self) -> float:
-        """Half the last digit of a real, as a share of it: what rounding can change it by."""
+        """Half the last digit of a real, as a share of it."""
         return float(np.finfo(scheme(self.build).real_type).eps) / 2
 
     def model(self, law: Any = None) -> Model:
@@ -119,10 +113,7 @@ class Case:
         self.frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
-        """Keep curves for a graph, each x and y: exact ones by their names, computed ones in the same order.
-
-        x, y: what the axes show.
-        """
+        """Keep curves, each x and y, for a graph with the axes x and y: exact ones by name, computed ones."""
         self.curves = x, y, exact, computed
 
 
@@ -133,10 +124,7 @@ PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify 
 
 @dataclass(frozen=True)
 class Problem:
-    """One file. text: its docstring. blocks: types of blocks that it makes sense for. solve: runs it.
-
-    reals: bits that a real must have at least.
-    """
+    """One file. text: its docstring. blocks: their types. solve: runs it. reals: least bits of a real."""
 
     path: Path
     text: str
@@ -166,26 +154,18 @@ def problem_names() -> list[str]:
 
 def find_problem(name: str) -> Problem:
     """The problem called `name`, or the one in the file of that path. ValueError if there is none."""
-    if name in problem_names():
-        return load_problem(problem_folder() / f"{name}.py")
-    if name.endswith(".py") and Path(name).is_file():
-        return load_problem(Path(name))
-    near = get_close_matches(name, problem_names(), n=1)
-    advice = f"did you mean {near[0]}?" if near else "udec verify --list names them all"
-    raise ValueError(f"there is no problem {printable(name)}: {advice}")
-
-
-def load_problem(path: Path) -> Problem:
-    """The problem in the file `path`. ValueError if it is none, or cannot be read as Python."""
+    path = problem_folder() / f"{name}.py" if name in problem_names() else Path(name)
+    if path.suffix != ".py" or not path.is_file():
+        raise ValueError(f"there is no problem {printable(name)}: udec verify --list names them all")
     try:
         space = runpy.run_path(str(path))
+        text, blocks, solve = space["__doc__"], tuple(space.get("BLOCKS", ())), space.get("solve")
+        if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
+            raise ValueError(f"it needs {PARTS}")
     except Exception as error:
-        text = f"{type(error).__name__}: {error}"
-        raise ValueError(f"{printable(str(path))} is not a problem: {printable(text, MESSAGE)}") from error
-    text, blocks, solve = space["__doc__"], space.get("BLOCKS", ()), space.get("solve")
-    if not text or not blocks or not {*blocks} <= {*BLOCKS} or not callable(solve):
-        raise ValueError(f"{printable(str(path))} is not a problem: it needs {PARTS}")
-    return Problem(path, cleandoc(text), tuple(blocks), solve, space.get("REALS", 32))
+        why = printable(f"{type(error).__name__}: {error}", MESSAGE)
+        raise ValueError(f"{printable(str(path))} is not a problem: {why}") from error
+    return Problem(path, cleandoc(text), blocks, solve, space.get("REALS", 32))
 
 
 @dataclass
@@ -219,10 +199,7 @@ class ProblemResult:
 def solve_problems(
     problems: Iterable[Problem], builds: Sequence[str], blocks: Sequence[str]
 ) -> Iterator[ProblemResult]:
-    """All cases of the problems: in the words of each of `builds`, with those of `blocks` that make sense.
-
-    Words whose reals are too short for a problem make no sense for it either.
-    """
+    """All cases of the problems: each word scheme and type of blocks that the problem makes sense for."""
     for problem in problems:
         for build in builds:
             for kind in problem.blocks:
@@ -233,15 +210,14 @@ def solve_problems(
 def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
     """One case. Whatever it raises, but an interrupt, becomes the `failure`."""
     result, start = ProblemResult(problem, Case(problem.name, build, blocks)), perf_counter()
+    text = ""
     try:
         result.answers.extend(problem.solve(result.case))
-        if not result.answers:
-            result.failure = "it gives no answer"
+        text = "" if result.answers else "it gives no answer"
     except UdecError as error:
-        result.failure = printable(" ".join(str(error).split()), MESSAGE)
+        text = str(error)
     except Exception as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         text = f"{type(error).__name__}: {error}, in line {place.lineno} of {place.filename}"
-        result.failure = printable(" ".join(text.split()), MESSAGE)
-    result.seconds = perf_counter() - start
+    result.failure, result.seconds = printable(" ".join(text.split()), MESSAGE), perf_counter() - start
     return result

@@ -15,10 +15,9 @@ REST = 1e-10  # force ratio of a state of rest, as far as the reals can hold one
 
 
 def on_base(case: Case, m: Model, b: float, h: float, n: int = 1, width: float = 12.0) -> None:
-    """Build a column of `n` blocks, `b` broad and `h` high, on a fixed rigid base with its top at y = 0.
+    """Build a column of `n` blocks, `b` broad and `h` high, of the type of the case, centred at x = 0.
 
-    The column stands in the middle of the base, which is `width` wide and 1 m high; the lowest block is
-    centred at (0, h/2). The blocks are of the type of the case.
+    It stands on a fixed rigid base, `width` wide and 1 m high, with its top at y = 0.
     """
     m.block(-width / 2, -1, -width / 2, n * h, width / 2, n * h, width / 2, -1)
     m.split(-width, 0, width, 0)
@@ -34,14 +33,11 @@ def on_base(case: Case, m: Model, b: float, h: float, n: int = 1, width: float =
 
 
 def settle(case: Case, m: Model, stiffness: float, mass: float, limit: int = 20_000) -> None:
-    """Let the blocks come to rest under critical damping of a mass on a spring; then take it away.
-
-    The force ratio of rest is REST, or what the last digits of 32-bit reals leave.
-    """
+    """Let the blocks come to rest under critical damping of a mass on a spring; then take it away."""
     frequency = sqrt(stiffness / mass) / (2 * pi)
     m.damping(2.0, frequency, "mass")
     m.damping(1.0, frequency, "internal")
-    m.solve(max(REST, 1e4 * case.last_digit), limit)
+    m.solve(max(REST, 1e4 * case.last_digit), limit)  # as far as the last digits let it rest
     m.damping(0, 1)
     m.damping(0, 1, "internal")
 
@@ -96,9 +92,7 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
 
     edge_points: grid-points on each edge besides those at its ends.
     """
-    blocks = model.table("block")
-    row = blocks[((blocks["KX"] - x) ** 2 + (blocks["KY"] - y) ** 2).argmin()]
-    corners = model.table("corner")
+    row, corners = block(model, x, y), model.table("corner")
     ring = corners[corners["KNB"] == row["address"]]
     outer: list[tuple[float, float]] = []
     for start, end in zip(ring, np.roll(ring, -1), strict=True):
@@ -113,12 +107,7 @@ def fan(model: Model, x: float, y: float, edge_points: int = 0) -> int:
 
 
 def polar(model: Model) -> tuple[Any, Any, Any, Any]:
-    """Of all quadrilaterals: distance of the middle from the origin, radial and hoop stress, angle (rad).
-
-    The stress of one zone is exact to the first order of its size only: it is that of its middle and a
-    saw-tooth, which goes up in one zone of a quadrilateral and down in the other. Their mean is exact to the
-    second order.
-    """
+    """Of quadrilaterals: distance of the middle from the origin, mean radial and hoop stress, angle (rad)."""
     points, zones = model.table("gridpoint"), model.table("zone")
     at = {int(row["address"]): (row["KXG"], row["KYG"]) for row in points}
     middle = np.array([np.mean([at[i] for i in row], axis=0) for row in zones["KZG"].tolist()])
@@ -172,9 +161,9 @@ def period(t: Any, v: Any) -> float:
 
 
 def straight_line(t: Any, v: Any) -> tuple[float, float]:
-    """Slope of the straight line through velocities, and what all that is left beside the line can add to it.
+    """Slope of the straight line through velocities, and the error that the deviations from it can cause.
 
-    Numbers of at most A, whatever their order, tilt the line that fits them best over a time T by 3 A/T.
+    Deviations of at most A, whatever their order, tilt the best line over a time T by 3 A/T.
     """
     t, v = np.asarray(t), np.asarray(v)
     line = np.polyfit(t, v, 1)

@@ -11,10 +11,8 @@ import signal
 import threading
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, suppress
-from itertools import islice
 from pathlib import Path
 from time import sleep
 from typing import Any, TextIO
@@ -57,23 +55,22 @@ class WorkerPool:
         self._dask, self._timed = dask, timed
         self._executor: Any = None
         self._compiled: set[str] = set()  # word schemes whose kernels have been compiled
-        self._open = ExitStack()
+        self._lock = lock_folder(self.folder)
 
     def __enter__(self) -> WorkerPool:
-        self._open.enter_context(lock_folder(self.folder))
+        self._lock.__enter__()
         return self
 
     def __exit__(self, *_: object) -> None:
         self._end_processes()
-        self._open.close()
+        self._lock.__exit__(None, None, None)
 
     def results(self, runs: Sequence[StudyRun], report: Report = lambda result, why: None) -> list[RunResult]:
         """The results of `runs`, in the same order.
 
         report: takes each result as it comes, and where it comes from: "" if it is new, "kept", or what has
-        changed since a kept one was made. Raises ValueError if two runs have one name; UdecError 31, before
-        any run, if two runs save to one file, or if something that is not of the program is in the place of
-        a run. Results that are complete are kept, whatever ends the study.
+        changed since a kept one was made. ValueError if two runs have one name; UdecError 31, before any run,
+        if two save to one file, or if something that is not of the program is in the place of one.
         """
         for name, count in Counter(run.name for run in runs).most_common(1):
             if count > 1:
@@ -102,8 +99,6 @@ class WorkerPool:
         if self.jobs == 0:
             return (execute(run, self.folder, self._timed) for run in runs)
         return self._in_processes(runs)
-
-    # ---- joblib
 
     def _in_processes(self, runs: list[StudyRun]) -> Iterator[RunResult]:
         left = {run.name: run for run in runs}
@@ -139,16 +134,9 @@ class WorkerPool:
         if self.jobs > 1 and len(runs) > 1 and runs[0].build not in self._compiled:
             self._executor.submit(rehearse, runs[0]).result()
             self._compiled.add(runs[0].build)
-        waiting = iter(runs)
-        going = {self._submit(run) for run in islice(waiting, self.jobs)}
-        while going:
-            done, going = wait(going, return_when=FIRST_COMPLETED)
-            going |= {self._submit(run) for run in islice(waiting, len(done))}
-            for future in done:
-                yield future.result()
-
-    def _submit(self, run: StudyRun) -> Any:
-        return self._executor.submit(execute, run, self.folder, self._timed)
+        futures = [self._executor.submit(execute, run, self.folder, self._timed) for run in runs]
+        for future in as_completed(futures):
+            yield future.result()
 
     def _end_processes(self) -> None:
         if self._executor is not None:
@@ -180,11 +168,9 @@ def check_saves(runs: Sequence[StudyRun]) -> None:
     for run in runs:
         for call in run.calls("save"):
             path = str(call.named.get("path", ""))
-            outside = os.path.isabs(path) or os.path.normpath(path).split(os.sep)[0] == os.pardir
-            if not outside:
-                continue
             file = os.path.realpath(path) if os.path.isabs(path) else os.path.normpath(path)
-            if saved.setdefault(file, run.name) != run.name:
+            is_outside = os.path.isabs(file) or file.split(os.sep)[0] == os.pardir
+            if is_outside and saved.setdefault(file, run.name) != run.name:
                 error = UdecError(
                     31,
                     f"the runs {saved[file]} and {run.name} of this study would both write it",
@@ -195,27 +181,22 @@ def check_saves(runs: Sequence[StudyRun]) -> None:
 
 def _begin_worker(parent: int) -> None:
     """A worker leaves Ctrl-C to the process that has started it, and ends with that process."""
+
+    def end_with_parent() -> None:
+        while os.getppid() == parent:
+            sleep(CHECKED)
+        os._exit(1)
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, args=(parent,), daemon=True).start()
-
-
-def _end_with_parent(parent: int) -> None:
-    while os.getppid() == parent:
-        sleep(CHECKED)
-    os._exit(1)
-
-
-# ---- dask
+    threading.Thread(target=end_with_parent, daemon=True).start()
 
 
 def _check_address(address: str) -> None:
     """ValueError for what cannot be the address of a scheduler: to try it takes long."""
     scheme, _, place = address.rpartition("://")
-    if scheme == "inproc":  # a scheduler in this process, which has no port
-        return
     try:
         parts = urlsplit(f"//{place}")
-        good = scheme in SCHEMES and bool(parts.hostname) and bool(parts.port)
+        good = scheme == "inproc" or (scheme in SCHEMES and bool(parts.hostname) and bool(parts.port))
     except ValueError:
         good = False
     if not good:
@@ -225,30 +206,21 @@ def _check_address(address: str) -> None:
 def _on_dask(runs: list[StudyRun], folder: Path, address: str, timed: bool) -> Iterator[RunResult]:
     """The results of `runs` by the workers of a scheduler. If one dies, others do its run."""
     try:
-        from distributed import Client, KilledWorker
-        from distributed import as_completed as completed
+        import distributed
     except ImportError as error:
         advice = 'install its packages: python -m pip install "udec-ia[dask]"'
         raise UdecError(23, "--dask needs dask.distributed", advice) from error
     try:
-        client = Client(address, timeout=CONNECT, set_as_default=False)
+        client = distributed.Client(address, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise ValueError(f"no dask scheduler at {address}: {error}; {PRINTED}") from error
     with client:
-        machines = {urlsplit(worker).hostname: worker for worker in client.nthreads()}
-        first = [client.submit(rehearse, runs[0], workers=[one], pure=False) for one in machines.values()]
-        for future in first:
-            with suppress(KilledWorker, CancelledError):  # the runs show it
-                future.result()
         futures = {client.submit(execute, run, folder, timed, pure=False): run for run in runs}
-        for future in completed([*futures], loop=client.loop):
+        for future in distributed.as_completed([*futures], loop=client.loop):
             try:
                 yield future.result()
-            except KilledWorker:
+            except distributed.KilledWorker:
                 yield record_death(futures[future], folder)
-
-
-# ---- progress
 
 
 class StudyProgress:

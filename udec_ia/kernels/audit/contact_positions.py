@@ -34,7 +34,9 @@ def touching(o: Outlines, code: Any, i: Any, j: Any, overlap: Any, point: Any) -
 
 
 @over_arrays
-def unlike(noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, limit: float, found: Any) -> int:
+def wrong_contacts(
+    noted: Any, x: Any, y: Any, overlap: Any, point: Any, slack: Any, limit: float, found: Any
+) -> int:
     """Number of contacts whose overlap or place differs from the outlines, and of overlaps beyond the limit.
 
     noted, x, y: overlap and place stored in the contacts. found: contact, and OVERLAP, PLACE or LIMIT, as far
@@ -120,7 +122,7 @@ def _along_arc(o: Outlines, k: int, x: float, y: float) -> float:
 
 
 @over_arrays
-def disordered(
+def contacts_out_of_order(
     lists: Any, contact: Any, row: Any, side: Any, index: Any, along: Any, slack: Any, found: Any
 ) -> int:
     """Number of contacts that lie behind the next one in a list, with no corner between them.

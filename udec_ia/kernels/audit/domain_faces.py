@@ -15,7 +15,7 @@ UNKNOWN = -2  # of a place that no walk has reached
 
 
 @over_arrays
-def passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> None:
+def link_passages(lists: Any, contact: Any, row: Any, side: Any, following: Any) -> None:
     """The next passage around a domain for each known passage: see checker/contact_map.py."""
     for r in range(len(lists)):
         start, end = lists[r, 0], lists[r, 0] + lists[r, 1]
@@ -39,7 +39,7 @@ def _join(row: Any, side: Any, one: int, two: int, following: Any) -> None:
 
 
 @over_arrays
-def cycles(following: Any, smallest: Any) -> None:
+def label_cycles(following: Any, smallest: Any) -> None:
     """The smallest place in the cycle of each place; -1 if it is in no cycle, or leads to the last place."""
     smallest[:] = UNKNOWN
     smallest[-1] = -1
@@ -57,7 +57,7 @@ def cycles(following: Any, smallest: Any) -> None:
 
 
 @over_arrays
-def pieces(one: Any, two: Any, smallest: Any) -> None:
+def label_pieces(one: Any, two: Any, smallest: Any) -> None:
     """The least row in the piece of each block. one, two: rows of blocks that are joined; -1 for none."""
     for k in range(len(smallest)):
         smallest[k] = k
@@ -79,7 +79,7 @@ def _root(smallest: Any, k: int) -> int:
 
 
 @over_arrays
-def areas(
+def sum_areas(
     lists: Any, contact: Any, row: Any, side: Any, virtual: Any, domains: Any, places: Any, twice: Any
 ) -> bool:
     """Sum up twice the area of each domain; False if a piece of an outline has no domain or no place.

@@ -29,7 +29,7 @@ EDGE, ARC = 0, 1  # kinds of segments that an arc meets
 
 
 @over_arrays
-def lonely_meetings(
+def intersections_without_contact(
     o: Outlines, pairs: Any, contacts: Any, points: Any, near: float, late: float, rows: Any
 ) -> int:
     """Number of intersections of two blocks without a contact near them.
@@ -181,18 +181,18 @@ def _faces(o: Outlines, k: int, x: float, y: float) -> bool:
 
 
 @over_arrays
-def crossing(o: Outlines, pairs: Any, cross: Any) -> None:
+def mark_crossing(o: Outlines, pairs: Any, cross: Any) -> None:
     """Set `cross` for pairs of blocks with crossing straight edges, or with an arc's end of one in the other.
 
     Only parts in the boxes of both blocks are tested.
     """
     for k in range(len(pairs)):
         a, b = pairs[k, 0], pairs[k, 1]
-        cross[k] = _stands_in(o, a, b) or _stands_in(o, b, a) or _edges_cross(o, a, b)
+        cross[k] = _reaches_into(o, a, b) or _reaches_into(o, b, a) or _edges_cross(o, a, b)
 
 
 @over_arrays
-def _stands_in(o: Outlines, inner: int, outer: int) -> bool:
+def _reaches_into(o: Outlines, inner: int, outer: int) -> bool:
     """True if an end or the middle of an arc of block `inner` lies in block `outer`."""
     for k in range(o.first[inner], o.first[inner] + o.count[inner]):
         if _near_block(o, k, outer, o.d):

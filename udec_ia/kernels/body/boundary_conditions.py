@@ -76,7 +76,7 @@ def velocity_of(h: Memory, iu: int, x: float, y: float) -> tuple[float, float]:
 
 
 @kernel
-def push_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
+def add_load(h: Memory, iu: int, fx: float, fy: float, x: float, y: float) -> None:
     """Add a force to the grid-point or block on which condition `iu` acts."""
     ig, ib = iget(h, iu, g.KUG), iget(h, iu, g.KUB)
     putr(h, ib, g.KBFX, getr(h, ib, g.KBFX) + fx)
@@ -101,19 +101,19 @@ def mass_and_force(h: Memory, ig: int, ib: int) -> tuple[float, float, float]:
 
 
 @inlined
-def gained(m: float, ux: float, uy: float, vx: float, vy: float) -> float:
+def twice_energy_gained(m: float, ux: float, uy: float, vx: float, vy: float) -> float:
     """Twice the kinetic energy that a mass gains as its velocity (ux, uy) becomes (vx, vy)."""
     faster = np.float64(vx) * vx + np.float64(vy) * vy
     return float(m * (faster - np.float64(ux) * ux - np.float64(uy) * uy))
 
 
 @kernel
-def note_jerk(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) -> None:
+def add_velocity_work(h: Memory, iu: int, ux: float, uy: float, vx: float, vy: float) -> None:
     """Add to WBOUND the growth of kinetic energy (energy.stored_energy) when (ux, uy) becomes (vx, vy)."""
     ig, ib, half = iget(h, iu, g.KUG), iget(h, iu, g.KUB), 0.5
     m, fx, fy = mass_and_force(h, ig, ib)
     power = fx * (vx - ux) + fy * (vy - uy)
-    h.cd[g.WBOUND] += (gained(m, ux, uy, vx, vy) + power * h.cr[g.TDEL]) * half
+    h.cd[g.WBOUND] += (twice_energy_gained(m, ux, uy, vx, vy) + power * h.cr[g.TDEL]) * half
 
 
 @kernel
@@ -143,9 +143,9 @@ def _give_velocity(h: Memory, iu: int, factor: float) -> None:
         putr(h, ib, g.KXD, vx)
         putr(h, ib, g.KYD, vy)
     m, _, _ = mass_and_force(h, ig, ib)
-    h.cd[g.WDRIVE] += max(gained(m, ux, uy, vx, vy) * 0.5, 0.0)
+    h.cd[g.WDRIVE] += max(twice_energy_gained(m, ux, uy, vx, vy) * 0.5, 0.0)
     if h.ci[g.LENER] != 0:
-        note_jerk(h, iu, ux, uy, vx, vy)
+        add_velocity_work(h, iu, ux, uy, vx, vy)
 
 
 @kernel
@@ -187,7 +187,7 @@ def power_of_loads(h: Memory) -> float:
 
 
 @kernel
-def push_loads(h: Memory, dt: float) -> None:
+def add_loads(h: Memory, dt: float) -> None:
     """Add the loads of all boundary conditions to the force sums, and their work during `dt` to WDRIVE.
 
     dt: the time-step that begins, 0 between two cycles.
@@ -197,13 +197,13 @@ def push_loads(h: Memory, dt: float) -> None:
     while iu != 0:
         fx, fy, x, y = load(h, iu)
         if fx != zero or fy != zero:
-            push_load(h, iu, fx, fy, x, y)
+            add_load(h, iu, fx, fy, x, y)
             h.cd[g.WDRIVE] += power_of_load(h, iu, fx, fy, x, y) * dt
         iu = iget(h, iu, g.KU)
 
 
 @kernel
-def drive(h: Memory, iu: int) -> None:
+def add_driving_work(h: Memory, iu: int) -> None:
     """Add to WDRIVE the work of the velocities of condition `iu` during the step that begins."""
     ig, ib, fix = iget(h, iu, g.KUG), iget(h, iu, g.KUB), iget(h, iu, g.KUFIX)
     if iget(h, ib, g.KBFIX) == g.FIXED:
@@ -221,7 +221,7 @@ def drive(h: Memory, iu: int) -> None:
 
 
 @outlined
-def apply_bounds(h: Memory) -> bool:
+def apply_boundary_conditions(h: Memory) -> bool:
     """Apply all boundary conditions for the step that begins."""
     set_signals(h)
     iu = h.ci[g.IBNPNT]
@@ -232,10 +232,10 @@ def apply_bounds(h: Memory) -> bool:
                 factor = getr(h, iget(h, iu, g.KUS), g.KTNOW)
             _give_velocity(h, iu, factor)
         iu = iget(h, iu, g.KU)
-    push_loads(h, h.cr[g.TDEL])
+    add_loads(h, h.cr[g.TDEL])
     iu = h.ci[g.IBNPNT]
     while iu != 0:
         if iget(h, iu, g.KUFIX) != 0:
-            drive(h, iu)
+            add_driving_work(h, iu)
         iu = iget(h, iu, g.KU)
     return True

@@ -18,7 +18,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
 from udec_ia.kernels.links.linked_lists import corner_of
-from udec_ia.kernels.map.domain_segments import on_arc
+from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 
 
@@ -43,7 +43,7 @@ def velocity_soft(h: Memory, ib: int, ic: int, x: float, y: float) -> tuple[floa
     ip = corner_of(h, ib, ic)
     ig = iget(h, ip, g.KGP)
     xd, yd = getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)
-    if not on_arc(h, ib, ic):
+    if not is_on_arc(h, ib, ic):
         rest = real(h, 1.0) - lever(h, ip, x, y)
         ig = iget(h, iget(h, ip, g.KR), g.KGP)
         xd, yd = xd + rest * (getr(h, ig, g.KXDG) - xd), yd + rest * (getr(h, ig, g.KYDG) - yd)
@@ -71,7 +71,7 @@ def force_soft(h: Memory, ib: int, ic: int, fx: float, fy: float, x: float, y: f
     ig = iget(h, ip, g.KGP)
     if ig == 0:  # until GENERATE divides the block
         return
-    if on_arc(h, ib, ic):
+    if is_on_arc(h, ib, ic):
         putfdf(h, ig, fx, fy)
         return
     part = lever(h, ip, x, y)

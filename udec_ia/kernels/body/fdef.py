@@ -27,8 +27,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import INSIDE_OUT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.constitutive.block_laws import stress_increment
-from udec_ia.kernels.geometry.block_shape import round_anew
-from udec_ia.kernels.geometry.plane_tensors import cayley, turned
+from udec_ia.kernels.geometry.block_shape import round_strained
+from udec_ia.kernels.geometry.plane_tensors import cayley, rotated
 from udec_ia.layout import offsets as g
 
 
@@ -88,11 +88,11 @@ def pvelfd(h: Memory, ib: int) -> None:
         if ip == ip0:
             break
     putr(h, ib, g.KBRO, np.sqrt(far))
-    round_anew(h, ib)
+    round_strained(h, ib)
 
 
 @kernel
-def sum_up(h: Memory, ib: int) -> None:
+def sum_over_points(h: Memory, ib: int) -> None:
     """Centroid, velocity, angular velocity and moment of inertia of block `ib` from its grid-points.
 
     Sums are taken around the previous centroid, displaced with the first grid-point. However far a block
@@ -168,7 +168,7 @@ def zone_stress(
     """New stress of zone `iz` of block `ib`; returns the stress increments by the law."""
     dt = h.cr[g.TDEL]
     c, s = cayley(h, spin * dt)
-    s11, s12, s22 = turned(getr(h, iz, g.KZS11), getr(h, iz, g.KZS12), getr(h, iz, g.KZS22), c, s)
+    s11, s12, s22 = rotated(getr(h, iz, g.KZS11), getr(h, iz, g.KZS12), getr(h, iz, g.KZS22), c, s)
     law, mat = iget(h, ib, g.KCONS), iget(h, ib, g.KMAT)
     d11, d12, d22 = stress_increment(h, laws, law, mat, ib, s11, s12, s22, e11 * dt, e12 * dt, e22 * dt)
     putr(h, iz, g.KZS11, s11 + d11)
@@ -253,7 +253,7 @@ def zone_pass(h: Memory, ib: int, laws: Any) -> None:
 
 
 @kernel
-def stand_still(h: Memory, ib: int) -> None:
+def reset_point_forces(h: Memory, ib: int) -> None:
     """Reset the forces on the grid-points of fixed block `ib`."""
     zero = real(h, 0.0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
@@ -271,7 +271,7 @@ def move_fdef(h: Memory, ib: int, laws: Any) -> float:
     putr(h, ib, g.KBFY, zero)
     putr(h, ib, g.KBFT, zero)
     if iget(h, ib, g.KBFIX) == g.FIXED:
-        stand_still(h, ib)
+        reset_point_forces(h, ib)
         return zero
     fastest = zero
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
@@ -279,7 +279,7 @@ def move_fdef(h: Memory, ib: int, laws: Any) -> float:
         xd, yd = gpmot(h, ig)
         fastest = max(fastest, max(abs(xd), abs(yd)))
         ig = iget(h, ig, g.KG)
-    sum_up(h, ib)
+    sum_over_points(h, ib)
     pvelfd(h, ib)
     zone_pass(h, ib, laws)
     return fastest

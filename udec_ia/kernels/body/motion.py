@@ -55,7 +55,7 @@ def velocities(h: Memory, ib: int) -> tuple[float, float, float]:
 
 
 @kernel
-def carry_corners(h: Memory, ib: int) -> None:
+def set_corner_velocities(h: Memory, ib: int) -> None:
     """Velocities of the corners of block `ib` from those of the block."""
     x, y = np.float64(getr(h, ib, g.KX)), np.float64(getr(h, ib, g.KY))
     xd, yd, td = velocities(h, ib)

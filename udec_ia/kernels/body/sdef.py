@@ -25,8 +25,8 @@ from udec_ia.errors import INSIDE_OUT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.body.motion import accelerate
 from udec_ia.kernels.constitutive.block_laws import stress_increment
-from udec_ia.kernels.geometry.block_shape import round_anew
-from udec_ia.kernels.geometry.plane_tensors import cayley, turned
+from udec_ia.kernels.geometry.block_shape import round_strained
+from udec_ia.kernels.geometry.plane_tensors import cayley, rotated
 from udec_ia.layout import offsets as g
 
 
@@ -98,7 +98,7 @@ def put_stress(h: Memory, ie: int, s11: float, s12: float, s22: float) -> None:
 def stress(h: Memory, ib: int, ie: int, c: float, s: float, laws: Any) -> None:
     """Internal stress: turned with the block, then increased by the law of the material (STRESS)."""
     dt = h.cr[g.TDEL]
-    s11, s12, s22 = turned(getr(h, ie, g.KS111), getr(h, ie, g.KS112), getr(h, ie, g.KS122), c, s)
+    s11, s12, s22 = rotated(getr(h, ie, g.KS111), getr(h, ie, g.KS112), getr(h, ie, g.KS122), c, s)
     e11, e12, e22 = getr(h, ie, g.KED11) * dt, getr(h, ie, g.KED12) * dt, getr(h, ie, g.KED22) * dt
     law, mat = iget(h, ib, g.KCONS), iget(h, ib, g.KMAT)
     d11, d12, d22 = stress_increment(h, laws, law, mat, ib, s11, s12, s22, e11, e12, e22)
@@ -106,7 +106,7 @@ def stress(h: Memory, ib: int, ie: int, c: float, s: float, laws: Any) -> None:
 
 
 @kernel
-def carry(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) -> None:
+def move_corners(h: Memory, ib: int, ie: int, x: float, y: float, td: float, new: Any) -> None:
     """Corners, Euler tensor and area of block `ib`, whose centroid was at (x, y), through one step.
 
     new: the strain rates of the step. The corners then have the velocities of the step. Error 32 if they turn
@@ -167,12 +167,12 @@ def move_sdef(h: Memory, ib: int, laws: Any) -> float:
     x, y = getr(h, ib, g.KX), getr(h, ib, g.KY)
     putr(h, ib, g.KX, x + xd * dt)
     putr(h, ib, g.KY, y + yd * dt)
-    carry(h, ib, ie, x, y, td, new)
-    round_anew(h, ib)
+    move_corners(h, ib, ie, x, y, td, new)
+    round_strained(h, ib)
     put_strain_rate(h, ie, new[0], new[1], new[2])
     c, s = cayley(h, td * dt)
     stress(h, ib, ie, c, s, laws)
-    e11, e12, e22 = turned(new[0], new[1], new[2], c, s)
+    e11, e12, e22 = rotated(new[0], new[1], new[2], c, s)
     put_strain_rate(h, ie, e11, e12, e22)
     spread = max(abs(new[0]), abs(new[2])) + abs(new[1]) + abs(td)
     return max(abs(xd), abs(yd)) + spread * getr(h, ib, g.KBRO)

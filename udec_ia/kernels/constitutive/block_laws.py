@@ -39,7 +39,7 @@ def numbers_in_use(h: Memory, user: Any) -> None:
 
 
 @inlined
-def failed(h: Memory, group: int, total: float) -> bool:
+def has_failed(h: Memory, group: int, total: float) -> bool:
     """True, and error 35, if the sum of a law's results for block or contact `group` is not finite."""
     if np.isfinite(total):
         return False
@@ -80,7 +80,7 @@ def stress_increment(
         i = number - FIRST
         if 0 <= i < JOINTS and is_given(laws, i):
             d11, d12, d22 = call(laws, i, mat, (s11, s12, s22, e11, e12, e22))
-            if failed(h, group, real(h, d11) + real(h, d12) + real(h, d22)):
+            if has_failed(h, group, real(h, d11) + real(h, d12) + real(h, d22)):
                 return real(h, 0.0), real(h, 0.0), real(h, 0.0)
             return real(h, d11), real(h, d12), real(h, d22)
     return cl1(h, mat, e11, e12, e22)

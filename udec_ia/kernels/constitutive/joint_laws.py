@@ -17,7 +17,7 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import inlined
 from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.kernels.constitutive.block_laws import failed
+from udec_ia.kernels.constitutive.block_laws import has_failed
 from udec_ia.kernels.constitutive.coulomb_joint import coulomb_forces
 from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, material_of, stiffest
 from udec_ia.layout import offsets as g
@@ -61,7 +61,7 @@ def own_forces(
     dt = h.cr[g.TDEL]
     dun, dus = overlap - before, sliding * dt
     dfn, dfs = force_increments(h, laws, ic, fn, fs, dun, dus, before, us)
-    if failed(h, ic, dfn + dfs):
+    if has_failed(h, ic, dfn + dfs):
         dfn, dfs = zero, zero
     if fn + dfn <= zero:
         h.cd[g.WFRIC] += fs * (dus + fs / joint.ks) * half
@@ -96,7 +96,7 @@ def is_idle(h: Memory, ic: int, own: bool, overlap: float) -> bool:
 
 
 @inlined
-def no_force(h: Memory, ic: int) -> None:
+def reset_forces(h: Memory, ic: int) -> None:
     """Reset the forces of contact `ic` and the state of its law."""
     zero = real(h, 0.0)
     putr(h, ic, g.KCFN, zero)

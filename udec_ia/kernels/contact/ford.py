@@ -21,11 +21,11 @@ from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
-from udec_ia.kernels.body.fdef import stand_still, zone_forces
+from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
-from udec_ia.kernels.contact.map_changes import is_still, opens
-from udec_ia.kernels.geometry.contact_geometry import coord, coord_seldom
+from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
+from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
 from udec_ia.layout import offsets as g
 
 
@@ -39,14 +39,14 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
 
 
 @inlined
-def put_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
+def set_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
     """Relative velocity of contact `ic` := (xd, yd)."""
     putr(h, ic, g.KXDC, xd)
     putr(h, ic, g.KYDC, yd)
 
 
 @inlined
-def push(
+def add_contact_forces(
     h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
 ) -> None:
     """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2."""
@@ -60,11 +60,11 @@ def push(
 
 
 @inlined
-def has_to_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) -> bool:
+def must_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) -> bool:
     """True if contact `ic` may change the map, or depends on its neighbours. margin: see coord."""
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
         return True
-    return is_idle(h, ic, own, overlap) and not is_still(h, overlap)
+    return is_idle(h, ic, own, overlap) and not needs_no_check(h, overlap)
 
 
 @inlined
@@ -75,29 +75,29 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     """
     own = joints is not None and has_own_law(h, joints, ic)
     nx, ny, overlap, margin = coord(h, ic)
-    if not has_waited and has_to_wait(h, ic, own, overlap, margin):
+    if not has_waited and must_wait(h, ic, own, overlap, margin):
         return -int64(ic) if own else int64(ic)
     before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     putr(h, ic, g.KCN, overlap)
     xd, yd = cvel(h, ic, soft)
     if not own and overlap <= zero:
-        opens(h, ic)
-        put_velocity(h, ic, xd, yd)
+        open_contact(h, ic)
+        set_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
         call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
-    put_velocity(h, ic, xd, yd)
+    set_velocity(h, ic, xd, yd)
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
     putr(h, ic, g.KCS, us)
-    push(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft)
+    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft)
     return int64(0)
 
 
 @inlined
-def look_ahead(h: Memory, ic: int) -> int:
+def prefetch_contact(h: Memory, ic: int) -> int:
     """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none."""
     if ic == 0:
         return int64(0)
@@ -111,16 +111,16 @@ def look_ahead(h: Memory, ic: int) -> int:
 def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, waiting: Any) -> None:
     """Calculate all contacts that are not virtual; the first whose overlap is too large raises error 15.
 
-    soft, joints: as in run_cycles. change_map: of map_changes.py. account: energy.work_account.note_contact,
-    or 0 if none is kept. waiting: room for the addresses of all contacts.
+    soft, joints: as in run_cycles. change_map: of map_changes.py. account: add_contact_work of
+    work_account.py, or 0 without an account. waiting: room for the addresses of all contacts.
     """
     n = 0
     ic = h.ci[g.ICPNT]
     ahead = ic
     for _ in range(LEAD):
-        ahead = look_ahead(h, ahead)
+        ahead = prefetch_contact(h, ahead)
     while ic != 0:
-        ahead = look_ahead(h, ahead)
+        ahead = prefetch_contact(h, ahead)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             waits = ford(h, ic, soft, joints, account, False)
             if waits != 0:
@@ -142,7 +142,7 @@ def _inner_forces(h: Memory, ib: int) -> None:
     if iget(h, ib, HEAD) == g.MSDEF:
         reset_applied(h, ie)
     elif iget(h, ib, HEAD) == g.MFDEF:
-        stand_still(h, ib)
+        reset_point_forces(h, ib)
         iz = iget(h, ie, g.KFZ)
         while iz != 0:
             zone_forces(h, iz, zero, zero, zero)
@@ -164,7 +164,7 @@ def sum_all_forces(h: Memory, soft: Any) -> None:
     ic = h.ci[g.ICPNT]
     while ic != 0:
         if getr(h, ic, g.KCFN) != zero:
-            nx, ny, _, _ = coord_seldom(h, ic)
+            nx, ny, _, _ = coord_called(h, ic)
             fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
             fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
             x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)

@@ -27,15 +27,15 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
-from udec_ia.kernels.constitutive.joint_laws import is_idle, no_force
+from udec_ia.kernels.constitutive.joint_laws import is_idle, reset_forces
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.detect.point_depth import do_not_meet
-from udec_ia.kernels.detect.third_block_in_gap import gap_taken
-from udec_ia.kernels.geometry.contact_geometry import ce, faces, has_no_arc, meet, past
+from udec_ia.kernels.detect.third_block_in_gap import gap_is_occupied
+from udec_ia.kernels.geometry.contact_geometry import ce, distance_past, faces, has_no_arc, meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.bridge import delc, to_virtual
 from udec_ia.kernels.map.contact_reclassification import mvbak, mvfor, settle
-from udec_ia.kernels.map.domain_segments import ahead_by, same_segment
+from udec_ia.kernels.map.domain_segments import distance_ahead, same_segment
 from udec_ia.layout import offsets as g
 
 
@@ -60,7 +60,7 @@ def out_of_notch(h: Memory, ic: int) -> bool:
 
 
 @kernel
-def has_no_place(h: Memory, ic: int) -> bool:
+def has_left_edge(h: Memory, ic: int) -> bool:
     """True if the corner of a contact on an edge has no arc any more, or has slid out of a notch."""
     if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
         return False
@@ -71,7 +71,7 @@ def has_no_place(h: Memory, ic: int) -> bool:
 
 
 @inlined
-def is_heir(h: Memory, jc: int, ib: int, jb: int, arc: int) -> bool:
+def is_contact_of_arc(h: Memory, jc: int, ib: int, jb: int, arc: int) -> bool:
     """True if item `jc` of block `ib` is a contact of its corner `arc` with block `jb`."""
     if not is_contact(h, jc) or iget(h, jc, g.KCCOD) == g.VIRTUAL or other(h, ib, jc) != jb:
         return False
@@ -80,46 +80,46 @@ def is_heir(h: Memory, jc: int, ib: int, jb: int, arc: int) -> bool:
 
 
 @kernel
-def heir(h: Memory, ic: int) -> int:
+def neighbour_on_same_arc(h: Memory, ic: int) -> int:
     """A contact of the same corner beside contact `ic`, which has left a notch; 0 if there is none."""
     arc, edge = arc_and_edge(h, ic)
     ib, jb = iget(h, arc, g.KNB), iget(h, edge, g.KNB)
     after, before = nextcp(h, ib, ic), prevcp(h, ib, ic)
-    if is_heir(h, after, ib, jb, arc):
+    if is_contact_of_arc(h, after, ib, jb, arc):
         return after
-    return before if is_heir(h, before, ib, jb, arc) else int64(0)
+    return before if is_contact_of_arc(h, before, ib, jb, arc) else int64(0)
 
 
 @inlined
-def held(h: Memory, ic: int) -> float:
+def spring_energy(h: Memory, ic: int) -> float:
     """Energy stored in the springs of contact `ic`."""
     normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
     return (normal + shear) * real(h, 0.5)
 
 
 @kernel
-def hand_over(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
+def transfer_force(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
     """Transfer the force of contact `ic`, with normal (nx, ny), to contact `jc`; ENERGY records the loss."""
     fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
     fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
     if iget(h, ic, g.KB1) != iget(h, jc, g.KB1):
         fx, fy = -fx, -fy
-    before = held(h, ic) + held(h, jc)
+    before = spring_energy(h, ic) + spring_energy(h, jc)
     mx, my, _, _, _, _ = meet(h, iget(h, jc, g.KCCOD), iget(h, jc, g.KCP1), iget(h, jc, g.KCP2))
     putr(h, jc, g.KCFN, getr(h, jc, g.KCFN) + (fx * mx + fy * my))
     putr(h, jc, g.KCFS, getr(h, jc, g.KCFS) + (fx * my - fy * mx))
-    no_force(h, ic)
-    h.cd[g.WFRIC] += before - held(h, jc)
+    reset_forces(h, ic)
+    h.cd[g.WFRIC] += before - spring_energy(h, jc)
 
 
 @kernel
-def over_bisector(h: Memory, ic: int, ib: int) -> bool:
+def move_over_bisector(h: Memory, ic: int, ib: int) -> bool:
     """Move contact `ic` to the next edge of block `ib`, if its corner is past a bisector there."""
     arc, edge = arc_and_edge(h, ic)
     code, ia = iget(h, ic, g.KCCOD), iget(h, edge, g.KR)
-    if getr(h, edge, g.KRAD) < 0 and past(h, edge, arc) > h.cr[g.GTOL]:
+    if getr(h, edge, g.KRAD) < 0 and distance_past(h, edge, arc) > h.cr[g.GTOL]:
         return mvfor(h, ic, ib, code)
-    return getr(h, ia, g.KRAD) < 0 and past(h, ia, arc) < -h.cr[g.GTOL] and mvbak(h, ic, ib, code)
+    return getr(h, ia, g.KRAD) < 0 and distance_past(h, ia, arc) < -h.cr[g.GTOL] and mvbak(h, ic, ib, code)
 
 
 @kernel
@@ -130,21 +130,21 @@ def leave_notch(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """
     if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
         return False
-    jc = heir(h, ic)
+    jc = neighbour_on_same_arc(h, ic)
     if jc == 0:
         _, edge = arc_and_edge(h, ic)
-        return over_bisector(h, ic, iget(h, edge, g.KNB))
+        return move_over_bisector(h, ic, iget(h, edge, g.KNB))
     if out_of_notch(h, ic):
-        hand_over(h, ic, jc, nx, ny)
+        transfer_force(h, ic, jc, nx, ny)
     return False
 
 
-ALL, NOBODY = -1, np.zeros(0, np.int64)  # all contacts; none that waits
+ALL, NONE_WAITING = -1, np.zeros(0, np.int64)  # all contacts; none that waits
 TURNED = 0.3  # sine of the angle; a little more than search.FACING, so that contacts do not come and go
 
 
 @kernel
-def restart(h: Memory, ic: int) -> tuple[float, float, float]:
+def update_geometry(h: Memory, ic: int) -> tuple[float, float, float]:
     """Update contact `ic` to a changed geometry and keep its forces; returns normal (x, y) and overlap."""
     nx, ny, overlap = settle(h, ic)
     putr(h, ic, g.KCN, overlap)
@@ -152,7 +152,7 @@ def restart(h: Memory, ic: int) -> tuple[float, float, float]:
 
 
 @inlined
-def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
+def is_duplicate(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
     """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
     if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
         return False
@@ -161,40 +161,42 @@ def is_twin(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
 
 
 @inlined
-def has_twin(h: Memory, ic: int) -> bool:
+def has_duplicate(h: Memory, ic: int) -> bool:
     """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
-    return is_twin(h, ic, iget(h, ic, g.KL1), ib, jb) or is_twin(h, ic, iget(h, ic, g.KLB1), ib, jb)
+    return is_duplicate(h, ic, iget(h, ic, g.KL1), ib, jb) or is_duplicate(h, ic, iget(h, ic, g.KLB1), ib, jb)
 
 
 @inlined
-def passed(h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: float, ny: float) -> bool:
+def has_passed_on_segment(
+    h: Memory, ic: int, after: int, before: int, ip: int, arc: bool, nx: float, ny: float
+) -> bool:
     """True if contact `ic` and a neighbour on that segment of corner `ip` are past each other.
 
     (nx, ny): normal of the contact, away from the block of the corner.
     """
     x, y, tolerance = getr(h, ic, g.KXC), getr(h, ic, g.KYC), h.cr[g.FTOL]
-    if same_segment(h, after, ip, arc) and ahead_by(h, ip, arc, after, x, y, nx, ny) < -tolerance:
+    if same_segment(h, after, ip, arc) and distance_ahead(h, ip, arc, after, x, y, nx, ny) < -tolerance:
         return True
-    return same_segment(h, before, ip, arc) and ahead_by(h, ip, arc, before, x, y, nx, ny) > tolerance
+    return same_segment(h, before, ip, arc) and distance_ahead(h, ip, arc, before, x, y, nx, ny) > tolerance
 
 
 @inlined
-def overtaken(h: Memory, ic: int, nx: float, ny: float) -> bool:
+def has_passed_neighbour(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """True if contact `ic`, of the normal (nx, ny), and a neighbour on the same segment are past each other.
 
     If it is open, a block has passed through its gap.
     """
     code = iget(h, ic, g.KCCOD)
     after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
-    if passed(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
+    if has_passed_on_segment(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
         return True
     after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
-    return passed(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
+    return has_passed_on_segment(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
 
 
 @inlined
-def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
+def has_turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
     """True if the arc of a corner on an edge has turned away from it by more than TURNED.
 
     The circle of a blunt corner reaches far beyond its arc, even beyond its block. (nx, ny) is the contact's
@@ -207,15 +209,15 @@ def turned_away(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
 
 @inlined
-def is_no_wall(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+def separates_no_domains(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """True if open contact `ic` separates no domains: turned away, overtaken, or a third block in its gap."""
-    if turned_away(h, ic, nx, ny) or overtaken(h, ic, nx, ny):
+    if has_turned_away(h, ic, nx, ny) or has_passed_neighbour(h, ic, nx, ny):
         return True
-    return overlap < 0 and gap_taken(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
+    return overlap < 0 and gap_is_occupied(h, ic, (nx, ny, overlap, getr(h, ic, g.KXC), getr(h, ic, g.KYC)))
 
 
 @kernel
-def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+def is_squeezed_through(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """True if contact `ic` overlaps by more than the width of a narrow tip.
 
     Either the tip has come out on the other side, so that the blocks do not overlap there any more. Or the
@@ -230,11 +232,11 @@ def squeezed(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         code == g.CORNER_EDGE or getr(h, iq, g.KRAD) >= overlap
     ):
         return False
-    return overtaken(h, ic, nx, ny)
+    return has_passed_neighbour(h, ic, nx, ny)
 
 
 @inlined
-def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
+def delete_if_obsolete(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
     """Delete contact `ic` if it is open too far, separates no domains any more, or is idle beside a twin.
 
     A bridge of the map becomes virtual instead; beside a twin it stays. (nx, ny) is the contact's normal.
@@ -243,8 +245,8 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
         return False
     is_bridge = iget(h, ic, g.KD1) == iget(h, ic, g.KD2)
     if overlap >= -h.cr[g.BTOL]:
-        gone = has_no_place(h, ic) or (overlap <= 0 and is_no_wall(h, ic, nx, ny, overlap))
-        if not gone and (is_bridge or not has_twin(h, ic)):
+        gone = has_left_edge(h, ic) or (overlap <= 0 and separates_no_domains(h, ic, nx, ny, overlap))
+        if not gone and (is_bridge or not has_duplicate(h, ic)):
             return False
     h.ci[g.NBROKE] += 1
     if is_bridge:
@@ -255,14 +257,14 @@ def drop(h: Memory, ic: int, nx: float, ny: float, overlap: float) -> bool:
 
 
 @inlined
-def opens(h: Memory, ic: int) -> None:
+def open_contact(h: Memory, ic: int) -> None:
     """Contact `ic` opens and loses the energy of its springs."""
     lose_shear(h, ic, getr(h, ic, g.KCFS))
-    no_force(h, ic)
+    reset_forces(h, ic)
 
 
 @inlined
-def loses(h: Memory, ic: int, overlap: float) -> float:
+def energy_lost(h: Memory, ic: int, overlap: float) -> float:
     """Energy lost with contact `ic`, now open to `overlap`; with a user's law it may store some.
 
     It is the energy of its springs, and the work of its normal force in half of this step.
@@ -275,39 +277,39 @@ def loses(h: Memory, ic: int, overlap: float) -> float:
 
 
 @inlined
-def is_still(h: Memory, overlap: float) -> bool:
+def needs_no_check(h: Memory, overlap: float) -> bool:
     """True if a contact without a force and with that overlap needs no comparison and no deletion."""
     return h.cr[g.ULOOK] < h.cr[g.HTOL] and overlap >= -h.cr[g.BTOL]
 
 
 @kernel
-def change(h: Memory, ic: int, own: bool) -> bool:
+def update_contact(h: Memory, ic: int, own: bool) -> bool:
     """Update contact `ic`; False if it is deleted. own: True if it has a user's law."""
     nx, ny, overlap = settle(h, ic)
     if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
         nx, ny, overlap = settle(h, ic)
-    if is_idle(h, ic, own, overlap) and (not is_still(h, overlap) or has_no_place(h, ic)):
+    if is_idle(h, ic, own, overlap) and (not needs_no_check(h, overlap) or has_left_edge(h, ic)):
         if overlap <= 0 and not own:
-            opens(h, ic)
-        lost = loses(h, ic, overlap)
-        if drop(h, ic, nx, ny, overlap):
+            open_contact(h, ic)
+        lost = energy_lost(h, ic, overlap)
+        if delete_if_obsolete(h, ic, nx, ny, overlap):
             h.cd[g.WFRIC] += lost
             return False
-    if overlap > h.cr[g.FTOL] and squeezed(h, ic, nx, ny, overlap) and h.ci[g.NERR] == 0:
+    if overlap > h.cr[g.FTOL] and is_squeezed_through(h, ic, nx, ny, overlap) and h.ci[g.NERR] == 0:
         h.ci[g.NERR] = OVERLAP_TOO_GREAT
         h.ci[g.IERAD] = ic
     return True
 
 
 @kernel
-def settle_all(h: Memory) -> None:
+def update_all_contacts(h: Memory) -> None:
     """Update every contact to a changed geometry and keep its force; contacts may be deleted."""
     ic = h.ci[g.ICPNT]
     while ic != 0:
         following = iget(h, ic, g.KC)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            nx, ny, overlap = restart(h, ic)
-            drop(h, ic, nx, ny, overlap)
+            nx, ny, overlap = update_geometry(h, ic)
+            delete_if_obsolete(h, ic, nx, ny, overlap)
         ic = following
 
 
@@ -319,8 +321,8 @@ def change_map(h: Memory, waiting: Any, n: int) -> bool:
     geometry, and all contacts are updated.
     """
     if n == ALL:
-        settle_all(h)
+        update_all_contacts(h)
     for k in range(n):
-        if not change(h, abs(waiting[k]), waiting[k] < 0):
+        if not update_contact(h, abs(waiting[k]), waiting[k] < 0):
             waiting[k] = 0
     return True

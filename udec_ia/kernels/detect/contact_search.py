@@ -21,9 +21,9 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.kernels.detect.point_depth import AROUND, do_not_meet, would_cross
-from udec_ia.kernels.detect.third_block_in_gap import taken_between
-from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting, stable_order
-from udec_ia.kernels.geometry.contact_geometry import cc, ce, faces, is_blunt, meet, over_ends, past
+from udec_ia.kernels.detect.third_block_in_gap import third_block_between
+from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, overlapping_boxes, stable_order
+from udec_ia.kernels.geometry.contact_geometry import cc, ce, distance_past, faces, is_blunt, meet, over_ends
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.map.domain_segments import (
     ARC,
@@ -31,12 +31,12 @@ from udec_ia.kernels.map.domain_segments import (
     COLUMNS,
     CORNER,
     ITEM,
-    ahead_by,
     collect,
     count_items,
+    distance_ahead,
+    is_on_arc,
     next_not_virtual,
     not_virtual,
-    on_arc,
     same_segment,
 )
 from udec_ia.layout import offsets as g
@@ -66,7 +66,7 @@ def _past(h: Memory, ip: int, iq: int, along: float, leaving: bool) -> float:
         return ahead if leaving else behind
     if rad < 0:
         return along + h.cr[g.ETOL]
-    way = past(h, iq, ip)
+    way = distance_past(h, iq, ip)
     return (way if leaving else -way) + h.cr[g.FTOL]
 
 
@@ -110,17 +110,17 @@ def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
     ic = prevcp(h, ib, ip)
     while is_contact(h, ic):
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            if not on_arc(h, ib, ic):
+            if not is_on_arc(h, ib, ic):
                 return False
             jb = other(h, ib, ic)
-            if corner_of(h, jb, ic) == jp and on_arc(h, jb, ic) == (jarc == 1):
+            if corner_of(h, jb, ic) == jp and is_on_arc(h, jb, ic) == (jarc == 1):
                 return True
         ic = prevcp(h, ib, ic)
     return False
 
 
 @kernel
-def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bool:
+def _has_contact_near(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bool:
     """True if a contact with block `jb` near item `iad` of block `ib` lies within FTOL of (x, y)."""
     ahead, behind = nextcp(h, ib, iad), int64(iad)
     for _ in range(AROUND):
@@ -134,7 +134,7 @@ def _one_beside(h: Memory, ib: int, iad: int, jb: int, x: float, y: float) -> bo
 
 
 @inlined
-def _passed(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
+def _distance_beyond(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
     """The distance `way` beyond contact `ic` of block `ib`, increased if that is also with block `jb`."""
     if other(h, ib, ic) == jb and way > h.cr[g.FTOL]:
         return way + h.cr[g.ETOL]
@@ -142,7 +142,7 @@ def _passed(h: Memory, ib: int, ic: int, jb: int, way: float) -> float:
 
 
 @kernel
-def _misplaced(
+def _distance_outside(
     h: Memory, ib: int, ip: int, arc: bool, iad: int, jb: int, x: float, y: float, nx: float, ny: float
 ) -> float:
     """Distance of a contact at (x, y) outside the exposure of a segment that follows item `iad`.
@@ -154,9 +154,13 @@ def _misplaced(
     worst = real(h, 0.0)
     before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
     if same_segment(h, before, ip, arc):
-        worst = max(worst, _passed(h, ib, before, jb, ahead_by(h, ip, arc, before, x, y, nx, ny)))
+        worst = max(
+            worst, _distance_beyond(h, ib, before, jb, distance_ahead(h, ip, arc, before, x, y, nx, ny))
+        )
     if same_segment(h, after, ip, arc):
-        worst = max(worst, _passed(h, ib, after, jb, -ahead_by(h, ip, arc, after, x, y, nx, ny)))
+        worst = max(
+            worst, _distance_beyond(h, ib, after, jb, -distance_ahead(h, ip, arc, after, x, y, nx, ny))
+        )
     return worst
 
 
@@ -180,7 +184,7 @@ def facing(h: Memory, seg: Any, i: int, j: int, limit: float) -> tuple[int, floa
 
 
 @kernel
-def _unless_stray(h: Memory, ib: int, jb: int, overlap: float, x: float, y: float) -> int:
+def _stray_or_none(h: Memory, ib: int, jb: int, overlap: float, x: float, y: float) -> int:
     """0, or STRAY if blocks `ib` and `jb` overlap by more than FTOL and have no contact near (x, y)."""
     if overlap <= h.cr[g.FTOL]:
         return 0
@@ -197,16 +201,16 @@ def _unless_stray(h: Memory, ib: int, jb: int, overlap: float, x: float, y: floa
 
 
 @kernel
-def _taken(h: Memory, seg: Any, i: int, j: int, gap: Any) -> bool:
+def _gap_is_occupied(h: Memory, seg: Any, i: int, j: int, gap: Any) -> bool:
     """True if a third block is in the gap of the contact that segments `i` and `j` would have."""
     ib, iad, jb, jad = seg[i, BLOCK], seg[i, ITEM], seg[j, BLOCK], seg[j, ITEM]
-    return taken_between(h, ib, iad, nextcp(h, ib, iad), jb, gap) or taken_between(
+    return third_block_between(h, ib, iad, nextcp(h, ib, iad), jb, gap) or third_block_between(
         h, jb, jad, nextcp(h, jb, jad), ib, gap
     )
 
 
 @kernel
-def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
+def contact_needed(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     """Code of the contact that segments `i` and `j` should have, 0 for none, and its urgency.
 
     STRAY if their blocks overlap there, and no contact can be made. The urgency is the overlap, less the
@@ -228,23 +232,23 @@ def judge(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     if had:
         return 0, zero
     nx, ny, _, x, y, _ = meet(h, code, ip, jp)
-    if _one_beside(h, ib, seg[i, ITEM], jb, x, y) or _one_beside(h, jb, seg[j, ITEM], ib, x, y):
+    if _has_contact_near(h, ib, seg[i, ITEM], jb, x, y) or _has_contact_near(h, jb, seg[j, ITEM], ib, x, y):
         return 0, zero
     gap = nx, ny, overlap, x, y
     if overlap > h.cr[g.FTOL] and do_not_meet(h, ib, jb, gap):
         return 0, zero
     if overlap > h.cr[g.CTOL] or would_cross(h, ib, seg[i, ITEM], jb, seg[j, ITEM], x, y):
-        return _unless_stray(h, ib, jb, overlap, x, y), zero
+        return _stray_or_none(h, ib, jb, overlap, x, y), zero
     wrong = max(
-        _misplaced(h, ib, ip, iarc == 1, seg[i, ITEM], jb, x, y, nx, ny),
-        _misplaced(h, jb, jp, jarc == 1, seg[j, ITEM], ib, x, y, -nx, -ny),
+        _distance_outside(h, ib, ip, iarc == 1, seg[i, ITEM], jb, x, y, nx, ny),
+        _distance_outside(h, jb, jp, jarc == 1, seg[j, ITEM], ib, x, y, -nx, -ny),
     )
     if wrong > h.cr[g.ETOL]:
-        return _unless_stray(h, ib, jb, overlap, x, y), zero
+        return _stray_or_none(h, ib, jb, overlap, x, y), zero
     passed = wrong > h.cr[g.FTOL]
-    if (passed and overlap <= 0) or _taken(h, seg, i, j, gap):
+    if (passed and overlap <= 0) or _gap_is_occupied(h, seg, i, j, gap):
         h.ci[g.NTIPS] += 1
-        return _unless_stray(h, ib, jb, overlap, x, y), zero
+        return _stray_or_none(h, ib, jb, overlap, x, y), zero
     return code, overlap - wrong
 
 
@@ -268,7 +272,7 @@ def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float
 
 
 @inlined
-def goes_before(code: int, urgent: float, best: int, highest: float) -> bool:
+def precedes(code: int, urgent: float, best: int, highest: float) -> bool:
     """True if a contact of that code and urgency precedes the best one so far; STRAY is last."""
     if code > 0:
         return best <= 0 or urgent > highest
@@ -289,8 +293,8 @@ def _search_pairs(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
             cx, cy, dx, dy = box(h, seg, j, half)
             if cx > bx or dx < ax or cy > by or dy < ay:
                 continue
-            code, urgent = judge(h, seg, i, j)
-            if goes_before(code, urgent, best, highest):
+            code, urgent = contact_needed(h, seg, i, j)
+            if precedes(code, urgent, best, highest):
                 best, bi, bj, highest = code, i, j, urgent
     return best, bi, bj
 
@@ -348,8 +352,8 @@ def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
                 i, j = row[order[u]], row[order[v]]
                 if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                     continue
-                code, urgent = judge(h, seg, i, j)
-                if goes_before(code, urgent, best, highest):
+                code, urgent = contact_needed(h, seg, i, j)
+                if precedes(code, urgent, best, highest):
                     best, bi, bj, highest = code, i, j, urgent
         first = last
     return best, bi, bj
@@ -383,7 +387,7 @@ def _deep_in_domain(h: Memory, idm: int, reach: float) -> tuple[int, int, float]
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
-    pairs = meeting(_boxes(h, seg, n, reach), n)
+    pairs = overlapping_boxes(_boxes(h, seg, n, reach), n)
     for k in range(len(pairs)):
         i, j = pairs[k, 0], pairs[k, 1]
         if seg[i, BLOCK] == seg[j, BLOCK] or seg[i, ARC] + seg[j, ARC] == 0:

@@ -67,7 +67,7 @@ def relative_velocity(h: Memory, idm: int, soft: Any) -> float:
 
 
 @inlined
-def look_ahead(h: Memory, idm: int) -> int:
+def prefetch_domain(h: Memory, idm: int) -> int:
     """Prefetch the words that domain `idm` needs; returns the next domain, 0 if there is none."""
     if idm == 0:
         return int64(0)
@@ -102,9 +102,9 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> int:
     idm = h.ci[g.IDPNT]
     ahead = idm
     for _ in range(LEAD):
-        ahead = look_ahead(h, ahead)
+        ahead = prefetch_domain(h, ahead)
     while idm != 0:
-        ahead = look_ahead(h, ahead)
+        ahead = prefetch_domain(h, ahead)
         moved = relative_velocity(h, idm, soft) * dt
         umax = getr(h, idm, g.KUMAX) + waiting + moved
         if umax + moved > h.cr[g.ETOL]:

@@ -35,7 +35,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.detect.domain_pass import relative_velocity
 from udec_ia.kernels.detect.point_depth import depth_in
-from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
+from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, overlapping_boxes
 from udec_ia.kernels.geometry.contact_geometry import tangents
 from udec_ia.kernels.map.domain_segments import ARC, BLOCK, COLUMNS, CORNER, collect, count_items
 from udec_ia.layout import offsets as g
@@ -62,7 +62,7 @@ def _turned(h: Memory, ib: int, rx: float, ry: float, way: int) -> tuple[float, 
 
 
 @kernel
-def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
+def previous_place(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
     """Place of the point (x, y) of block `ib`, near its corner `ip`, before this step.
 
     A fixed block does not move, even if RSET has given it a velocity.
@@ -78,7 +78,7 @@ def was_at(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, floa
 
 
 @kernel
-def carried(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
+def place_moved_with(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
     """New place of a point that was at (x, y) and moved with block `ib`, near its edge that ends at `ip`."""
     if iget(h, ib, g.KBFIX) == g.FIXED:
         return x, y
@@ -113,7 +113,7 @@ def arc_point(h: Memory, ip: int, k: int) -> tuple[float, float]:
 
 
 @kernel
-def _surroundings(h: Memory, jb: int) -> tuple[float, float, float, float]:
+def _box_around(h: Memory, jb: int) -> tuple[float, float, float, float]:
     """Box around block `jb` (around its old place if it has zones), extended by CTOL: lower, upper ends."""
     far = real(h, np.inf)
     lx, ly, hx, hy = far, far, -far, -far
@@ -123,7 +123,7 @@ def _surroundings(h: Memory, jb: int) -> tuple[float, float, float, float]:
         x, y = getr(h, jp, g.KXP), getr(h, jp, g.KYP)
         lx, ly, hx, hy = min(lx, x), min(ly, y), max(hx, x), max(hy, y)
         if iget(h, jb, HEAD) == g.MFDEF:
-            x, y = was_at(h, jb, jp, x, y)
+            x, y = previous_place(h, jb, jp, x, y)
             lx, ly, hx, hy = min(lx, x), min(ly, y), max(hx, x), max(hy, y)
         jp = iget(h, jp, g.KR)
         if jp == first:
@@ -149,14 +149,14 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
     place along. Parts of the path far from the block are skipped, however long they are.
     """
     x, y = arc_point(h, ip, k)
-    fx, fy = was_at(h, ib, ip, x, y)
+    fx, fy = previous_place(h, ib, ip, x, y)
     back = h.cr[g.TDEL]
     if iget(h, jb, HEAD) != g.MFDEF:
-        fx, fy = carried(h, jb, iget(h, jb, g.KP), fx, fy)
+        fx, fy = place_moved_with(h, jb, iget(h, jb, g.KP), fx, fy)
         back = real(h, 0.0)
     before, now = depth_in(h, jb, fx, fy, back), depth_in(h, jb, x, y, real(h, 0.0))
     deepest = now
-    lx, ly, hx, hy = _surroundings(h, jb)
+    lx, ly, hx, hy = _box_around(h, jb)
     (enters, leaves), (above, below) = _between(fx, x - fx, lx, hx), _between(fy, y - fy, ly, hy)
     first, last = max(enters, above), min(leaves, below)
     if first < last:
@@ -175,7 +175,7 @@ def _depths(h: Memory, ib: int, ip: int, jb: int, k: int) -> tuple[float, float,
 
 
 @kernel
-def _has_gone_in(h: Memory, ib: int, ip: int, jb: int) -> bool:
+def _has_penetrated(h: Memory, ib: int, ip: int, jb: int) -> bool:
     """True if in this step the arc of corner `ip` of block `ib` was deeper than CTOL in block `jb`.
 
     Also True if it was deeper than FTOL and has entered and left the block.
@@ -236,26 +236,26 @@ def swept_boxes(h: Memory, seg: Any, n: int, more: int) -> Any:
             else:
                 iq = ip if k == 0 else iget(h, ip, g.KR)
                 x, y = getr(h, iq, g.KXP), getr(h, iq, g.KYP)
-            fx, fy = was_at(h, ib, iq, x, y)
+            fx, fy = previous_place(h, ib, iq, x, y)
             _include(boxes, i, x, y)
             _include(boxes, i, fx, fy)
     return boxes
 
 
 @kernel
-def _corner_through(h: Memory, idm: int) -> int:
+def _corner_passed_through(h: Memory, idm: int) -> int:
     """A corner in domain `idm` that has penetrated or crossed another block in this step; 0 if none."""
     items = count_items(h, idm)
     seg = np.empty((2 * items + 2, COLUMNS), np.int64)
     n, _ = collect(h, idm, seg, np.empty((min(h.ci[g.NVIRT], items), 3), np.int64))
-    pairs = meeting(swept_boxes(h, seg, n, 0), n)
+    pairs = overlapping_boxes(swept_boxes(h, seg, n, 0), n)
     for k in range(len(pairs)):
         i, j = pairs[k, 0], pairs[k, 1]
         if seg[i, BLOCK] == seg[j, BLOCK]:
             continue
         for one, two in ((i, j), (j, i)):
             ip = seg[one, CORNER]
-            if seg[one, ARC] == 1 and _has_gone_in(h, seg[one, BLOCK], ip, seg[two, BLOCK]):
+            if seg[one, ARC] == 1 and _has_penetrated(h, seg[one, BLOCK], ip, seg[two, BLOCK]):
                 return int64(ip)
             edges = seg[one, ARC] + seg[two, ARC] == 0
             if edges and edge_lies_in(h, ip, seg[two, BLOCK], seg[two, CORNER]):
@@ -264,7 +264,7 @@ def _corner_through(h: Memory, idm: int) -> int:
 
 
 @outlined
-def gone_through(h: Memory) -> bool:
+def detect_passages(h: Memory) -> bool:
     """True, and error 15, if in this step a corner has penetrated another block of its domain.
 
     Domains without a displacement above ETOL are skipped, as are all after an error.
@@ -272,7 +272,7 @@ def gone_through(h: Memory) -> bool:
     idm = h.ci[g.IDPNT]
     while idm != 0 and h.ci[g.NERR] == 0:
         if relative_velocity(h, idm, True) * h.cr[g.TDEL] > h.cr[g.ETOL]:
-            ip = _corner_through(h, idm)
+            ip = _corner_passed_through(h, idm)
             if ip != 0:
                 h.ci[g.NERR] = OVERLAP_TOO_GREAT
                 h.ci[g.IERAD] = ip

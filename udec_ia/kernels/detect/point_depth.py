@@ -21,7 +21,7 @@ from udec_ia.layout import offsets as g
 
 
 @inlined
-def _from(h: Memory, ip: int, x: float, y: float, back: float) -> tuple[float, float]:
+def _vector_to_corner(h: Memory, ip: int, x: float, y: float, back: float) -> tuple[float, float]:
     """Vector from the point (x, y) to the place of corner `ip` a time `back` ago."""
     px, py = getr(h, ip, g.KXP) - getr(h, ip, g.KXDP) * back, getr(h, ip, g.KYP) - getr(h, ip, g.KYDP) * back
     return px - x, py - y
@@ -59,8 +59,8 @@ def depth_in(h: Memory, ib: int, x: float, y: float, back: float) -> float:
     ip = ip0
     while True:
         ia = iget(h, ip, g.KR)
-        ax, ay = _from(h, ia, x, y, back)
-        bx, by = _from(h, ip, x, y, back)
+        ax, ay = _vector_to_corner(h, ia, x, y, back)
+        bx, by = _vector_to_corner(h, ip, x, y, back)
         if (ay > 0) != (by > 0) and (ax * by - ay * bx > 0) == (by > ay):
             inside = not inside
         ex, ey = bx - ax, by - ay
@@ -99,7 +99,7 @@ TURNS = 1  # corners between two adjacent contacts; the path around the block ha
 
 
 @kernel
-def _comes(h: Memory, ib: int, iad: int, ic: int, ahead: bool) -> bool:
+def _is_near(h: Memory, ib: int, iad: int, ic: int, ahead: bool) -> bool:
     """True if contact `ic` comes soon after item `iad` of block `ib`, or before it if not `ahead`."""
     item = nextcp(h, ib, iad) if ahead else iad
     turns = 0
@@ -128,7 +128,7 @@ def would_cross(h: Memory, ib: int, iad: int, jb: int, jad: int, x: float, y: fl
                 break
             if is_contact(h, item) and other(h, ib, item) == jb and iget(h, item, g.KCCOD) != g.VIRTUAL:
                 dx, dy = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
-                if dx * dx + dy * dy < near * near and _comes(h, jb, jad, item, ahead):
+                if dx * dx + dy * dy < near * near and _is_near(h, jb, jad, item, ahead):
                     return True
             item = nextcp(h, ib, item) if ahead else prevcp(h, ib, item)
     return False

@@ -19,9 +19,14 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.detect.passage_through_block import arc_point, carried, swept_boxes, was_at
+from udec_ia.kernels.detect.passage_through_block import (
+    arc_point,
+    place_moved_with,
+    previous_place,
+    swept_boxes,
+)
 from udec_ia.kernels.detect.point_depth import depth_in
-from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, meeting
+from udec_ia.kernels.geometry.box_sweep import ABOVE, BELOW, LEFT, RIGHT, overlapping_boxes
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, next_corner, nextcp, other, prevcp
 from udec_ia.kernels.map.bridge import delc, nextd, to_virtual
@@ -41,7 +46,7 @@ def _crosses(ax: float, ay: float, bx: float, by: float, nx: float, ny: float, h
 
 
 @kernel
-def _edge_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
+def _edge_crosses_gap(h: Memory, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
     """True if the straight part of the edge that ends at corner `ip` crosses a gap."""
     ia = iget(h, ip, g.KR)
     ax, ay = getr(h, ia, g.KXP) - x, getr(h, ia, g.KYP) - y
@@ -53,7 +58,7 @@ def _edge_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float
 
 
 @kernel
-def _arc_stands_in(h: Memory, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
+def _arc_crosses_gap(h: Memory, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
     """True if a gap crosses the circle under the arc of corner `ip`, or one that fits under it in the middle.
 
     The circle of a blunt corner reaches beyond its block; one as wide as the widest gap does not.
@@ -95,7 +100,7 @@ def _lies_behind(h: Memory, ip: int, x: float, y: float) -> bool:
 
 
 @inlined
-def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
+def _contains(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
     """True if the point (x, y) is so deep in block `ib` that a segment there would overlap by FTOL.
 
     ip: a corner near it, iq: the next one, where the search begins.
@@ -108,23 +113,23 @@ def _holds(h: Memory, ib: int, ip: int, iq: int, x: float, y: float) -> bool:
 
 
 @kernel
-def stands_in(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
+def is_in_gap(h: Memory, ib: int, ip: int, x: float, y: float, nx: float, ny: float, half: float) -> bool:
     """True if corner `ip` of block `ib`, rounded, or an edge at it crosses a gap, or the block fills it.
 
     The gap has the width 2 `half` along the unit vector (nx, ny) and its middle at (x, y).
     """
     iq = next_corner(h, ib, ip)
     if not _lies_beside(h, iget(h, ip, g.KR), ip, iq, x, y, nx, ny) and (
-        _arc_stands_in(h, ip, x, y, nx, ny, half)
-        or _edge_stands_in(h, ip, x, y, nx, ny, half)
-        or _edge_stands_in(h, iq, x, y, nx, ny, half)
+        _arc_crosses_gap(h, ip, x, y, nx, ny, half)
+        or _edge_crosses_gap(h, ip, x, y, nx, ny, half)
+        or _edge_crosses_gap(h, iq, x, y, nx, ny, half)
     ):
         return True
-    return _holds(h, ib, ip, iq, x, y)
+    return _contains(h, ib, ip, iq, x, y)
 
 
 @inlined
-def neighbour_past(h: Memory, ib: int, iad: int, forwards: bool) -> int:
+def nearest_contact(h: Memory, ib: int, iad: int, forwards: bool) -> int:
     """The first real contact of block `ib` at item `iad` or a little further on in its list; 0 for none."""
     item = int64(iad)
     for _ in range(BESIDE):
@@ -135,7 +140,7 @@ def neighbour_past(h: Memory, ib: int, iad: int, forwards: bool) -> int:
 
 
 @inlined
-def _third(h: Memory, ib: int, jb: int, item: int) -> int:
+def _third_block(h: Memory, ib: int, jb: int, item: int) -> int:
     """The third block that contact `item` of block `ib` leads to; 0 if there is none."""
     if item == 0:
         return int64(0)
@@ -144,38 +149,38 @@ def _third(h: Memory, ib: int, jb: int, item: int) -> int:
 
 
 @inlined
-def _taken_by(h: Memory, ib: int, jb: int, item: int, gap: Any) -> bool:
+def _is_between(h: Memory, ib: int, jb: int, item: int, gap: Any) -> bool:
     """True if the third block that contact `item` of block `ib` leads to is between it and block `jb`.
 
     gap: the result of `meet` for the contact of `ib` and `jb`. If these overlap, the third block must reach
     into the overlap.
     """
-    kb = _third(h, ib, jb, item)
+    kb = _third_block(h, ib, jb, item)
     if kb == 0:
         return False
     nx, ny, overlap, x, y = gap
     if overlap < 0:
-        return stands_in(h, kb, corner_of(h, kb, item), x, y, nx, ny, -overlap * real(h, 0.5))
+        return is_in_gap(h, kb, corner_of(h, kb, item), x, y, nx, ny, -overlap * real(h, 0.5))
     return depth_in(h, kb, x, y, real(h, 0.0)) > h.cr[g.FTOL]
 
 
 @kernel
-def taken_between(h: Memory, ib: int, before: int, after: int, jb: int, gap: Any) -> bool:
+def third_block_between(h: Memory, ib: int, before: int, after: int, jb: int, gap: Any) -> bool:
     """True if a third block with a contact beside one place in the list of block `ib` is in the gap.
 
     before, after: the items at the place. jb, gap: as in _taken_by.
     """
-    one, two = neighbour_past(h, ib, before, False), neighbour_past(h, ib, after, True)
-    return _taken_by(h, ib, jb, one, gap) or _taken_by(h, ib, jb, two, gap)
+    one, two = nearest_contact(h, ib, before, False), nearest_contact(h, ib, after, True)
+    return _is_between(h, ib, jb, one, gap) or _is_between(h, ib, jb, two, gap)
 
 
 @kernel
-def gap_taken(h: Memory, ic: int, gap: Any) -> bool:
+def gap_is_occupied(h: Memory, ic: int, gap: Any) -> bool:
     """True if a third block that has a contact beside contact `ic` is in its gap."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
-    return taken_between(h, ib, iget(h, ic, g.KLB1), iget(h, ic, g.KL1), jb, gap) or taken_between(
-        h, jb, iget(h, ic, g.KLB2), iget(h, ic, g.KL2), ib, gap
-    )
+    return third_block_between(
+        h, ib, iget(h, ic, g.KLB1), iget(h, ic, g.KL1), jb, gap
+    ) or third_block_between(h, jb, iget(h, ic, g.KLB2), iget(h, ic, g.KL2), ib, gap)
 
 
 @kernel
@@ -194,18 +199,18 @@ def _open_contacts(h: Memory, idm: int, found: Any) -> int:
 
 
 @kernel
-def _jumped(h: Memory, ib: int, ip: int, ic: int, gap: Any) -> bool:
+def _has_crossed_gap(h: Memory, ib: int, ip: int, ic: int, gap: Any) -> bool:
     """True if the middle of the arc of corner `ip` has crossed the gap of contact `ic` in this step."""
     nx, ny, overlap, x, y = gap
     jp, jb = iget(h, ic, g.KCP1), iget(h, ic, g.KB1)
     px, py = arc_point(h, ip, 0)
-    fx, fy = was_at(h, ib, ip, px, py)
-    fx, fy = carried(h, jb, jp, fx, fy)
+    fx, fy = previous_place(h, ib, ip, px, py)
+    fx, fy = place_moved_with(h, jb, jp, fx, fy)
     return _crosses(fx - x, fy - y, px - x, py - y, nx, ny, -overlap * real(h, 0.5))
 
 
 @kernel
-def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
+def delete_occupied_contact(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
     """Give up one contact around domain `idm` that has a third block in its gap, or over which it has jumped.
 
     Returns True if one was found, and the domain that replaces `idm`.
@@ -222,7 +227,7 @@ def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
         )
         boxes[n + k, LEFT], boxes[n + k, RIGHT] = x - half, x + half
         boxes[n + k, BELOW], boxes[n + k, ABOVE] = y - half, y + half
-    pairs = meeting(boxes, n + m)
+    pairs = overlapping_boxes(boxes, n + m)
     for k in range(len(pairs)):
         i, j = min(pairs[k, 0], pairs[k, 1]), max(pairs[k, 0], pairs[k, 1]) - n
         if i >= n or j < 0 or seg[i, ARC] == 0:
@@ -234,14 +239,14 @@ def give_up_taken(h: Memory, idm: int, seg: Any, n: int) -> tuple[bool, int]:
         gap = nx, ny, overlap, x, y
         if not overlap < 0:
             continue
-        inside = stands_in(h, kb, kp, x, y, nx, ny, -overlap * real(h, 0.5))
-        if inside or _jumped(h, kb, kp, ic, gap):
-            return True, give_up(h, idm, ic)
+        inside = is_in_gap(h, kb, kp, x, y, nx, ny, -overlap * real(h, 0.5))
+        if inside or _has_crossed_gap(h, kb, kp, ic, gap):
+            return True, delete_contact(h, idm, ic)
     return False, int64(idm)
 
 
 @kernel
-def give_up(h: Memory, idm: int, ic: int) -> int:
+def delete_contact(h: Memory, idm: int, ic: int) -> int:
     """Delete contact `ic` around domain `idm`; returns the domain that replaces `idm`."""
     h.ci[g.NBROKE] += 1
     if iget(h, ic, g.KD1) == iget(h, ic, g.KD2):

@@ -26,7 +26,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.contact_search import SMALL, STRAY, search
 from udec_ia.kernels.detect.passage_through_block import edge_lies_in
-from udec_ia.kernels.detect.third_block_in_gap import give_up_taken
+from udec_ia.kernels.detect.third_block_in_gap import delete_occupied_contact
 from udec_ia.kernels.map.bridge import bridge
 from udec_ia.kernels.map.domain_segments import (
     ARC,
@@ -38,7 +38,7 @@ from udec_ia.kernels.map.domain_segments import (
     collect,
     count_items,
     not_virtual,
-    settle_loop,
+    update_loop_geometry,
 )
 from udec_ia.kernels.map.virtual_contacts import cut_among_pieces, rehook
 from udec_ia.layout import offsets as g
@@ -104,7 +104,7 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
     ties = np.empty((min(h.ci[g.NVIRT], items), 3), np.int64)
     n, nties = collect(h, idm, seg, ties)
     if getr(h, idm, g.KUMAX) >= h.cr[g.ETOL] + h.cr[g.ETOL]:  # a long step, or a domain that was flagged
-        found, merged = give_up_taken(h, idm, seg, n)
+        found, merged = delete_occupied_contact(h, idm, seg, n)
         if found:
             return MERGED, merged
         putr(h, idm, g.KUMAX, h.cr[g.ETOL] * real(h, SEARCHED))
@@ -136,7 +136,7 @@ def update(h: Memory, idm: int) -> bool:
     waiting[0] = idm
     n = 1
     if iget(h, idm, g.KDLOOP) != 0:
-        settle_loop(h, idm)
+        update_loop_geometry(h, idm)
     while n > 0:
         here = waiting[n - 1]
         done, idnew = updt(h, here)
@@ -155,7 +155,7 @@ def update(h: Memory, idm: int) -> bool:
                 waiting[n - 1] = idnew
                 n += 1
         elif done == MERGED:  # waiting ones may not exist any more; _update_all finds them by their flags
-            settle_loop(h, idnew)
+            update_loop_geometry(h, idnew)
             waiting[0] = idnew
             n = 1
     return True

@@ -150,7 +150,7 @@ NORMAL, TANGENT = 0, 1
 
 
 @kernel
-def _part(h: Memory, ip: int, x: float, y: float) -> float:
+def _position_on_edge(h: Memory, ip: int, x: float, y: float) -> float:
     """Position of the point (x, y) on the edge that ends at corner `ip`: 0 at its start, 1 at its end."""
     ia = iget(h, ip, g.KR)
     ax, ay = np.float64(getr(h, ia, g.KXP)), np.float64(getr(h, ia, g.KYP))
@@ -162,7 +162,7 @@ def _part(h: Memory, ip: int, x: float, y: float) -> float:
 
 
 @kernel
-def _enter_body(
+def _enter_displacements(
     h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any
 ) -> None:
     """Displacement of (x, y) along (nx, ny) for a unit of each degree of freedom of block `ib`, in row `k`.
@@ -186,10 +186,10 @@ def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, a
     if iget(h, ib, HEAD) != g.MFDEF:
         at[0] = row[ib]
         for axis in range(2):
-            _enter_body(h, ib, x, y, way[axis, 0], way[axis, 1], at[0], frame, moves[0, axis])
+            _enter_displacements(h, ib, x, y, way[axis, 0], way[axis, 1], at[0], frame, moves[0, axis])
         return
     on_edge = iget(h, ic, g.KCCOD) == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
-    part = _part(h, ip, x, y) if on_edge else 1.0
+    part = _position_on_edge(h, ip, x, y) if on_edge else 1.0
     at[0], at[1] = row[iget(h, ip, g.KGP)], row[iget(h, iget(h, ip, g.KR), g.KGP)]
     for axis in range(2):
         for i in range(2):

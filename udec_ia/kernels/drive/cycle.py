@@ -8,7 +8,7 @@ scene tests nothing about them. A cycle calls long passes that are seldom needed
 compiled when first needed, once for a word scheme, instead of in every kind of cycle. `passes` selects those
 that a run needs.
 
-The compiled loop of `run_watched` runs from one recorded cycle to the next, writes the records into the
+The compiled loop of `run_with_records` runs from one recorded cycle to the next, writes the records into the
 caller's arrays, and returns when these are full. Recorded cycles depend on the total number of cycles alone:
 a history with KHN 10 is recorded after the cycles 10, 20, 30 ..., however the run is divided into commands.
 
@@ -29,27 +29,27 @@ from udec_ia.compiling.non_inlined_calls import call_entry, entry, entry_if
 from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.find_lose import room
-from udec_ia.kernels.body.boundary_conditions import apply_bounds
+from udec_ia.kernels.body.boundary_conditions import apply_boundary_conditions
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.contact.ford import ford_all
-from udec_ia.kernels.contact.map_changes import NOBODY, change_map
+from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
 from udec_ia.kernels.detect.domain_pass import accumulate
-from udec_ia.kernels.detect.passage_through_block import gone_through
+from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.dynamic_relaxation import relax
 from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.work_account import (
-    note_contact,
-    note_forces,
-    note_loads,
-    note_rigid,
-    note_stresses,
+    add_contact_work,
+    add_load_work,
+    add_rigid_work,
+    add_work_after_motion,
+    add_work_before_motion,
 )
-from udec_ia.kernels.geometry.block_shape import keep_circles
+from udec_ia.kernels.geometry.block_shape import update_circles
 from udec_ia.layout import offsets as g
 
 KEEP = 16  # cycles after which the circles of rigid blocks are recalculated
@@ -66,7 +66,7 @@ def check_place(h: Memory, ib: int) -> None:
 
 
 @kernel
-def move_all(h: Memory, soft: Any, laws: Any) -> float:
+def move_blocks(h: Memory, soft: Any, laws: Any) -> float:
     """Move every block; returns a bound on the velocity, in x or in y, of any point.
 
     Error 36 if a block is so far away that the precision is too low for contacts.
@@ -88,7 +88,7 @@ def move_all(h: Memory, soft: Any, laws: Any) -> float:
         else:
             fastest = max(fastest, motion(h, ib))
         if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
-            keep_circles(h, ib)
+            update_circles(h, ib)
         check_place(h, ib)
         ib = iget(h, ib, g.KB)
     return fastest
@@ -99,7 +99,7 @@ STRIDE = min(g.NVCN[:3])  # words of IA() that share a mark; after the three siz
 
 
 @outlined
-def note_openings(h: Memory, marks: Any) -> bool:
+def count_openings(h: Memory, marks: Any) -> bool:
     """Examine all contacts. marks: one byte for STRIDE words of IA(); none beyond its end."""
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
@@ -122,7 +122,7 @@ def passes(
     """Addresses of passes in the order above, 0 for those that a run does not need; a tuple for MEASURES.
 
     soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
-    ratio, marks: as in run_watched. mean: the mean unbalanced force counts, not the greatest.
+    ratio, marks: as in run_with_records. mean: the mean unbalanced force counts, not the greatest.
     A run of slow blocks does not need TUNNELLING; one that does stops before it.
     """
     keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, mode_of(h)
@@ -131,19 +131,19 @@ def passes(
     pair = none, none
     return (
         updating(h),
-        entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), gone_through, h),
-        entry(apply_bounds, h) if loaded else 0,
+        entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), detect_passages, h),
+        entry(apply_boundary_conditions, h) if loaded else 0,
         entry(mode.motion_pass, h) if mode and mode.motion_pass else 0,
         entry(relax, h) if (mode and mode.changes_forces) or h.ci[g.LSCALE] else 0,
-        entry(note_rigid if soft is None else note_forces, h) if keeps else 0,
-        entry(note_loads, h) if keeps and loaded else 0,
-        entry(note_stresses, h) if keeps and soft is not None else 0,
-        entry(note_contact, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
-        entry(change_map, h, NOBODY, 0),
+        entry(add_rigid_work if soft is None else add_work_before_motion, h) if keeps else 0,
+        entry(add_load_work, h) if keeps and loaded else 0,
+        entry(add_work_after_motion, h) if keeps and soft is not None else 0,
+        entry(add_contact_work, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
+        entry(change_map, h, NONE_WAITING, 0),
         asked,
         entry(record, h, *recorded, asked) if recorded else 0,
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
-        entry(note_openings, h, marks) if len(marks) else 0,
+        entry(count_openings, h, marks) if len(marks) else 0,
     )
 
 
@@ -151,7 +151,7 @@ CONTACTS = 1000  # for each of which the check of a safe time-step may wait a cy
 
 
 @kernel
-def has_to_judge(h: Memory) -> bool:
+def step_check_is_due(h: Memory) -> bool:
     """True if contacts have been made since a SAFE time-step was found: it may be too long for them.
 
     In a large model the check waits for a cycle whose number is a multiple of its thousands of contacts. If
@@ -186,7 +186,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 call_entry(passes[FORCES], h)
             if passes[LOADS] != 0:
                 call_entry(passes[LOADS], h)
-            fastest = move_all(h, soft, laws)
+            fastest = move_blocks(h, soft, laws)
             if passes[STRESSES] != 0:
                 call_entry(passes[STRESSES], h)
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
@@ -212,7 +212,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1
-        if h.ci[g.NERR] != 0 or has_to_judge(h):
+        if h.ci[g.NERR] != 0 or step_check_is_due(h):
             return done
     return done
 
@@ -221,7 +221,7 @@ CHECK = 10  # cycles between two checks of the force ratio
 
 
 @kernel
-def until_due(h: Memory, limit: int) -> int:
+def cycles_until_record(h: Memory, limit: int) -> int:
     """Cycles until the next history is due, or `limit` if that comes first."""
     cycles = int64(limit)
     ih = int64(h.ci[g.IHPNT])
@@ -233,7 +233,7 @@ def until_due(h: Memory, limit: int) -> int:
 
 
 @kernel
-def run_watched(
+def run_with_records(
     h: Memory, n: int, laws: Any, ratio: float, places: Any, rows: Any, count: Any, marks: Any, passes: Any
 ) -> tuple[int, bool]:
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
@@ -250,7 +250,7 @@ def run_watched(
         if len(marks) > 0:
             ahead = min(ahead, int64(LOOK - h.ci[g.MCTOT] % LOOK))
         before = h.ci[g.MCTOT]
-        asked = until_due(h, ahead) if recorded else ahead
+        asked = cycles_until_record(h, ahead) if recorded else ahead
         completed = run_cycles(h, asked, laws[0], laws[1], laws[2], passes)
         done += completed
         if recorded and h.ci[g.MCTOT] > before:
@@ -261,6 +261,6 @@ def run_watched(
             return done, False
         if ratio >= 0 and h.ci[g.MCTOT] % CHECK == 0 and call_entry(passes[REST], h, ratio):
             return done, True
-        if has_to_judge(h):
+        if step_check_is_due(h):
             return done, False
     return done, False

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.drive.kinetic_damping import look_at_motion
+from udec_ia.kernels.drive.kinetic_damping import damp_by_motion
 from udec_ia.layout import offsets as g
 
 
@@ -73,7 +73,7 @@ MODES = (
         g.KINETIC,
         help="stops all motion when the kinetic energy has passed a peak",
         report="stops all when the kinetic energy has passed a peak",
-        motion_pass=look_at_motion,
+        motion_pass=damp_by_motion,
         changes_forces=True,
     ),
     DampingMode(
@@ -82,7 +82,7 @@ MODES = (
         help="is mass damping, with f the fraction of critical damping for what moves",
         report="is {f:g} of critical for what still moves",
         fraction="f",
-        motion_pass=look_at_motion,
+        motion_pass=damp_by_motion,
         keeps_forces=True,
         sets_alpha=True,
     ),

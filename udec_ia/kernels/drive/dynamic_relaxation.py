@@ -31,8 +31,8 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr
 from udec_ia.kernels.body.fdef import next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain, straining_force
-from udec_ia.kernels.geometry.plane_tensors import first_axis, turned
-from udec_ia.kernels.links.relaxation_groups import following
+from udec_ia.kernels.geometry.plane_tensors import first_axis, rotated
+from udec_ia.kernels.links.relaxation_groups import next_relaxation
 from udec_ia.layout import offsets as g
 
 
@@ -130,11 +130,11 @@ def relaxed_strain(h: Memory, ie: int, ir: int, force: Any, rate: Any) -> tuple[
     """
     c, s = first_axis(h, getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22))
     last = forces_before(h, ir, force)
-    b11, b12, b22 = turned(last[0], last[1], last[2], c, -s)
-    f11, f12, f22 = turned(force[0], force[1], force[2], c, -s)
-    e11, e12, e22 = turned(rate[0], rate[1], rate[2], c, -s)
+    b11, b12, b22 = rotated(last[0], last[1], last[2], c, -s)
+    f11, f12, f22 = rotated(force[0], force[1], force[2], c, -s)
+    e11, e12, e22 = rotated(rate[0], rate[1], rate[2], c, -s)
     f11, f12, f22 = damped(h, f11, e11, b11), damped(h, f12, e12, b12), damped(h, f22, e22, b22)
-    f11, f12, f22 = turned(f11, f12, f22, c, s)
+    f11, f12, f22 = rotated(f11, f12, f22, c, s)
     if h.ci[g.LSCALE] == 0:
         return f11, f12, f22
     scale = getr(h, ir, g.KRXE)
@@ -172,13 +172,13 @@ def relax(h: Memory) -> bool:
             while ig != 0:
                 if free:
                     relax_point(h, ig, ir)
-                ir = following(h, ir)
+                ir = next_relaxation(h, ir)
                 ig = iget(h, ig, g.KG)
         else:
             if free:
                 relax_body(h, ib, ir)
                 if kind == g.MSDEF:
                     relax_strain(h, iget(h, ib, g.KBEX), ir)
-            ir = following(h, ir)
+            ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)
     return True

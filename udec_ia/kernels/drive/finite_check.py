@@ -63,7 +63,7 @@ def _body_finite(h: Memory, ib: int) -> bool:
 
 
 @kernel
-def not_finite(h: Memory) -> int:
+def first_not_finite(h: Memory) -> int:
     """A block, or else a contact, with a number that is not finite; 0 if there is none."""
     ib = h.ci[g.IBPNT]
     while ib != 0:

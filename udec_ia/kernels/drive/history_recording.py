@@ -9,8 +9,13 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.compiling.non_inlined_calls import call_entry, entry
 from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
-from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced
-from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced_force
+from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
+    kinetic_energy,
+    potential_energy,
+    strain_energy_of_blocks,
+)
 from udec_ia.layout import offsets as g
 
 INTEGER, REAL, DOUBLE = 0, 1, 2  # types of recorded numbers
@@ -19,7 +24,7 @@ INTEGER, REAL, DOUBLE = 0, 1, 2  # types of recorded numbers
 @outlined
 def measure_unbalanced(h: Memory, row: Any, i: int) -> bool:
     """Put the greatest unbalanced force into `row`, at `i`."""
-    row[i] = unbalanced(h, True)[0]
+    row[i] = unbalanced_force(h, True)[0]
     return True
 
 
@@ -33,21 +38,21 @@ def measure_ratio(h: Memory, row: Any, i: int) -> bool:
 @outlined
 def measure_kinetic(h: Memory, row: Any, i: int) -> bool:
     """The same for the kinetic energy."""
-    row[i] = kinetic(h, True)
+    row[i] = kinetic_energy(h, True)
     return True
 
 
 @outlined
 def measure_strain(h: Memory, row: Any, i: int) -> bool:
     """The same for the strain energy."""
-    row[i] = strain_of_contacts(h) + strain_of_blocks(h, True)
+    row[i] = contact_strain_energy(h) + strain_energy_of_blocks(h, True)
     return True
 
 
 @outlined
 def measure_potential(h: Memory, row: Any, i: int) -> bool:
     """The same for the potential of gravity against that at ENERGY ON."""
-    row[i] = height(h) - h.cd[g.EREF]
+    row[i] = potential_energy(h) - h.cd[g.EREF]
     return True
 
 

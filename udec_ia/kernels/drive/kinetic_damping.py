@@ -17,10 +17,10 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
-from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import straining_force
-from udec_ia.kernels.energy.stored_energy import energy_of_motion, kinetic
-from udec_ia.kernels.links.relaxation_groups import following
+from udec_ia.kernels.energy.stored_energy import energy_of_motion, kinetic_energy
+from udec_ia.kernels.links.relaxation_groups import next_relaxation
 from udec_ia.layout import offsets as g
 
 LOWEST, HIGHEST = 1e-3, 1.0  # ALPHA times the time-step
@@ -54,24 +54,24 @@ def halt_block(h: Memory, ib: int) -> None:
             putr(h, ip, g.KYDP, getr(h, ig, g.KYDG))
         ig = iget(h, ig, g.KG)
     if iget(h, ib, HEAD) != g.MFDEF:
-        carry_corners(h, ib)
+        set_corner_velocities(h, ib)
 
 
 @kernel
 def halt_all(h: Memory) -> None:
     """Velocities of everything free := 0; the lost kinetic energy counts as damping."""
-    before = kinetic(h, True) if h.ci[g.LENER] != 0 else 0.0
+    before = kinetic_energy(h, True) if h.ci[g.LENER] != 0 else 0.0
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             halt_block(h, ib)
         ib = iget(h, ib, g.KB)
     if h.ci[g.LENER] != 0:
-        h.cd[g.WREST] += before - kinetic(h, True)
+        h.cd[g.WREST] += before - kinetic_energy(h, True)
 
 
 @inlined
-def yielding(h: Memory, ir: int, before: Offset, f: float, v: float) -> float:
+def power_of_growth(h: Memory, ir: int, before: Offset, f: float, v: float) -> float:
     """Velocity `v` times the growth of the force `f` since the last cycle, which is at `before` in `ir`."""
     grown = np.float64(f - getr(h, ir, before)) * v
     putr(h, ir, before, f)
@@ -79,22 +79,22 @@ def yielding(h: Memory, ir: int, before: Offset, f: float, v: float) -> float:
 
 
 @kernel
-def yielding_body(h: Memory, ib: int, ir: int) -> float:
+def power_of_growth_in_body(h: Memory, ib: int, ir: int) -> float:
     """The same of all degrees of freedom of block `ib`, which has no grid-points."""
-    total = yielding(h, ir, g.KRXFX, getr(h, ib, g.KBFX), getr(h, ib, g.KXD))
-    total += yielding(h, ir, g.KRXFY, getr(h, ib, g.KBFY), getr(h, ib, g.KYD))
-    total += yielding(h, ir, g.KRXFT, getr(h, ib, g.KBFT), getr(h, ib, g.KTD))
+    total = power_of_growth(h, ir, g.KRXFX, getr(h, ib, g.KBFX), getr(h, ib, g.KXD))
+    total += power_of_growth(h, ir, g.KRXFY, getr(h, ib, g.KBFY), getr(h, ib, g.KYD))
+    total += power_of_growth(h, ir, g.KRXFT, getr(h, ib, g.KBFT), getr(h, ib, g.KTD))
     if iget(h, ib, HEAD) == g.MSDEF:
         ie = iget(h, ib, g.KBEX)
         f11, f12, f22 = straining_force(h, ie)
-        total += yielding(h, ir, g.KRXS11, f11, getr(h, ie, g.KED11))
-        total += yielding(h, ir, g.KRXS12, f12, getr(h, ie, g.KED12)) * 2.0
-        total += yielding(h, ir, g.KRXS22, f22, getr(h, ie, g.KED22))
+        total += power_of_growth(h, ir, g.KRXS11, f11, getr(h, ie, g.KED11))
+        total += power_of_growth(h, ir, g.KRXS12, f12, getr(h, ie, g.KED12)) * 2.0
+        total += power_of_growth(h, ir, g.KRXS22, f22, getr(h, ie, g.KED22))
     return total
 
 
 @kernel
-def yielding_all(h: Memory) -> float:
+def power_of_growth_in_model(h: Memory) -> float:
     """The same for the whole model."""
     total = 0.0
     ir = int64(h.ci[g.IRXPNT])
@@ -105,27 +105,27 @@ def yielding_all(h: Memory) -> float:
             ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
             while ig != 0:
                 if free:
-                    total += yielding(h, ir, g.KRXFX, getr(h, ig, g.KGFX), getr(h, ig, g.KXDG))
-                    total += yielding(h, ir, g.KRXFY, getr(h, ig, g.KGFY), getr(h, ig, g.KYDG))
-                ir = following(h, ir)
+                    total += power_of_growth(h, ir, g.KRXFX, getr(h, ig, g.KGFX), getr(h, ig, g.KXDG))
+                    total += power_of_growth(h, ir, g.KRXFY, getr(h, ig, g.KGFY), getr(h, ig, g.KYDG))
+                ir = next_relaxation(h, ir)
                 ig = iget(h, ig, g.KG)
         else:
             if free:
-                total += yielding_body(h, ib, ir)
-            ir = following(h, ir)
+                total += power_of_growth_in_body(h, ib, ir)
+            ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)
     return total
 
 
 @kernel
-def adapt(h: Memory) -> None:
+def set_adaptive_damping(h: Memory) -> None:
     """Calculate ALPHA and its factors from velocities and the growth of forces.
 
     EMOVES is half of the second sum. The first one is not stored: it is the second times w w, which follows
     from ALPHA.
     """
     dt, f = np.float64(h.cr[g.TDEL]), np.float64(h.cr[g.RESTF])
-    before, grown = FADING * h.cd[g.EMOVES], yielding_all(h)
+    before, grown = FADING * h.cd[g.EMOVES], power_of_growth_in_model(h)
     h.cd[g.EMOVES] = before + energy_of_motion(h)
     alpha = LOWEST / dt
     if h.cd[g.EMOVES] > 0 and f > 0:
@@ -140,10 +140,10 @@ def adapt(h: Memory) -> None:
 
 
 @outlined
-def look_at_motion(h: Memory) -> bool:
+def damp_by_motion(h: Memory) -> bool:
     """Apply KINETIC or ADAPTIVE damping before the step that begins."""
     if h.ci[g.LREST] == g.ADAPTIVE:
-        adapt(h)
+        set_adaptive_damping(h)
         return True
     energy = energy_of_motion(h)
     fallen = energy < h.cd[g.EMOVES]

@@ -19,14 +19,14 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.body.boundary_conditions import load, push_load
+from udec_ia.kernels.body.boundary_conditions import add_load, load
 from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
     energy_of_motion,
-    liveliest,
-    strain_of_blocks,
-    strain_of_contacts,
+    greatest_motion,
+    strain_energy_of_blocks,
 )
 from udec_ia.layout import offsets as g
 
@@ -80,7 +80,7 @@ def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
 
 
 @kernel
-def greatest(h: Memory, soft: Any) -> tuple[float, int, float]:
+def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
     """Greatest unbalanced force in the model, from the present force sums, and the group on which it acts.
 
     That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
@@ -111,7 +111,7 @@ def greatest(h: Memory, soft: Any) -> tuple[float, int, float]:
 
 
 @kernel
-def keep_sums(h: Memory, iu: int, words: Any) -> None:
+def save_force_sums(h: Memory, iu: int, words: Any) -> None:
     """Copy to `words` the force sums that the load of condition `iu` changes."""
     ib, ig = iget(h, iu, g.KUB), iget(h, iu, g.KUG)
     for i in range(len(BLOCK_SUMS)):
@@ -125,7 +125,7 @@ def keep_sums(h: Memory, iu: int, words: Any) -> None:
 
 
 @kernel
-def put_sums_back(h: Memory, iu: int, words: Any) -> None:
+def restore_force_sums(h: Memory, iu: int, words: Any) -> None:
     """Restore the words that keep_sums has copied to `words`."""
     ib, ig = iget(h, iu, g.KUB), iget(h, iu, g.KUG)
     for i in range(len(BLOCK_SUMS)):
@@ -140,7 +140,7 @@ def put_sums_back(h: Memory, iu: int, words: Any) -> None:
 
 @kernel
 def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
-    """As `greatest`, with the loads of all boundary conditions."""
+    """As `greatest_unbalanced`, with the loads of all boundary conditions."""
     n = 0
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:
@@ -150,25 +150,25 @@ def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
     iu = int64(h.ci[g.IBNPNT])
     for i in range(n):
         conditions[i] = iu
-        keep_sums(h, iu, words[i])
+        save_force_sums(h, iu, words[i])
         fx, fy, x, y = load(h, iu)
-        push_load(h, iu, fx, fy, x, y)
+        add_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, g.KU)
-    found = greatest(h, True)
+    found = greatest_unbalanced(h, True)
     for i in range(n - 1, -1, -1):
-        put_sums_back(h, conditions[i], words[i])
+        restore_force_sums(h, conditions[i], words[i])
     return found
 
 
 @kernel
-def unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
-    """Greatest unbalanced force, the group on which it acts, and the mean as in `greatest`.
+def unbalanced_force(h: Memory, soft: Any) -> tuple[float, int, float]:
+    """Greatest unbalanced force, the group on which it acts, and the mean as in `greatest_unbalanced`.
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
     if soft is not None:
         return greatest_under_loads(h)
-    return greatest(h, soft)
+    return greatest_unbalanced(h, soft)
 
 
 @kernel
@@ -191,7 +191,7 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 
 
 @kernel
-def carried(h: Memory, soft: Any) -> float:
+def mean_carried_force(h: Memory, soft: Any) -> float:
     """Mean of the carried forces; 0 if there are none.
 
     Contacts with a normal force, and zones and simply-deformable blocks with a stress, carry a force.
@@ -220,10 +220,10 @@ def force_ratios(h: Memory, soft: Any) -> tuple[float, float]:
 
     0 if there is no unbalanced force, infinite if there is one and no force is carried.
     """
-    largest, _, mean = unbalanced(h, soft)
+    largest, _, mean = unbalanced_force(h, soft)
     if largest == 0:
         return 0.0, 0.0
-    usual = carried(h, soft)
+    usual = mean_carried_force(h, soft)
     return (largest / usual, mean / usual) if usual > 0 else (np.inf, np.inf)
 
 
@@ -239,12 +239,12 @@ def motion_ratio(h: Memory, soft: Any) -> float:
 
     Scaled masses count as inertial masses, since these determine the force that stops them.
     """
-    moving, _, _ = liveliest(h, soft)
+    moving, _, _ = greatest_motion(h, soft)
     if moving == 0:
         return 0.0
     if h.ci[g.LSCALE] != 0:
         moving = energy_of_motion(h)
-    strained = strain_of_contacts(h) + strain_of_blocks(h, soft)
+    strained = contact_strain_energy(h) + strain_energy_of_blocks(h, soft)
     return moving / strained if strained > 0 else np.inf
 
 

@@ -27,7 +27,7 @@ from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
-from udec_ia.kernels.links.relaxation_groups import following
+from udec_ia.kernels.links.relaxation_groups import next_relaxation
 from udec_ia.layout import offsets as g
 
 
@@ -37,11 +37,12 @@ def _kinetic_of_strain(h: Memory, ie: int) -> float:
     dt = np.float64(h.cr[g.TDEL])
     e11, e12, e22 = np.float64(getr(h, ie, g.KED11)), np.float64(getr(h, ie, g.KED12)), getr(h, ie, g.KED22)
     f11, f12, f22 = straining_force(h, ie)
-    return float(inertia(h, ie, e11, e12, e22) + dt * (e11 * f11 + 2 * e12 * f12 + e22 * f22))
+    twice = twice_strain_rate_energy(h, ie, e11, e12, e22)
+    return float(twice + dt * (e11 * f11 + 2 * e12 * f12 + e22 * f22))
 
 
 @inlined
-def inertia(h: Memory, ie: int, e11: float, e12: float, e22: float) -> float:
+def twice_strain_rate_energy(h: Memory, ie: int, e11: float, e12: float, e22: float) -> float:
     """Integral of density times the square of the velocity that follows from the strain rates e."""
     j11, j12, j22 = getr(h, ie, g.KSJ11), getr(h, ie, g.KSJ12), getr(h, ie, g.KSJ22)
     across = e12 * (e11 + e22) * j12
@@ -78,7 +79,7 @@ def _kinetic_of_block(h: Memory, ib: int) -> float:
 
 
 @kernel
-def kinetic(h: Memory, soft: Any) -> float:
+def kinetic_energy(h: Memory, soft: Any) -> float:
     """Kinetic energy of all blocks that are not fixed, in J/m."""
     twice = 0.0
     ib = int64(h.ci[g.IBPNT])
@@ -95,7 +96,7 @@ def kinetic(h: Memory, soft: Any) -> float:
 
 
 @inlined
-def _moves(h: Memory, ib: int, speed: float) -> bool:
+def _changes_place(h: Memory, ib: int, speed: float) -> bool:
     """True if a step with that speed changes a coordinate of a point of block `ib`."""
     far = abs(getr(h, ib, g.KX)) + abs(getr(h, ib, g.KY)) + getr(h, ib, g.KBRO)
     return far + speed * h.cr[g.TDEL] > far
@@ -103,13 +104,13 @@ def _moves(h: Memory, ib: int, speed: float) -> bool:
 
 @kernel
 def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
-    """As `liveliest`, of the grid-points of block `ib`."""
+    """As `greatest_motion`, of the grid-points of block `ib`."""
     total, largest, at = 0.0, 0.0, int64(0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         xd, yd = np.float64(getr(h, ig, g.KXDG)), np.float64(getr(h, ig, g.KYDG))
         energy = getr(h, ig, g.KGPM) * (xd * xd + yd * yd) / 2
-        if _moves(h, ib, abs(getr(h, ig, g.KXDG)) + abs(getr(h, ig, g.KYDG))):
+        if _changes_place(h, ib, abs(getr(h, ig, g.KXDG)) + abs(getr(h, ig, g.KYDG))):
             total += energy
         else:
             energy = 0.0
@@ -128,14 +129,14 @@ def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
     if soft is not None and iget(h, ib, HEAD) == g.MSDEF:
         ie = iget(h, ib, g.KBEX)
         e11, e12 = np.float64(getr(h, ie, g.KED11)), np.float64(getr(h, ie, g.KED12))
-        twice += inertia(h, ie, e11, e12, np.float64(getr(h, ie, g.KED22)))
+        twice += twice_strain_rate_energy(h, ie, e11, e12, np.float64(getr(h, ie, g.KED22)))
         turning += abs(getr(h, ie, g.KED11)) + abs(getr(h, ie, g.KED12)) + abs(getr(h, ie, g.KED22))
     speed = abs(getr(h, ib, g.KXD)) + abs(getr(h, ib, g.KYD)) + turning * getr(h, ib, g.KBRO)
-    return float(twice / 2) if _moves(h, ib, speed) else 0.0
+    return float(twice / 2) if _changes_place(h, ib, speed) else 0.0
 
 
 @kernel
-def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
+def greatest_motion(h: Memory, soft: Any) -> tuple[float, float, int]:
     """Kinetic energy at the velocities of the last half step, which is never negative, in J/m.
 
     Then the share of the block or grid-point with most of it, and its address; 0 if nothing moves. Motion too
@@ -158,7 +159,7 @@ def liveliest(h: Memory, soft: Any) -> tuple[float, float, int]:
 
 
 @kernel
-def strain_of_contacts(h: Memory) -> float:
+def contact_strain_energy(h: Memory) -> float:
     """Energy stored in the springs of the contacts, in J/m; a stiffness of 0 stores nothing."""
     twice = 0.0
     ic = int64(h.ci[g.ICPNT])
@@ -173,7 +174,7 @@ def strain_of_contacts(h: Memory) -> float:
 
 
 @kernel
-def elastic(h: Memory, mat: int, s11: float, s12: float, s22: float) -> float:
+def elastic_energy_density(h: Memory, mat: int, s11: float, s12: float, s22: float) -> float:
     """Elastic energy of a stress in material `mat`, in J/m3; a modulus of 0 stores nothing."""
     one, two = np.float64(h.cr[g.ALAM1 + mat - 1]), np.float64(h.cr[g.ALAM2 + mat - 1])
     mean, half, shear = (np.float64(s11) + s22) / 2, (np.float64(s11) - s22) / 2, np.float64(s12)
@@ -186,34 +187,34 @@ def elastic(h: Memory, mat: int, s11: float, s12: float, s22: float) -> float:
 
 
 @kernel
-def strain_of_block(h: Memory, ib: int) -> float:
+def block_strain_energy(h: Memory, ib: int) -> float:
     """Elastic energy of deformable block `ib`, in J/m."""
     ie, mat, total = iget(h, ib, g.KBEX), iget(h, ib, g.KMAT), 0.0
     if iget(h, ib, HEAD) == g.MSDEF:
         s11, s12, s22 = getr(h, ie, g.KS111), getr(h, ie, g.KS112), getr(h, ie, g.KS122)
-        return float(getr(h, ie, g.KSAREA) * elastic(h, mat, s11, s12, s22))
+        return float(getr(h, ie, g.KSAREA) * elastic_energy_density(h, mat, s11, s12, s22))
     iz = iget(h, ie, g.KFZ) if iget(h, ib, HEAD) == g.MFDEF else int64(0)
     while iz != 0:
         s11, s12, s22 = getr(h, iz, g.KZS11), getr(h, iz, g.KZS12), getr(h, iz, g.KZS22)
-        total += zone_area(h, iz) * elastic(h, mat, s11, s12, s22)
+        total += zone_area(h, iz) * elastic_energy_density(h, mat, s11, s12, s22)
         iz = iget(h, iz, g.KZ)
     return total
 
 
 @kernel
-def strain_of_blocks(h: Memory, soft: Any) -> float:
+def strain_energy_of_blocks(h: Memory, soft: Any) -> float:
     """Elastic energy of all deformable blocks, in J/m."""
     total = 0.0
     if soft is not None:
         ib = int64(h.ci[g.IBPNT])
         while ib != 0:
-            total += strain_of_block(h, ib)
+            total += block_strain_energy(h, ib)
             ib = iget(h, ib, g.KB)
     return total
 
 
 @kernel
-def height(h: Memory) -> float:
+def potential_energy(h: Memory) -> float:
     """Potential energy of gravity of all blocks that are not fixed, relative to the origin, in J/m."""
     gx, gy = np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY])
     total = 0.0
@@ -226,7 +227,7 @@ def height(h: Memory) -> float:
 
 
 @inlined
-def over(h: Memory, energy: float, ir: int, scale: Offset) -> float:
+def with_inertial_mass(h: Memory, energy: float, ir: int, scale: Offset) -> float:
     """An energy of motion with the inertial mass, whose factor is `scale` in `ir`; no factor if `ir` is 0."""
     return energy / getr(h, ir, scale) if ir != 0 and h.ci[g.LSCALE] != 0 else energy
 
@@ -235,12 +236,13 @@ def over(h: Memory, energy: float, ir: int, scale: Offset) -> float:
 def energy_of_body(h: Memory, ib: int, ir: int) -> float:
     """Twice the energy of motion of block `ib`, which has no grid-points."""
     xd, yd, td = velocities(h, ib)
-    twice = over(h, getr(h, ib, g.KBM) * (xd * xd + yd * yd), ir, g.KRXM)
-    twice += over(h, getr(h, ib, g.KBI) * td * td, ir, g.KRXI)
+    twice = with_inertial_mass(h, getr(h, ib, g.KBM) * (xd * xd + yd * yd), ir, g.KRXM)
+    twice += with_inertial_mass(h, getr(h, ib, g.KBI) * td * td, ir, g.KRXI)
     if iget(h, ib, HEAD) == g.MSDEF:
         ie = iget(h, ib, g.KBEX)
         e11, e12 = np.float64(getr(h, ie, g.KED11)), np.float64(getr(h, ie, g.KED12))
-        twice += over(h, inertia(h, ie, e11, e12, np.float64(getr(h, ie, g.KED22))), ir, g.KRXE)
+        straining = twice_strain_rate_energy(h, ie, e11, e12, np.float64(getr(h, ie, g.KED22)))
+        twice += with_inertial_mass(h, straining, ir, g.KRXE)
     return float(twice)
 
 
@@ -257,12 +259,12 @@ def energy_of_motion(h: Memory) -> float:
             while ig != 0:
                 xd, yd = np.float64(getr(h, ig, g.KXDG)), np.float64(getr(h, ig, g.KYDG))
                 if free:
-                    twice += over(h, getr(h, ig, g.KGPM) * (xd * xd + yd * yd), ir, g.KRXM)
-                ir = following(h, ir)
+                    twice += with_inertial_mass(h, getr(h, ig, g.KGPM) * (xd * xd + yd * yd), ir, g.KRXM)
+                ir = next_relaxation(h, ir)
                 ig = iget(h, ig, g.KG)
         else:
             if free:
                 twice += energy_of_body(h, ib, ir)
-            ir = following(h, ir)
+            ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)
     return twice * 0.5

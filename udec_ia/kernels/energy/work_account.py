@@ -16,9 +16,9 @@ zones is taken at the end of the step instead of around it. Changes of shape are
 a block deforms, its corners are rounded again, which changes overlaps without motion. The laws of motion of a
 simply-deformable block (2.6) assume a constant moment of inertia and Euler tensor, although these change.
 
-Two passes over the model run before and after the block pass. The contact pass calls `note_contact` for each
-contact when its new forces are known and it still has the old ones. All are compiled after ENERGY ON. The
-joint laws sum the work of sliding themselves, since the detection of energy from nowhere needs it as well
+Two passes over the model run before and after the block pass. The contact pass calls `add_contact_work` for
+each contact when its new forces are known and it still has the old ones. All are compiled after ENERGY ON.
+The joint laws sum the work of sliding themselves, since the detection of energy from nowhere needs it as well
 (advice/energy_monitor.py).
 """
 
@@ -33,12 +33,12 @@ from udec_ia.kernels.body.fdef import gradient, next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain
 from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_of
-from udec_ia.kernels.energy.stored_energy import inertia, strain_of_block
+from udec_ia.kernels.energy.stored_energy import block_strain_energy, twice_strain_rate_energy
 from udec_ia.layout import offsets as g
 
 
 @inlined
-def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None:
+def add_work(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None:
     """Work of damping, or of a prescribed velocity, on a mass `m` of velocity `v` and then `u`.
 
     f: the force on it, weight and loads included.
@@ -50,38 +50,40 @@ def note(h: Memory, given: bool, m: float, v: float, u: float, f: float) -> None
 
 
 @kernel
-def note_block(h: Memory, ib: int) -> None:
+def add_block_work(h: Memory, ib: int) -> None:
     """Work on block `ib` as a rigid body."""
     fix, bm = iget(h, ib, g.KBFIX), getr(h, ib, g.KBM)
     xd, yd, td = next_velocity(h, ib)
     fx, fy = getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX], getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
-    note(h, fix & g.GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
-    note(h, fix & g.GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
-    note(h, fix == g.GIVEN_X + g.GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
+    add_work(h, fix & g.GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
+    add_work(h, fix & g.GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
+    add_work(h, fix == g.GIVEN_X + g.GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
 
 
 @kernel
-def note_points(h: Memory, ib: int) -> None:
+def add_point_work(h: Memory, ib: int) -> None:
     """Work on the grid-points of block `ib`."""
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
         fix, m = iget(h, ig, g.KGFIX), getr(h, ig, g.KGPM)
         xd, yd = next_point_velocity(h, ig)
-        note(h, fix & g.ALONG_X != 0, m, getr(h, ig, g.KXDG), xd, getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX])
-        note(h, fix & g.ALONG_Y != 0, m, getr(h, ig, g.KYDG), yd, getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY])
+        add_work(h, fix & g.ALONG_X != 0, m, getr(h, ig, g.KXDG), xd, getr(h, ig, g.KGFX) + m * h.cr[g.GRAVX])
+        add_work(h, fix & g.ALONG_Y != 0, m, getr(h, ig, g.KYDG), yd, getr(h, ig, g.KGFY) + m * h.cr[g.GRAVY])
         ig = iget(h, ig, g.KG)
 
 
 @kernel
-def note_strain(h: Memory, ie: int) -> None:
+def add_strain_work(h: Memory, ie: int) -> None:
     """Damping of the strain rates of extension `ie`."""
     e11, e12, e22 = strain(h, ie)
     u11, u12, u22 = getr(h, ie, g.KED11) + e11, getr(h, ie, g.KED12) + e12, getr(h, ie, g.KED22) + e22
-    h.cd[g.WMASS] += np.float64(h.cr[g.ALPB]) * h.cr[g.TDEL] * 0.25 * inertia(h, ie, u11, u12, u22)
+    h.cd[g.WMASS] += (
+        np.float64(h.cr[g.ALPB]) * h.cr[g.TDEL] * 0.25 * twice_strain_rate_energy(h, ie, u11, u12, u22)
+    )
 
 
 @kernel
-def turning(h: Memory, ib: int, ahead: bool) -> float:
+def spin_energy(h: Memory, ib: int, ahead: bool) -> float:
     """Kinetic energy of spin and strain rates of simply-deformable block `ib` with its present inertia.
 
     ahead: at the rates at the end of the step.
@@ -92,7 +94,7 @@ def turning(h: Memory, ib: int, ahead: bool) -> float:
         _, _, td = next_velocity(h, ib)
         e11, e12, e22 = strain(h, ie)
     w = np.float64(td)
-    of_strain = inertia(h, ie, np.float64(e11), np.float64(e12), np.float64(e22))
+    of_strain = twice_strain_rate_energy(h, ie, np.float64(e11), np.float64(e12), np.float64(e22))
     return (of_strain + getr(h, ib, g.KBI) * w * w) * 0.5
 
 
@@ -136,7 +138,7 @@ def stress_power(h: Memory, ib: int, ahead: bool) -> float:
 
 
 @outlined
-def note_loads(h: Memory) -> bool:
+def add_load_work(h: Memory) -> bool:
     """The same for the loads of the boundary conditions."""
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:
@@ -159,48 +161,48 @@ def note_loads(h: Memory) -> bool:
 
 
 @outlined
-def note_forces(h: Memory) -> bool:
+def add_work_before_motion(h: Memory) -> bool:
     """Before the block pass: work of the present forces."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             kind = iget(h, ib, HEAD)
             if kind == g.MFDEF:
-                note_points(h, ib)
+                add_point_work(h, ib)
             else:
-                note_block(h, ib)
+                add_block_work(h, ib)
             if kind == g.MSDEF:
-                note_strain(h, iget(h, ib, g.KBEX))
-                h.cd[g.WSHAPE] += turning(h, ib, True)
+                add_strain_work(h, iget(h, ib, g.KBEX))
+                h.cd[g.WSHAPE] += spin_energy(h, ib, True)
             if kind != g.MRIG:
                 taken = np.float64(stress_power(h, ib, True)) * h.cr[g.TDEL] * 0.5
-                h.cd[g.WYIELD] += taken + strain_of_block(h, ib)
+                h.cd[g.WYIELD] += taken + block_strain_energy(h, ib)
         ib = iget(h, ib, g.KB)
     return True
 
 
 @outlined
-def note_rigid(h: Memory) -> bool:
+def add_rigid_work(h: Memory) -> bool:
     """The same if all blocks are rigid."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
-            note_block(h, ib)
+            add_block_work(h, ib)
         ib = iget(h, ib, g.KB)
     return True
 
 
 @outlined
-def note_stresses(h: Memory) -> bool:
+def add_work_after_motion(h: Memory) -> bool:
     """After the block pass, when only zones act on grid-points: work of the present stresses."""
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         kind = iget(h, ib, HEAD)
         if kind != g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
             now = np.float64(stress_power(h, ib, False))
-            h.cd[g.WYIELD] += now * h.cr[g.TDEL] * 0.5 - strain_of_block(h, ib)
+            h.cd[g.WYIELD] += now * h.cr[g.TDEL] * 0.5 - block_strain_energy(h, ib)
             if kind == g.MSDEF:
-                h.cd[g.WSHAPE] -= turning(h, ib, False)
+                h.cd[g.WSHAPE] -= spin_energy(h, ib, False)
             elif h.cr[g.BETA] != 0:
                 h.cd[g.WSTIF] += (point_power(h, ib) - now) * h.cr[g.TDEL]
         ib = iget(h, ib, g.KB)
@@ -222,7 +224,7 @@ Pair = tuple[float, float]
 
 
 @inlined
-def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) -> None:
+def add_shape_work(h: Memory, ic: int, fn: float, closing: float, grown: float) -> None:
     """Work against the normal force of contact `ic`, which becomes `fn`, without a change of its overlap.
 
     closing: velocity at which the blocks approach. grown: growth of the overlap. Rigid blocks keep their
@@ -234,7 +236,7 @@ def note_corners(h: Memory, ic: int, fn: float, closing: float, grown: float) ->
 
 
 @inlined
-def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
+def add_dashpot_work(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
     """Work of the dashpots of contact `ic` in this step.
 
     was: closing and sliding velocity half a step ago. now: closing and sliding velocity now. slips: True if
@@ -247,7 +249,7 @@ def note_damping(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> None:
 
 
 @outlined
-def note_contact(
+def add_contact_work(
     h: Memory, ic: int, own: bool, before: float, normal: Pair, velocity: Pair, forces: Pair, dashpots: Pair
 ) -> bool:
     """Work of contact `ic` in this step; it has the forces of the last step and the present overlap.
@@ -261,14 +263,14 @@ def note_contact(
     if own:
         h.cd[g.WSTIF] += (dashpots[0] * closing + dashpots[1] * sliding) * h.cr[g.TDEL]
         if fn != zero and (before > zero or getr(h, ic, g.KCFN) != zero):
-            note_corners(h, ic, fn, closing, overlap - before)
+            add_shape_work(h, ic, fn, closing, overlap - before)
         return True
     if fn != zero and before > zero:
-        note_corners(h, ic, fn, closing, overlap - before)
+        add_shape_work(h, ic, fn, closing, overlap - before)
     if h.cr[g.BETA] != zero:
         was = zero, zero
         if before > zero:
             was_x, was_y = getr(h, ic, g.KXDC), getr(h, ic, g.KYDC)
             was = -(was_x * nx + was_y * ny), was_y * nx - was_x * ny
-        note_damping(h, ic, was, (closing, sliding), dashpots[1] == zero)
+        add_dashpot_work(h, ic, was, (closing, sliding), dashpots[1] == zero)
     return True

@@ -114,7 +114,7 @@ def span(h: Memory, ip: int, z: float) -> float:
 
 
 @inlined
-def bent(
+def is_corner_turn(
     h: Memory, z1: float, c1: float, s1: float, z2: float, c2: float, s2: float, had_radius: bool
 ) -> bool:
     """True if two edges form a corner and not a point of one straight edge.
@@ -165,7 +165,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
                 tight = ip
         rad = real(h, 0.0)
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        if bent(h, z, c1, s1, z2, c2, s2, strained and getr(h, ip, g.KRAD) != 0) and not on_edge:
+        if is_corner_turn(h, z, c1, s1, z2, c2, s2, strained and getr(h, ip, g.KRAD) != 0) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
         if strained and np.sign(rad) != np.sign(getr(h, ip, g.KRAD)):
             flag(h, idomp(h, ib, ip))
@@ -178,7 +178,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
 
 
 @kernel
-def keep_circles(h: Memory, ib: int) -> None:
+def update_circles(h: Memory, ib: int) -> None:
     """Recalculate the circles of block `ib` from its corners.
 
     Circles and corners move separately. In 32-bit reals far from the origin, rounding shifts a creeping block
@@ -192,7 +192,7 @@ def keep_circles(h: Memory, ib: int) -> None:
         if getr(h, ip, g.KRAD) != 0:
             z1, c1, s1 = zcs(h, ip)
             z2, c2, s2 = zcs(h, iq)
-            if bent(h, z1, c1, s1, z2, c2, s2, True):
+            if is_corner_turn(h, z1, c1, s1, z2, c2, s2, True):
                 rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
                 putr(h, ip, g.KRAD, rad)
                 putr(h, ip, g.KXCP, x)
@@ -203,7 +203,7 @@ def keep_circles(h: Memory, ib: int) -> None:
 
 
 @kernel
-def round_anew(h: Memory, ib: int) -> None:
+def round_strained(h: Memory, ib: int) -> None:
     """CRAD for block `ib`, strained in this step. Error 14 if an edge is too short for its roundings."""
     ip = crad(h, ib, True)
     if ip != 0 and h.ci[g.NERR] == 0:

@@ -63,7 +63,7 @@ def _sweep(boxes: Any, n: int, order: Any, pairs: Any) -> int:
 
 
 @kernel
-def meeting(boxes: Any, n: int) -> Any:
+def overlapping_boxes(boxes: Any, n: int) -> Any:
     """Pairs of rows of the first `n` of `boxes` that have a point in common, m x 2."""
     order = stable_order(boxes[:n, LEFT].copy())
     pairs = np.empty((_sweep(boxes, n, order, np.empty((0, 2), np.int64)), 2), np.int64)

@@ -94,7 +94,7 @@ def tangents(h: Memory, ip: int) -> tuple[float, float, float, float]:
 
 
 @kernel
-def past(h: Memory, iq: int, ip: int) -> float:
+def distance_past(h: Memory, iq: int, ip: int) -> float:
     """Distance of the circle of corner `ip` past corner `iq` of another block, clockwise.
 
     Measured along the mean direction of the two edges at `iq`, so zero on their bisector. For a blunt corner
@@ -210,7 +210,7 @@ def meet(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, f
 
 
 @inlined
-def meet_quickly(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
+def meet_inlined(h: Memory, code: int, ip: int, iq: int) -> tuple[float, float, float, float, float, float]:
     """As `meet`, without a call for two corners that their circles represent."""
     one, two, largest = getr(h, ip, g.KRAD), getr(h, iq, g.KRAD), h.cr[g.DTOL] * real(h, BLUNT)
     if min(one, two) > 0 and max(one, two) <= largest:
@@ -229,13 +229,13 @@ def put_place(h: Memory, ic: int, x: float, y: float) -> None:
 def coord(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """Update the coordinates of contact `ic` (COORD); returns normal (x, y), overlap and margin."""
     code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
-    nx, ny, overlap, x, y, margin = meet_quickly(h, code, ip, iq)
+    nx, ny, overlap, x, y, margin = meet_inlined(h, code, ip, iq)
     put_place(h, ic, x, y)
     return nx, ny, overlap, margin
 
 
 @kernel
-def coord_seldom(h: Memory, ic: int) -> tuple[float, float, float, float]:
+def coord_called(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """As `coord`, where it is not done in every cycle."""
     nx, ny, overlap, x, y, margin = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
     put_place(h, ic, x, y)
@@ -243,7 +243,7 @@ def coord_seldom(h: Memory, ic: int) -> tuple[float, float, float, float]:
 
 
 @kernel
-def begin(h: Memory, ic: int) -> None:
+def begin_contact(h: Memory, ic: int) -> None:
     """Set coordinates of contact `ic`, and its overlap as the start of force increments."""
-    _, _, overlap, _ = coord_seldom(h, ic)
+    _, _, overlap, _ = coord_called(h, ic)
     putr(h, ic, g.KCN, overlap)

@@ -19,7 +19,7 @@ def cayley(h: Memory, angle: float) -> tuple[float, float]:
 
 
 @inlined
-def turned(s11: float, s12: float, s22: float, c: float, s: float) -> tuple[float, float, float]:
+def rotated(s11: float, s12: float, s22: float, c: float, s: float) -> tuple[float, float, float]:
     """The tensor rotated anticlockwise by the angle with cosine `c` and sine `s`."""
     cc, cs, ss = c * c, c * s, s * s
     t = cs * (s12 + s12)

@@ -63,7 +63,7 @@ def points_between(h: Memory, x1: float, x2: float, y1: float, y2: float) -> Any
 
 
 @kernel
-def _awaits_zones(h: Memory, ib: int) -> bool:
+def _has_no_zones_yet(h: Memory, ib: int) -> bool:
     """True for a fully-deformable block without zones: no load can act on its edges."""
     return iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) == 0
 
@@ -76,7 +76,7 @@ def _edges(h: Memory, x1: float, x2: float, y1: float, y2: float, found: Any) ->
     while ib != 0:
         ip0 = iget(h, ib, g.KP)
         ip = ip0
-        while not _awaits_zones(h, ib):
+        while not _has_no_zones_yet(h, ib):
             ia = iget(h, ip, g.KR)
             ends = _within(np.float64(getr(h, ia, g.KXP)), np.float64(getr(h, ia, g.KYP)), x1, x2, y1, y2)
             if ends and _within(

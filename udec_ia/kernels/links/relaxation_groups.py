@@ -13,7 +13,7 @@ from udec_ia.layout import offsets as g
 
 
 @inlined
-def following(h: Memory, ir: int) -> int:
+def next_relaxation(h: Memory, ir: int) -> int:
     """The relaxation after `ir`, 0 if there are none."""
     return iget(h, ir, g.KRX) if ir != 0 else int64(0)
 

@@ -37,7 +37,7 @@ def _delete_separating(h: Memory, ib: int) -> None:
 
 
 @kernel
-def _pass_on(h: Memory, ib: int, ic: int, jb: int, after: int) -> None:
+def _move_bridge(h: Memory, ib: int, ic: int, jb: int, after: int) -> None:
     """Move bridge `ic` of block `ib` to block `jb`, after its item `after`, as a virtual contact."""
     take_out(h, ib, ic)
     puti(h, ic, g.KB1 if iget(h, ic, g.KB1) == ib else g.KB2, jb)
@@ -69,7 +69,7 @@ def delb(h: Memory, ib: int) -> None:
             if first == 0:
                 first, jb = item, other(h, ib, item)
             else:
-                _pass_on(h, ib, item, jb, first)
+                _move_bridge(h, ib, item, jb, first)
         item = following
     idm = iget(h, first, g.KD1)
     puti(h, idm, g.KDLOOP, _next_contact(h, jb, first))

@@ -11,10 +11,10 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
 from udec_ia.heap.find_lose import find, lose
-from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.block_shape import geo
-from udec_ia.kernels.geometry.contact_geometry import begin
+from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import (
     dellst,
     flag,
@@ -82,7 +82,7 @@ def losec(h: Memory, ic: int) -> None:
 @kernel
 def to_virtual(h: Memory, ic: int) -> None:
     """Contact `ic`, a bridge of the map, has opened: turn it into a virtual contact."""
-    no_force(h, ic)
+    reset_forces(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
 
@@ -178,7 +178,7 @@ def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int)
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, iad, ic)
     insert_after(h, jb, jad, ic)
-    begin(h, ic)
+    begin_contact(h, ic)
     cut_domain(h, ic, idm)
     return ic
 

@@ -21,7 +21,14 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, puti
 from udec_ia.kernels.geometry.block_shape import zcs
-from udec_ia.kernels.geometry.contact_geometry import ce, coord_seldom, has_no_arc, is_blunt, over_ends, past
+from udec_ia.kernels.geometry.contact_geometry import (
+    ce,
+    coord_called,
+    distance_past,
+    has_no_arc,
+    is_blunt,
+    over_ends,
+)
 from udec_ia.kernels.links.linked_lists import (
     corner_of,
     domain_before,
@@ -58,7 +65,7 @@ def mvfor(h: Memory, ic: int, ib: int, code: int) -> bool:
     take_out(h, ib, ip)
     link(h, ib, prevcp(h, ib, ic), ip)
     link(h, ib, ip, ic)
-    _standing_before(h, ib, ic, iq)
+    _store_corner(h, ib, ic, iq)
     puti(h, ic, g.KCCOD, code)
     return True
 
@@ -78,13 +85,13 @@ def mvbak(h: Memory, ic: int, ib: int, code: int) -> bool:
     take_out(h, ib, ip)
     link(h, ib, ic, ip)
     link(h, ib, ip, after)
-    _standing_before(h, ib, first, ip)
+    _store_corner(h, ib, first, ip)
     puti(h, ic, g.KCCOD, code)
     return True
 
 
 @kernel
-def _standing_before(h: Memory, ib: int, iad: int, ip: int) -> None:
+def _store_corner(h: Memory, ib: int, iad: int, ip: int) -> None:
     """Store corner `ip` in the contacts of block `ib` from `iad` to the corner or a contact that has it."""
     item = iad
     while item != ip and corner_of(h, ib, item) != ip:
@@ -175,13 +182,13 @@ def _off_the_edge(h: Memory, ic: int, ib: int, ip: int, iq: int, along: float, z
     rad = getr(h, ia, g.KRAD)
     if rad > 0 and along < border:
         return mvbak(h, ic, ib, g.CORNER_CORNER)
-    if rad == 0 and past(h, ia, ip) < -h.cr[g.GTOL]:
+    if rad == 0 and distance_past(h, ia, ip) < -h.cr[g.GTOL]:
         return (is_point and _pass_backwards(h, ic, ib, ia, ip)) or mvbak(h, ic, ib, code)
     rad = getr(h, iq, g.KRAD)
     if rad > 0 and z - along < border:
         puti(h, ic, g.KCCOD, g.CORNER_CORNER)
         return True
-    if rad != 0 or past(h, iq, ip) <= h.cr[g.GTOL]:
+    if rad != 0 or distance_past(h, iq, ip) <= h.cr[g.GTOL]:
         return False
     return (is_point and _pass_forwards(h, ic, ib, iq, ip)) or mvfor(h, ic, ib, code)
 
@@ -224,7 +231,7 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     first = has_no_arc(h, ip)
     if first or has_no_arc(h, iq):  # the contact goes to the nearer of the edges at the corner without
         ib, code = (iget(h, ic, g.KB1), g.EDGE_CORNER) if first else (iget(h, ic, g.KB2), g.CORNER_EDGE)
-        ahead = past(h, ip, iq) > 0 if first else past(h, iq, ip) > 0
+        ahead = distance_past(h, ip, iq) > 0 if first else distance_past(h, iq, ip) > 0
         flag(h, iget(h, ic, g.KD1))  # if the corner has become concave, the other edge is touched as well
         flag(h, iget(h, ic, g.KD2))
         if not (ahead and mvfor(h, ic, ib, code)):
@@ -267,9 +274,9 @@ def reclass(h: Memory, ic: int) -> bool:
 @inlined
 def settle(h: Memory, ic: int) -> tuple[float, float, float]:
     """Set code, place and coordinates of contact `ic` by its geometry; returns normal (x, y) and overlap."""
-    nx, ny, overlap, margin = coord_seldom(h, ic)
+    nx, ny, overlap, margin = coord_called(h, ic)
     for _ in range(RECLASSIFICATIONS):
         if (margin >= 0 and h.ci[g.LSHORT] == 0) or not reclass(h, ic):
             break
-        nx, ny, overlap, margin = coord_seldom(h, ic)
+        nx, ny, overlap, margin = coord_called(h, ic)
     return nx, ny, overlap

@@ -32,7 +32,7 @@ COLUMNS = 5
 
 
 @kernel
-def on_arc(h: Memory, ib: int, ic: int) -> bool:
+def is_on_arc(h: Memory, ib: int, ic: int) -> bool:
     """True if contact `ic` lies on the arc of its corner on block `ib` (QUERY)."""
     code = iget(h, ic, g.KCCOD)
     if code == g.CORNER_CORNER:
@@ -52,7 +52,7 @@ def same_segment(h: Memory, iad: int, ip: int, arc: bool) -> bool:
 
 
 @inlined
-def way_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
+def direction_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
     """Clockwise vector along the edge that ends at corner `ip`, or its arc's chord, and its length."""
     if arc and getr(h, ip, g.KRAD) > 0:  # the chord is normal to the line to the centre
         tx, ty = -(getr(h, ip, g.KYCP) - getr(h, ip, g.KYP)), getr(h, ip, g.KXCP) - getr(h, ip, g.KXP)
@@ -63,14 +63,14 @@ def way_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]:
 
 
 @kernel
-def _on_the_arc(h: Memory, ip: int, nx: float, ny: float) -> tuple[float, float]:
+def _point_on_arc(h: Memory, ip: int, nx: float, ny: float) -> tuple[float, float]:
     """Point of the circle of corner `ip` in the direction (nx, ny) from its centre."""
     rad = getr(h, ip, g.KRAD)
     return getr(h, ip, g.KXCP) + nx * rad, getr(h, ip, g.KYCP) + ny * rad
 
 
 @kernel
-def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
+def distance_ahead(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
     """Distance of contact `ic` on a segment of corner `ip` ahead of a contact at (x, y), clockwise.
 
     (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is that of the
@@ -81,9 +81,9 @@ def ahead_by(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: flo
     if arc and getr(h, ip, g.KRAD) > 0:
         iq = iget(h, ic, g.KCP1)
         mx, my, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iq, iget(h, ic, g.KCP2))
-        ax, ay = _on_the_arc(h, ip, nx, ny)
-        bx, by = _on_the_arc(h, ip, mx, my) if iq == ip else _on_the_arc(h, ip, -mx, -my)
-    tx, ty, z = way_along(h, ip, arc)
+        ax, ay = _point_on_arc(h, ip, nx, ny)
+        bx, by = _point_on_arc(h, ip, mx, my) if iq == ip else _point_on_arc(h, ip, -mx, -my)
+    tx, ty, z = direction_along(h, ip, arc)
     return ((bx - ax) * tx + (by - ay) * ty) / z
 
 
@@ -106,13 +106,13 @@ def next_not_virtual(h: Memory, ib: int, iad: int) -> int:
 
 
 @kernel
-def opens_on_arc(h: Memory, ib: int, ic: int) -> bool:
+def starts_on_arc(h: Memory, ib: int, ic: int) -> bool:
     """True if the exposure of block `ib` after contact `ic` begins on an arc, False if on an edge.
 
     A virtual contact has no place: the item before it counts.
     """
     item = not_virtual(h, ib, ic)
-    return not is_corner(h, item) and on_arc(h, ib, item)
+    return not is_corner(h, item) and is_on_arc(h, ib, item)
 
 
 @kernel
@@ -138,7 +138,7 @@ def count_items(h: Memory, idm: int) -> int:
 
 
 @kernel
-def _note(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -> int:
+def _add_segment(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -> int:
     seg[n, BLOCK] = ib
     seg[n, CORNER] = ip
     seg[n, ARC] = arc
@@ -148,10 +148,10 @@ def _note(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -
 
 
 @kernel
-def _note_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
+def _add_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
     """Collect the arc of corner `ip` if it is convex or an edge point; other corners carry no contact."""
     if getr(h, ip, g.KRAD) > 0 or is_edge_point(h, ip):
-        return _note(seg, n, ib, ip, 1, item, piece)
+        return _add_segment(seg, n, ib, ip, 1, item, piece)
     return n
 
 
@@ -167,20 +167,24 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
     n, nties, depth, piece = 0, 0, 0, 0
     way_back = np.empty(len(ties), np.int64)
     corner = corner_of(h, block, item)
-    arc = opens_on_arc(h, block, item)
-    n = _note_arc(h, seg, n, block, corner, item, 0) if arc else _note(seg, n, block, corner, 0, item, 0)
+    arc = starts_on_arc(h, block, item)
+    n = (
+        _add_arc(h, seg, n, block, corner, item, 0)
+        if arc
+        else _add_segment(seg, n, block, corner, 0, item, 0)
+    )
     while True:
         last, before = item, block
         item, block = nextd(h, item, block)
         if is_corner(h, item):
             if not arc:
-                n = _note_arc(h, seg, n, block, item, last, piece)
+                n = _add_arc(h, seg, n, block, item, last, piece)
             arc = False
             corner = next_corner(h, block, item)
-            n = _note(seg, n, block, corner, 0, item, piece)
+            n = _add_segment(seg, n, block, corner, 0, item, piece)
             continue
-        if on_arc(h, before, item) and not arc:
-            n = _note_arc(h, seg, n, before, corner, last, piece)
+        if is_on_arc(h, before, item) and not arc:
+            n = _add_arc(h, seg, n, before, corner, last, piece)
         if item == start and block == first:
             return n, nties
         if iget(h, item, g.KCCOD) == g.VIRTUAL:
@@ -196,15 +200,15 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
                 nties += 1
                 piece = nties
         corner = corner_of(h, block, item)
-        arc = opens_on_arc(h, block, item)
+        arc = starts_on_arc(h, block, item)
         if arc:
-            n = _note_arc(h, seg, n, block, corner, item, piece)
+            n = _add_arc(h, seg, n, block, corner, item, piece)
         else:
-            n = _note(seg, n, block, corner, 0, item, piece)
+            n = _add_segment(seg, n, block, corner, 0, item, piece)
 
 
 @kernel
-def settle_loop(h: Memory, idm: int) -> None:
+def update_loop_geometry(h: Memory, idm: int) -> None:
     """Update codes, places and coordinates of the contacts around domain `idm`, not their forces.
 
     Blocks have moved since the last contact pass; the search needs the present places of contacts.

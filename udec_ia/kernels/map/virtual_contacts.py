@@ -20,9 +20,9 @@ from typing import Any
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
-from udec_ia.kernels.constitutive.joint_laws import no_force
+from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_properties import assign_material
-from udec_ia.kernels.geometry.contact_geometry import begin
+from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import insert_after, is_corner, prevcp, take_out
 from udec_ia.kernels.map.bridge import (
     cut_domain,
@@ -68,8 +68,8 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
     put_contact(h, iv, ib, iad, jb, jad)
     assign_material(h, iv)
     puti(h, iv, g.KCCOD, icod)
-    no_force(h, iv)
-    begin(h, iv)
+    reset_forces(h, iv)
+    begin_contact(h, iv)
     h.ci[g.NVIRT] -= 1
     h.ci[g.NMADE] += 1
 
@@ -141,7 +141,7 @@ def cut_among_pieces(
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, iad, ic)
     insert_after(h, jb, jad, ic)
-    begin(h, ic)
+    begin_contact(h, ic)
     new_is_left = left_is_shorter(h, ic)
     idnew = cut_domain(h, ic, idm)
     inner, outer = (jb, ib) if new_is_left else (ib, jb)

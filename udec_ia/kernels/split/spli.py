@@ -31,7 +31,7 @@ from udec_ia.kernels.links.linked_lists import (
     to_front,
 )
 from udec_ia.kernels.map.bridge import makec, maked
-from udec_ia.kernels.map.domain_segments import on_arc
+from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 
 
@@ -71,7 +71,7 @@ def corner_on_edge(h: Memory, ib: int, iq: int, x: float, y: float) -> int:
     ip = makep(h, ib, x, y)
     last = ia
     item = iget(h, ia, g.KL)
-    while item != iq and not on_arc(h, ib, item):
+    while item != iq and not is_on_arc(h, ib, item):
         if (getr(h, item, g.KXC) - ax) * tx + (getr(h, item, g.KYC) - ay) * ty > here:
             break
         set_corner_of(h, ib, item, ip)
@@ -94,14 +94,14 @@ def _before_cut(h: Memory, ib: int, ip: int, nx: float, ny: float) -> int:
     while is_contact(h, item):
         if iget(h, item, g.KCCOD) != g.VIRTUAL:
             dx, dy = getr(h, item, g.KXC) - getr(h, ip, g.KXP), getr(h, item, g.KYC) - getr(h, ip, g.KYP)
-            if not on_arc(h, ib, item) or dx * nx + dy * ny < 0:
+            if not is_on_arc(h, ib, item) or dx * nx + dy * ny < 0:
                 break
         item = prevcp(h, ib, item)
     return item
 
 
 @kernel
-def _claim(h: Memory, ib: int, jb: int, iad: int, last: int) -> None:
+def _move_items(h: Memory, ib: int, jb: int, iad: int, last: int) -> None:
     """Move the items from `iad` to `last` from block `ib` to block `jb`."""
     item = int64(iad)
     while True:
@@ -162,7 +162,7 @@ def _to_twin(h: Memory, ib: int, crack: int, first: int, last: int, twin: int) -
 
 
 @kernel
-def _beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
+def _contacts_beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
     """First and last contact between item `last` and corner `ip`; 0 and 0 if there is none."""
     first = nextcp(h, ib, last)
     if first == ip:
@@ -182,8 +182,8 @@ def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     dx, dy = getr(h, iz, g.KXP) - getr(h, ia, g.KXP), getr(h, iz, g.KYP) - getr(h, ia, g.KYP)
     ua = _before_cut(h, ib, ia, -dy, dx)
     uz = _before_cut(h, ib, iz, dy, -dx)
-    firsta, lasta = _beyond(h, ib, ua, ia)
-    firstz, lastz = _beyond(h, ib, uz, iz)
+    firsta, lasta = _contacts_beyond(h, ib, ua, ia)
+    firstz, lastz = _contacts_beyond(h, ib, uz, iz)
     wa, wz = iget(h, ia, g.KL), iget(h, iz, g.KL)
     ida, idz = idomp(h, ib, ua), idomp(h, ib, uz)
     jb = new_block(h, iget(h, ib, g.KMAT), iget(h, ib, g.KCONS))
@@ -193,9 +193,9 @@ def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     crack = maked(h)
     ca = makec(h, jb, ib, g.CORNER_CORNER, crack, ida)
     cz = makec(h, jb, ib, g.CORNER_CORNER, idz, crack)
-    _claim(h, ib, jb, wa, uz)
+    _move_items(h, ib, jb, wa, uz)
     if firsta != 0:
-        _claim(h, ib, jb, firsta, lasta)
+        _move_items(h, ib, jb, firsta, lasta)
     puti(h, iz, g.KNB, jb)
     puti(h, ta, g.KNB, jb)
     _to_twin(h, jb, ca, firsta, lasta, ta)

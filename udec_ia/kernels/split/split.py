@@ -21,7 +21,7 @@ from udec_ia.compiling.non_inlined_calls import call_entry, entry
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.mass_distribution import share_extension
-from udec_ia.kernels.contact.map_changes import ALL, NOBODY, change_map, restart
+from udec_ia.kernels.contact.map_changes import ALL, NONE_WAITING, change_map, update_geometry
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.block_shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
@@ -109,7 +109,7 @@ def _settle_crack(h: Memory, ic: int) -> None:
         puti(h, ic, g.KCCOD, g.EDGE_CORNER)
     elif getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0:
         puti(h, ic, g.KCCOD, g.CORNER_EDGE)
-    restart(h, ic)
+    update_geometry(h, ic)
 
 
 @kernel
@@ -127,7 +127,7 @@ def _settle_around(h: Memory, ib: int, ip: int) -> None:
             if iget(h, item, g.KCCOD) != g.VIRTUAL:
                 if abs(getr(h, item, g.KXC) - x) + abs(getr(h, item, g.KYC) - y) > reach + reach:
                     break
-                restart(h, item)
+                update_geometry(h, item)
             item = following
 
 
@@ -159,7 +159,11 @@ def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
-    return updating(h), entry(change_map, h, NOBODY, ALL), entry(share, h, 0, 0) if soft is not None else 0
+    return (
+        updating(h),
+        entry(change_map, h, NONE_WAITING, ALL),
+        entry(share, h, 0, 0) if soft is not None else 0,
+    )
 
 
 @kernel

@@ -13,9 +13,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.body.boundary_conditions import push_loads
+from udec_ia.kernels.body.boundary_conditions import add_loads
 from udec_ia.kernels.body.mass_distribution import share_mass, zone_means
-from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.block_shape import geo
@@ -90,7 +90,7 @@ def _change_types(array: MainArray, changing: list[int], kind: int) -> None:
         become(h, ib, g.MSDEF)
     if h.ci[g.MCTOT] > 0:
         renew_forces(array)
-        push_loads(h, h.cr.dtype.type(0))
+        add_loads(h, h.cr.dtype.type(0))
         for ib in rigid:
             stress = applied_stress(h, ib)
             check_real_range(array, f"the stress in block@{ib}", stress)
@@ -153,7 +153,7 @@ def _lose_zones(h: Memory, ib: int) -> None:
     for k, value in ((g.KX, x), (g.KY, y), (g.KBI, second), (g.KTD, turning / second if second else 0.0)):
         putr(h, ib, k, value)
     renew_reach(h, ib)
-    carry_corners(h, ib)
+    set_corner_velocities(h, ib)
 
 
 def applied_stress(h: Memory, ib: int) -> Stress:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from udec_ia.errors import OVERLAP_TOO_GREAT, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.contact.map_changes import ALL, NOBODY, change_map
+from udec_ia.kernels.contact.map_changes import ALL, NONE_WAITING, change_map
 from udec_ia.kernels.detect.contact_search import deep_overlap
 from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.block_shape import span, zcs
@@ -94,7 +94,7 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
 
 def refresh(array: MainArray) -> None:
     """Update contacts and domains for a changed rounding length."""
-    change_map(array.h, NOBODY, ALL)
+    change_map(array.h, NONE_WAITING, ALL)
     flag_all(array.h)
     bring_up(array)
 

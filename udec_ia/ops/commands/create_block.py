@@ -11,7 +11,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.block_shape import density_of, makeb
-from udec_ia.kernels.geometry.box_sweep import meeting
+from udec_ia.kernels.geometry.box_sweep import overlapping_boxes
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
@@ -117,7 +117,7 @@ def _near(array: MainArray, edges: Sequence[tuple[Point, Point]]) -> list[tuple[
     boxes = np.hstack([ends.min(axis=1), ends.max(axis=1)])
     if np.ptp(boxes[:, 1]) > np.ptp(boxes[:, 0]):  # the sweep is along x
         boxes = boxes[:, [1, 0, 3, 2]]
-    pairs = np.sort(meeting(np.ascontiguousarray(boxes), len(boxes)), axis=1)
+    pairs = np.sort(overlapping_boxes(np.ascontiguousarray(boxes), len(boxes)), axis=1)
     return [(i, j) for i, j in pairs[np.lexsort(pairs.T[::-1])].tolist()]
 
 

@@ -16,7 +16,12 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.energy.stored_energy import height, kinetic, strain_of_blocks, strain_of_contacts
+from udec_ia.kernels.energy.stored_energy import (
+    contact_strain_energy,
+    kinetic_energy,
+    potential_energy,
+    strain_energy_of_blocks,
+)
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.deformable_scene import soft
 from udec_ia.ops.common.number_limits import check_real_range
@@ -102,12 +107,12 @@ def end(array: MainArray) -> None:
     if h.ci[g.LENER]:
         with np.errstate(over="ignore"):
             h.cd[g.ESTOR] = sum(_stored(h))
-            h.cd[g.EPOT] = float(height(h)) - float(h.cd[g.EREF])
+            h.cd[g.EPOT] = float(potential_energy(h)) - float(h.cd[g.EREF])
 
 
 def _height(array: MainArray) -> float:
     """Potential of gravity against the origin. Error 28 if 64-bit reals cannot hold it."""
-    potential = float(height(array.h))
+    potential = float(potential_energy(array.h))
     check_real_range(array, "the potential of gravity", [potential], SUM_BITS)
     return potential
 
@@ -122,7 +127,11 @@ def _energy(array: MainArray) -> float:
 def _stored(h: Memory) -> tuple[float, float, float]:
     """Kinetic energy, and strain energy of contacts and of blocks."""
     kinds = soft(h)
-    return float(kinetic(h, kinds)), float(strain_of_contacts(h)), float(strain_of_blocks(h, kinds))
+    return (
+        float(kinetic_energy(h, kinds)),
+        float(contact_strain_energy(h)),
+        float(strain_energy_of_blocks(h, kinds)),
+    )
 
 
 def _put_in(h: Memory, energy: float) -> float:

@@ -19,7 +19,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import share_mass
-from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.geometry.block_shape import crad, geo
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.split.spli import corner_on_edge
@@ -308,7 +308,7 @@ def _set_in_motion(h: Memory, ib: int) -> None:
     for ig, rx, ry in points:
         putr(h, ig, g.KXDG, xd - td * ry)
         putr(h, ig, g.KYDG, yd + td * rx)
-    carry_corners(h, ib)
+    set_corner_velocities(h, ib)
 
 
 def _arms(h: Memory, ib: int) -> list[tuple[int, float, float]]:

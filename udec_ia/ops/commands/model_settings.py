@@ -8,7 +8,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import greatest_block
-from udec_ia.kernels.body.motion import carry_corners
+from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
 from udec_ia.layout import offsets as g
@@ -151,7 +151,7 @@ def _stop(h: Memory, ib: int) -> None:
     """Set all velocities and strain rates of block `ib`, its corners and grid-points to 0."""
     for k in (g.KXD, g.KYD, g.KTD):
         putr(h, ib, k, 0.0)
-    carry_corners(h, ib)
+    set_corner_velocities(h, ib)
     ie = iget(h, ib, g.KBEX)
     if iget(h, ib, HEAD) == g.MSDEF:
         put_strain_rate(h, ie, *[h.cr.dtype.type(0)] * 3)

@@ -12,8 +12,8 @@ import math
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
 from udec_ia.heap.find_lose import lose
-from udec_ia.kernels.contact.map_changes import restart
-from udec_ia.kernels.detect.third_block_in_gap import give_up
+from udec_ia.kernels.contact.map_changes import update_geometry
+from udec_ia.kernels.detect.third_block_in_gap import delete_contact
 from udec_ia.kernels.geometry.block_shape import crad, is_edge_point
 from udec_ia.kernels.links.linked_lists import (
     corner_of,
@@ -23,7 +23,7 @@ from udec_ia.kernels.links.linked_lists import (
     set_corner_of,
     take_out,
 )
-from udec_ia.kernels.map.domain_segments import on_arc
+from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.block_ranges import items
 
@@ -89,8 +89,8 @@ def _take_point_out(h: Memory, ib: int, ip: int) -> None:
         set_corner_of(h, ib, ic, iq)
         if iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
             puti(h, ic, g.KCCOD, g.EDGE_CORNER if iget(h, ic, g.KB1) == ib else g.CORNER_EDGE)
-        elif on_arc(h, ib, ic):
-            give_up(h, iget(h, ic, g.KD1), ic)
+        elif is_on_arc(h, ib, ic):
+            delete_contact(h, iget(h, ic, g.KD1), ic)
     take_out(h, ib, ip)
     puti(h, iq, g.KR, iget(h, ip, g.KR))
     puti(h, ib, g.KP, iq)
@@ -103,6 +103,6 @@ def flag_around(h: Memory, ib: int) -> None:
     for ic in items(h, ib):
         if not is_corner(h, ic):
             if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-                restart(h, ic)
+                update_geometry(h, ic)
             flag(h, iget(h, ic, g.KD1))
             flag(h, iget(h, ic, g.KD2))
