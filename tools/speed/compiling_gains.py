@@ -37,24 +37,14 @@ m.save("slab.h5")
 """
 PARTS = {  # of each: the command, what leaves it out, and the environment that does
     "linking": (COLD, "", {"UDEC_LINK": "plain"}),
-    "signatures found once": (
-        COLD,
-        "from udec_ia.compiling import linking\nlinking._CachedSignatures = lambda context: context",
-        {},
-    ),
     "no search for closures": (
         COLD,
-        "from udec_ia.compiling import linking\nlinking.NOT_IN_KERNELS = ()",
-        {},
-    ),
-    "rare garbage collection": (
-        COLD,
-        "from udec_ia.compiling import compile_time\ncompile_time.RARELY = 10",
+        "from udec_ia.compiling import kernel_linking\nkernel_linking.NOT_IN_KERNELS = ()",
         {},
     ),
     "outlined calls": (
         COLD,
-        "from udec_ia.compiling import outlined_calls as o\nfrom udec_ia.kernels.drive import cycle\n"
+        "from udec_ia.compiling import non_inlined_calls as o\nfrom udec_ia.kernels.drive import cycle\n"
         "cycle.entry_if = lambda wanted, kernel, *args: o.entry(kernel, *args)",
         {},
     ),

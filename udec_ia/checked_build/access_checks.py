@@ -1,12 +1,9 @@
 """The checked build: accessors that test each address before they use it, and the error if it is wrong.
 
-A word of IA() has no type of its own. So another array beside IA() has a small number for each word: the
-kind of the group that begins there. FIND and LOSE update it. Where the words came from elsewhere, such as a
-restart file, it is made anew from the pointers.
-
-An access is right if a group of the kind that has the field begins at the address. All of a group lies below
-MFREE, as FIND places it there; what was given back is a junk group. The first access that is not right ends
-the kernel, before anything is read or written there.
+Another array beside IA() has a small number for each word: the kind of the group that begins there. FIND and
+LOSE update it. Where the words came from elsewhere, as from a restart file, it is made anew from the
+pointers. An access is right if a group of the kind that has the field begins at the address. The first access
+that is not right ends the kernel, before anything is read or written there.
 """
 
 from __future__ import annotations

@@ -1,13 +1,10 @@
 """Invariant 6: what belongs together names each other, and belongs to the same block.
 
-    links between corners and grid-points are mutual
-    the corners and grid-points that a group names are those of its own block
-    every corner of a block with zones has a grid-point, and no other has; a point of an edge is not rounded
-    the zones of a block fill it side to side: every side of a zone is that of one other zone, the other way
-    round, or an edge of the outline; every edge is such a side; every grid-point belongs to a zone
-
-Sides that pair so close the surface but for the outline. So the areas of the zones add up to that of the
-outline, and if none is turned over (invariant 7) there is neither gap nor overlap.
+Links between corners and grid-points are mutual, and a group names corners and grid-points of its own block.
+Every corner of a block with zones has a grid-point, and no other has; a point of an edge is not rounded. The
+zones fill their block: every side of a zone is that of one other zone, the other way round, or an edge of the
+outline; every edge is such a side; every grid-point belongs to a zone. So the areas of the zones add up to
+that of the outline, and if none is turned over (invariant 7) there is neither gap nor overlap.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ def outlines(state: State) -> Outlines | None:
     sound = np.logical_and.reduceat(usable, np.cumsum(count) - count) & (count > 2)
     if not sound.any():
         return None
-    kept = np.repeat(sound, count)
+    chosen = np.repeat(sound, count)
     on_edge = np.append(state.column("gridpoint", "KGEDGE"), 0) == 1  # one more, for row -1
     grid_point = state.rows("gridpoint", state.column("corner", "KGP")[rows])
     block, count = rings.block[sound], count[sound]
@@ -60,16 +60,16 @@ def outlines(state: State) -> Outlines | None:
         high=np.empty((len(block), 2)),
         fine=np.empty(len(block)),
         slack=np.empty(len(block)),
-        corner=corners[kept],
+        corner=corners[chosen],
         owner=owner,
         before=np.where(here == first[owner], last[owner], here - 1),
         after=np.where(here == last[owner], first[owner], here + 1),
-        p=p[kept],
-        c=c[kept],
+        p=p[chosen],
+        c=c[chosen],
         t=np.empty((len(owner), 2)),
         z=np.empty(len(owner)),
-        r=r[kept],
-        pointed=on_edge[grid_point[kept]],
+        r=r[chosen],
+        pointed=on_edge[grid_point[chosen]],
         d=state.tolerance("DTOL"),
         g=state.tolerance("GTOL"),
     )

@@ -137,7 +137,7 @@ class State(Lists):
         return float(self.h.cr[getattr(g, name)])
 
     def column(self, kind: str, name: str, i: int = 0) -> Numbers:
-        """The same of all groups of `kind` in use; it is read once and kept."""
+        """The same of all groups of `kind` in use; it is read only once."""
         key = f"{name}+{i}"
         if key not in self._columns:
             self._columns[key] = self.read(self.address[kind], name, i)

@@ -23,7 +23,7 @@ def check_bounds(state: State) -> None:
     if len(state.address["bound"]):
         _check_places(state)
         _check_edges(state)
-    _check_held(state)
+    _check_velocities(state)
     _check_signals(state)
 
 
@@ -62,8 +62,8 @@ def _check_edges(state: State) -> None:
             state.report(6, f"{text}, but bound@{bounds[one][k]} beside it, on that corner, names no edge")
 
 
-def _check_held(state: State) -> None:
-    """Velocities are held where conditions give them, and nowhere else; a fixed block is at rest."""
+def _check_velocities(state: State) -> None:
+    """Velocities are fixed where conditions give them, and nowhere else; a fixed block is at rest."""
     given, on_point = state.column("bound", "KUFIX"), state.column("bound", "KUG") != 0
     of_blocks = np.where(given & g.ALONG_X, g.GIVEN_X, 0) | np.where(given & g.ALONG_Y, g.GIVEN_Y, 0)
     fixed = state.column("block", "KBFIX") == g.FIXED
@@ -75,9 +75,9 @@ def _check_held(state: State) -> None:
         acts = acts & (row >= 0)
         due = np.zeros(len(state.address[kind]), np.int64)
         np.bitwise_or.at(due, row[acts], codes[acts])
-        held = state.column(kind, field)
-        for k in np.flatnonzero((held != due) & ~exempt):
-            text = f"{field} of {kind}@{state.address[kind][k]} is {held[k]}"
+        stored = state.column(kind, field)
+        for k in np.flatnonzero((stored != due) & ~exempt):
+            text = f"{field} of {kind}@{state.address[kind][k]} is {stored[k]}"
             state.report(6, f"{text}, but conditions give it the velocities {due[k]}")
     moving = np.any([state.column("block", name) != 0 for name in ("KXD", "KYD", "KTD")], axis=0)
     for k in np.flatnonzero(fixed & moving):

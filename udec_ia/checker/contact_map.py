@@ -2,12 +2,10 @@
 
 Every contact can be passed in two ways: from the list of KB1 to that of KB2, and back. To go on along a block
 to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
-of the map, and each must be the loop of one domain.
-
-A domain is on the left of its loop, so the polygon of the loop has a positive area, but for the overlaps. The
-outer domain has minus the area of all that it encloses: no other is as low. The loop passes a virtual contact
-in both directions, so each block's part counts as if it closed at the item before the contact. After an error
-that let blocks into each other areas prove nothing, and this is left out.
+of the map, and each must be the loop of one domain. A domain is on the left of its loop, so only the outer
+domain has a negative area. The loop passes a virtual contact in both directions, so each block's part counts
+as if it closed at the item before the contact. After an error that let blocks into each other areas prove
+nothing.
 """
 
 from __future__ import annotations
@@ -117,10 +115,10 @@ def _check_virtual(state: State) -> None:
 
 
 def _passages(state: State) -> Numbers:
-    """For each passage the next one around its domain.
+    """For each passage the next one around its domain; the last stands for blocks whose list is broken.
 
     Passage 2 row + side is that of the contact in `row` after which block KB1 (side 0) or KB2 (side 1) is
-    walked. One more at the end stands for all that leads to a block whose list is broken.
+    walked.
     """
     rings = state.rings
     nowhere = 2 * len(state.address["contact"])

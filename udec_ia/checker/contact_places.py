@@ -34,9 +34,9 @@ TOUCHING, UNLIKE = InterpretWhenSmall(touching, 5e5), InterpretWhenSmall(wrong_c
 class Touches(NamedTuple):
     """The contacts that can be compared with the outlines; arrays with one element for each.
 
-    row: row among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the
-    outlines; overlap, point: from the outlines, the point in the middle of the overlap; slack: what they may
-    be off by rounding, also because SPLIT has made the circles anew.
+    row: among the contacts in use; code; i, j: index of KCP1 and KCP2 among the corners of the outlines;
+    overlap, point: from the outlines; slack: what they may be off by rounding, also because SPLIT has made
+    the circles anew.
     """
 
     row: Numbers
@@ -84,7 +84,7 @@ def check_contacts(state: State, o: Outlines, touch: Touches) -> None:
             )
 
 
-STANDING = InterpretWhenSmall(locate_on_outlines, 2e5)  # contacts
+LOCATE = InterpretWhenSmall(locate_on_outlines, 2e5)  # contacts
 ON_EDGE = g.EDGE_CORNER, g.CORNER_EDGE  # codes of contacts on an edge of block KB1, and of block KB2
 DISORDERED = InterpretWhenSmall(contacts_out_of_order, 2e6)  # items
 
@@ -102,7 +102,7 @@ def place(o: Outlines, touch: Touches, side: int) -> Numbers:
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     places = np.empty((len(k), 4))
-    STANDING(len(k), o, touch.code, k, other, ON_EDGE[side], places)
+    LOCATE(len(k), o, touch.code, k, other, ON_EDGE[side], places)
     return places.T
 
 
@@ -156,9 +156,8 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     """Contacts between two corners follow each other clockwise.
 
     Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
-    the program compares them along its chord. Only two closed contacts with different blocks can be made up
-    to ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through, and
-    an open contact would be given up.
+    the program compares them along its chord. Only two closed contacts with different blocks can be up to
+    ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through.
     """
     rings, contacts = state.rings, state.address["contact"][touch.row]
     index = np.where(state.column("contact", "KCCOD") == g.VIRTUAL, INDEX(PASSED_OVER), INDEX(-1))

@@ -13,9 +13,8 @@
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
 
-What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say,
-the checker comes to an end and raises nothing.
-`unjudged` states what is left out and why: a state may be unfinished, or beyond what an invariant can prove.
+What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say, the
+checker comes to an end and raises nothing.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 """Invariant 8: no two blocks overlap or touch without a contact between them.
 
-Found from the outlines alone: all pairs of blocks whose boxes overlap, and of these all pairs of an arc with
-an edge or another arc. Every point where the outlines meet needs a contact of the two blocks nearby; nearer
-to it than FTOL there is never a second one. A blunt arc that touches by one end may come to touch by the
-other: until its domain is updated, that is for an overlap of up to ETOL, one contact stands for both. So it
-does for the edge beside a blunt arc, for ETOL along the edge.
+Every point where the outlines of two blocks meet, an arc with an edge or with another arc, needs a contact of
+the two nearby; nearer to it than FTOL there is never a second one. A blunt arc that touches by one end may
+come to touch by the other, or by the edge beside it: until its domain is updated, that is for an overlap of
+up to ETOL, one contact stands for both.
 
 Outlines meet if they do so to the rounding of one calculation; a gap wider than GTOL never counts. A narrower
 gap, or an overlap of up to FTOL, needs no contact if a third block stands in it: deeper than the tips are
@@ -77,10 +76,10 @@ def check_complete(state: State, o: Outlines, touch: Touches) -> None:
     for pairs in _close_blocks(o):
         contacts = joined.contacts(*pairs.T)
         _check_meetings(state, o, joined, pairs, contacts)
-        apart = pairs[contacts[:, 1] == 0]
-        cross = np.zeros(len(apart), bool)
-        CROSSING(len(apart), o, apart, cross)
-        for one, two in apart[cross].tolist():
+        unjoined = pairs[contacts[:, 1] == 0]
+        cross = np.zeros(len(unjoined), bool)
+        CROSSING(len(unjoined), o, unjoined, cross)
+        for one, two in unjoined[cross].tolist():
             if not _thin_tips(state, o, joined, one, two):
                 pair = f"block@{o.block[one]} and block@{o.block[two]}"
                 state.report(8, f"{pair} overlap, but there is no contact between them")

@@ -1,12 +1,9 @@
 """Which build of the kernels runs, compiled or interpreted, ordinary or checked; and when numba is loaded.
 
-The environment decides. NUMBA_DISABLE_JIT=1 has all kernels run as Python. UDEC_CHECKED=1, or the option
-`--checked`, chooses the checked build, whose package `checked_build` an ordinary build never imports.
-UDEC_LINK=plain has kernels compiled without our own linking.
-
-numba is loaded when the first kernel is to run compiled, as loading it takes longer than to look into a
-restart file. So the compiled form of a function such as `iget` stands in a file of its own, and the decorator
-`numba_form` names it.
+The environment decides: NUMBA_DISABLE_JIT=1 for Python, UDEC_CHECKED=1 (or `--checked`) for the checked
+build, UDEC_LINK=plain for kernels without our own linking. numba is loaded when the first kernel is to run
+compiled, as that takes longer than to look into a restart file. So the compiled form of a function such as
+`iget` stands in a file of its own, and the decorator `numba_form` names it.
 """
 
 from __future__ import annotations
@@ -62,8 +59,8 @@ def checked_build(part: str) -> Any:
 def offset(name: str, words: tuple[int, ...], kind: str, count: int = 1) -> Any:
     """The offsets `words` of a field that is not in the table, as kernels of this build take them.
 
-    kind: of the groups that have it; "headed" for groups with a head code, "junk group", "any". count: of its
-    elements. The last two are for the checked build.
+    kind: of the groups that have it; "headed" for groups with a head code, "junk group", "any". count:
+    elements.
     """
     return checked_build("tagged_offsets").tagged(name, words, kind, count) if CHECKED else words
 
@@ -75,10 +72,7 @@ def forget_kinds(ia: Any) -> None:
 
 
 def at_offset(k: int, kind: int, own: Any) -> Any:
-    """Offset of number `k`, counted from 1, of groups of the kind with the number `kind`.
-
-    own: an offset in the routine that calls this, from which the checked build takes the name of the routine.
-    """
+    """Offset of number `k`, from 1, of groups of a kind. own: an offset of the routine that calls this."""
     return k, k, k
 
 

@@ -1,13 +1,9 @@
 """The cache of machine code on disk: one file for each kernel and types of its arguments.
 
-numba's own cache looks at the kernel's own file only: change an offset, or a function that the kernel calls,
-and it would go on running the old machine code. So the cache is in a folder named by a hash of the field
-table and of every source file that kernels can depend on: any change starts afresh, and two copies of the
-same sources share what is in it.
-
-numba numbers its files and keeps an index of them. Two processes that compile at the same time may take the
-same number, and what one of them has compiled is then found under the name of the other. Here a file is named
-by the types, and contains for which types it is.
+numba's own cache looks at the kernel's own file only, and would run old machine code after a change of an
+offset or of a function that the kernel calls. So the folder is named by a hash of the field table and of
+every source file that kernels can depend on. numba numbers its files, and two processes that compile at the
+same time may take the same number. Here a file is named by the types, and contains for which types it is.
 """
 
 from __future__ import annotations
@@ -79,9 +75,8 @@ class CodeFile(IndexDataCacheFile):
 class _Cache(FunctionCache):
     """Where numba looks for the machine code of a kernel before it compiles it. folder: of our files.
 
-    numba prepares itself to compile before it asks, which takes longer than to read a dozen kernels. What
-    machine code needs to run, which is numba's memory for arrays, is prepared here, and the rest if there is
-    no file.
+    What machine code needs to run, numba's memory for arrays, is prepared at once; what numba needs to
+    compile, which takes longer than to read a dozen kernels, only if there is no file.
     """
 
     def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:

@@ -43,10 +43,9 @@ OF_CHECKED_BUILD = [("kinds", types.int8), ("notes", types.int64)] if CHECKED el
 class MemoryType(types.Type):
     """Compiled type of Memory for one word scheme; `dtypes` are those of its five arrays.
 
-    An array of numba is seven words and a reference count, and every kernel takes the memory as an argument.
-    So Memory is four bare addresses, which stay in registers, and nothing is counted. `ra` has the address of
-    `ia`, and only getr and putr use it. The arrays live while a kernel runs because its caller holds the
-    Memory; a kernel never stores or returns one.
+    It is four bare addresses, which stay in registers, where an array of numba is seven words and a reference
+    count. `ra` has the address of `ia`, and only getr and putr use it. The caller of a kernel holds the
+    arrays.
     """
 
     def __init__(self, *dtypes: Any) -> None:
@@ -104,26 +103,6 @@ def which_type(h: MemoryType) -> tuple[int, int]:
     return ratio >> 1, ratio.bit_length() - 1
 
 
-def _compile(accessor: Callable[..., Any], typed: Callable[..., Any], write: Callable[..., Any]) -> None:
-    """Have numba compile `accessor` to the instructions that `write` writes.
-
-    typed: called with the types of the arguments in a call, it returns those of result and arguments.
-    """
-    named = parameters(accessor)
-
-    class _Template(AbstractTemplate):
-        key = accessor
-
-        def generic(self, args: Any, kws: Any) -> Any:
-            bound = named.bind(*args, **kws)
-            bound.apply_defaults()
-            result, *wanted = typed(*bound.args)
-            return signature(result, *wanted).replace(pysig=named)
-
-    infer_global(accessor, types.Function(_Template))
-    lower_builtin(accessor, MemoryType, types.VarArg(types.Any))(write)
-
-
 def _number(context: Any, builder: Any, k: Any, kind: Any, j: int) -> Any:
     """Element `j` of the offset `k`, less 1: a literal in the code, as offsets are known when it is made."""
     word = context.cast(builder, builder.extract_value(k, j), kind[j], INDEX)
@@ -150,61 +129,61 @@ def _real(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return builder.gep(reals, [builder.add(first, _number(context, builder, k, sig.args[2], j))])
 
 
-def compile_iget(iget: Callable[..., Any]) -> None:
-    """An integer of IA() is loaded."""
-
-    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        kind = sig.args[0].dtypes[0]
-        word = context.unpack_value(builder, kind, _integer(context, builder, sig, args))
-        return context.cast(builder, word, kind, types.int64)
-
-    _compile(iget, lambda h, iad, k, i: (types.int64, h, INDEX, k, INDEX), write)
+def _load_integer(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    kind = sig.args[0].dtypes[0]
+    word = context.unpack_value(builder, kind, _integer(context, builder, sig, args))
+    return context.cast(builder, word, kind, types.int64)
 
 
-def compile_puti(puti: Callable[..., Any]) -> None:
-    """An integer of IA() is stored."""
-
-    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        context.pack_value(builder, sig.args[0].dtypes[0], args[3], _integer(context, builder, sig, args))
-        return context.get_dummy_value()
-
-    _compile(puti, lambda h, iad, k, n, i: (types.none, h, INDEX, k, h.dtypes[0], INDEX), write)
+def _store_integer(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    context.pack_value(builder, sig.args[0].dtypes[0], args[3], _integer(context, builder, sig, args))
+    return context.get_dummy_value()
 
 
-def compile_getr(getr: Callable[..., Any]) -> None:
-    """A real of IA() is loaded."""
-
-    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return context.unpack_value(builder, sig.return_type, _real(context, builder, sig, args))
-
-    _compile(getr, lambda h, iad, k: (h.dtypes[1], h, INDEX, k), write)
+def _load_real(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    return context.unpack_value(builder, sig.return_type, _real(context, builder, sig, args))
 
 
-def compile_putr(putr: Callable[..., Any]) -> None:
-    """A real of IA() is stored."""
-
-    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        context.pack_value(builder, sig.args[0].dtypes[1], args[3], _real(context, builder, sig, args))
-        return context.get_dummy_value()
-
-    _compile(putr, lambda h, iad, k, v: (types.none, h, INDEX, k, h.dtypes[1]), write)
+def _store_real(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    context.pack_value(builder, sig.args[0].dtypes[1], args[3], _real(context, builder, sig, args))
+    return context.get_dummy_value()
 
 
-def compile_size_of(size_of: Callable[..., Any]) -> None:
-    """The size of a group is a literal."""
-
-    def write(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        j, _ = which_type(sig.args[0])
-        return context.cast(builder, builder.extract_value(args[1], j), sig.args[1][j], types.int64)
-
-    _compile(size_of, lambda h, nv: (types.int64, h, nv), write)
+def _size(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    j, _ = which_type(sig.args[0])
+    return context.cast(builder, builder.extract_value(args[1], j), sig.args[1][j], types.int64)
 
 
-def compile_real(real: Callable[..., Any]) -> None:
-    """A number is converted to a real of the scheme."""
-    _compile(
-        real, lambda h, value: (h.dtypes[3], h, h.dtypes[3]), lambda context, builder, sig, args: args[1]
-    )
+def _number_as_it_is(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    return args[1]
+
+
+ACCESSORS: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
+    # by name: types of the result and of the arguments for those in a call, and what writes the instructions
+    "iget": (lambda h, iad, k, i: (types.int64, h, INDEX, k, INDEX), _load_integer),
+    "puti": (lambda h, iad, k, n, i: (types.none, h, INDEX, k, h.dtypes[0], INDEX), _store_integer),
+    "getr": (lambda h, iad, k: (h.dtypes[1], h, INDEX, k), _load_real),
+    "putr": (lambda h, iad, k, v: (types.none, h, INDEX, k, h.dtypes[1]), _store_real),
+    "size_of": (lambda h, nv: (types.int64, h, nv), _size),
+    "real": (lambda h, value: (h.dtypes[3], h, h.dtypes[3]), _number_as_it_is),
+}
+
+
+def compile_accessor(accessor: Callable[..., Any]) -> None:
+    """Have numba compile one of ACCESSORS to its instructions."""
+    (typed, write), named = ACCESSORS[accessor.__name__], parameters(accessor)
+
+    class _Template(AbstractTemplate):
+        key = accessor
+
+        def generic(self, args: Any, kws: Any) -> Any:
+            bound = named.bind(*args, **kws)
+            bound.apply_defaults()
+            result, *wanted = typed(*bound.args)
+            return signature(result, *wanted).replace(pysig=named)
+
+    infer_global(accessor, types.Function(_Template))
+    lower_builtin(accessor, MemoryType, types.VarArg(types.Any))(write)
 
 
 # ---- prefetch

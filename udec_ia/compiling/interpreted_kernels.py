@@ -1,12 +1,8 @@
 """Kernels that run as Python in a process where others are compiled: in a context, or for small models.
 
-    with interpreted():
-        run_unwatched(observe(h, report), 1, laws)
-
-All kernels that are called within run their Python source, bit for bit as compiled, a thousand times slower.
-So a debugger can see a cycle at work while everything else runs at full speed: `observe` makes a memory of
-the same words that reports each word that is read or written. A kernel that is called with it is interpreted
-anyway.
+Within `with interpreted():` all kernels run their Python source, bit for bit as compiled, a thousand times
+slower. `observe` makes a memory of the same words that reports each word that is read or written, so that a
+debugger sees a cycle at work. A kernel that is called with it is interpreted anyway.
 """
 
 from __future__ import annotations
@@ -94,8 +90,8 @@ class ObservedMemory(Memory):
 def observe(h: Memory, report: Report) -> ObservedMemory:
     """The words of `h`, for kernels that are interpreted.
 
-    report: called after each access with the name of the array, the index, the value, and True if it was
-    written. An access to a word of IA() is reported for the view, ia or ra, through which the kernel made it.
+    report: called after each access with name of the array (ia or ra as the kernel used it), index, value,
+    and True if it was written.
     """
     arrays = (Observed(name, array, report) for name, array in zip(Memory._fields, h, strict=True))
     return ObservedMemory(*arrays)

@@ -36,8 +36,8 @@ class Kernel:
     def compiled(self) -> Any:
         """The compiled function: a LinkedKernel, or numba's own dispatcher on the plain path.
 
-        No fastmath and no contraction, so that compiled and interpreted runs agree bit for bit; division
-        follows IEEE 754 instead of raising.
+        Without fastmath, contraction and exceptions for divisions, so that interpreted runs agree bit for
+        bit.
         """
         load()
         from udec_ia.compiling.code_cache import cache_folder, use_cache

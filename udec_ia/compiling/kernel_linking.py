@@ -1,20 +1,17 @@
 """Kernels that call kernels: how a hundred small ones become a few pieces of machine code.
 
-numba makes machine code of every function it compiles, and optimises it once more inside each of its
-callers, layer upon layer. Most kernels are only ever called by kernels. So a kernel has two compiled
-forms. Its *part* is what other kernels link in: code that is neither optimised nor translated. Its *complete*
-form, compiled when Python calls the kernel, contains the parts of all kernels below it, and is optimised,
-translated and stored on disk.
-
-A part is made once for the types of its arguments, not once more for every literal it is called with. The
-signatures of operators and accessors are found once, and passes of numba that no kernel needs are left out.
+numba makes machine code of every function, and optimises it once more inside each of its callers. So a kernel
+has two compiled forms. Its *part* is what other kernels link in: code that is neither optimised nor
+translated, made once for the types of its arguments and not for every literal. Its *complete* form, compiled
+when Python calls the kernel, contains the parts of all kernels below it, and is optimised, translated and
+stored on disk.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from numba import njit, types
 from numba.core.codegen import JITCodeLibrary
@@ -67,28 +64,6 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
             found[library] = None
 
 
-class _CachedSignatures:
-    """A typing context of numba that caches the signatures of calls, but for those of kernels."""
-
-    found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
-
-    def __init__(self, context: Any) -> None:
-        self._context = context
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Signature of a call, or None."""
-        key = func, tuple(args)
-        signature = self.found.get(key)
-        if signature is None:
-            signature = self._context.resolve_function_type(func, args, kws)
-            if isinstance(func, types.Function) and not kws:
-                self.found[key] = signature
-        return signature
-
-
 class _KernelCompiler(Compiler):
     form: type[JITCodeLibrary]
 
@@ -96,7 +71,6 @@ class _KernelCompiler(Compiler):
         state = self.state
         state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        state.typingctx = _CachedSignatures(state.typingctx)
         (pipeline,) = super().define_pipelines()
         pipeline.passes = [one for one in pipeline.passes if one[0]._name not in NOT_IN_KERNELS]
         return [pipeline]
@@ -129,10 +103,7 @@ class _KernelType(types.Dispatcher):
     """What a kernel is to the kernels that call it."""
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """Signature of a call, for which the part is compiled unless it has been.
-
-        Between the parts of what takes a minute to compile, an interrupt does no harm.
-        """
+        """Signature of a call; compiles the part if need be. An interrupt does no harm between two parts."""
         poll()
         return super().get_call_type(context, tuple(types.unliteral(arg) for arg in args), kws)
 

@@ -38,6 +38,6 @@ class Memory(NamedTuple):
 def fetch(h: Memory, iad: int, nv: tuple[int, ...], beyond: int = 0) -> None:
     """Prefetch the group of size `nv` (NVBL, NVCR, ...) that lies `beyond` such groups after address `iad`.
 
-    In an array that is larger than the machine's caches, to wait for a group costs more than all its
-    arithmetic. A prefetch has no other effect: any address will do, and interpreted kernels do nothing.
+    In an array beyond the machine's caches, to wait for a group costs more than all its arithmetic. Any
+    address will do; interpreted kernels do nothing.
     """

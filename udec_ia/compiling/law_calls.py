@@ -1,15 +1,13 @@
 """How a compiled kernel calls a law that a user has written (Appendix IV-4).
 
-A user's law is compiled when a session begins, long after the kernels that call it, which stay on disk. So a
-kernel does not depend on which law it calls. Its arguments are addresses of machine code, and it calls
+A user's law is compiled when a session begins, long after the kernels that call it, which stay on disk. So
+the kernels get addresses of machine code, which `machine_code` (law_calls_numba.py) makes, of the form
 
     void law(double, double, double, double, double, double, const double *material, double *result)
 
-`machine_code` (law_calls_numba.py) brings a compiled law to this form, `call` calls it. A call costs what it
-costs in C. Laws calculate with 64-bit reals in every word scheme. Kernels that are not compiled call the
-Python function itself.
-
-An exception in a law never reaches the kernel: the increments are NaN, and the arguments are recorded.
+Laws calculate with 64-bit reals in every word scheme. Kernels that are not compiled call the Python function
+itself. An exception in a law never reaches the kernel: the increments are NaN, and the arguments are
+recorded.
 """
 
 from __future__ import annotations
@@ -43,10 +41,7 @@ def is_given(laws: Laws, i: int) -> bool:
 
 @numba_form("udec_ia.compiling.law_calls_numba:compile_call")
 def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
-    """What law `i` returns for material `mat` and six reals: three reals, of which joint laws use two.
-
-    The reals are NaN if the law raises an exception: no pass may end half way.
-    """
+    """What law `i` returns for material `mat` and six reals: three reals, or NaN after an exception."""
     try:
         with np.errstate(all="ignore"):
             return laws.calls[i](*map(np.float64, state), laws.materials[mat - 1])

@@ -92,8 +92,7 @@ def _record(typing: Any, place: Any, state: Any) -> Any:
 def machine_code(law: Any, n: int, record: Any) -> Any:
     """A compiled law, which returns `n` numbers, in the form that kernels call: its `address` is the law.
 
-    record: six reals, all NaN, for the arguments with which the law first raises an exception. They must live
-    as long as the law.
+    record: six NaN, for the arguments with which the law first raises an exception; they must live as long.
     """
     result = types.CPointer(types.UniTuple(types.float64, n))
     place = record.ctypes.data

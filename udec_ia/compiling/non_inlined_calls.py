@@ -1,18 +1,14 @@
 """Outlined calls: kernels that other kernels call by the address of their machine code.
 
-A kernel that is long and seldom called would be translated once more in each kernel that calls it
-(kernel_linking.py). An outlined kernel is translated once, and only where it is needed. Python asks for the
-address of its machine code (`entry`) and hands it to the kernels that need it, which call what lies there
-(`call_entry`). A call costs what it costs in C. All such kernels return True or False. Kernels that are not
-compiled are handed the function itself.
+A kernel that is long and seldom called is so translated once, and only where it is needed. Python asks for
+its address (`entry`) and hands it to the kernels that call it (`call_entry`). A call costs what it costs in
+C. All such kernels return True or False. Kernels that are not compiled are handed the function itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
-
-import numpy as np
 
 from udec_ia.compiling.build_choice import CHECKED, load, numba_form
 from udec_ia.compiling.interpreted_kernels import mode
@@ -21,22 +17,16 @@ from udec_ia.compiling.kernel_memory import Memory
 _addresses: dict[Any, int] = {}  # by kernel and types of its arguments
 
 
-def _type(value: Any) -> Any:
-    """What decides the type that numba gives to `value`; faster than `numba.typeof`."""
-    if isinstance(value, tuple):
-        return tuple(_type(one) for one in value)
-    if isinstance(value, np.ndarray):
-        flags = value.flags
-        return value.dtype, value.ndim, flags.c_contiguous, flags.f_contiguous, flags.aligned, flags.writeable
-    return type(value)
-
-
-def _address(kernel: Any, *args: Any) -> int:
-    """Address of the machine code of `kernel` for arguments of the types of `args`."""
+def _types(*values: Any) -> tuple[Any, ...]:
+    """The types that numba gives to arguments."""
     load()
     from numba import typeof
 
-    types = tuple(typeof(one) for one in args)
+    return tuple(typeof(value) for value in values)
+
+
+def _address(kernel: Any, types: tuple[Any, ...]) -> int:
+    """Address of the machine code of `kernel` for arguments of some types."""
     kernel.dispatcher.compile(types)
     compiled = kernel.dispatcher.overloads[types]
     names = compiled.fndesc
@@ -48,15 +38,15 @@ def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """Address of `kernel`, an outlined one, for arguments of these types, compiled if it has not been."""
     if mode.python:
         return kernel
-    key = kernel, _type((h, *others))
-    if key not in _addresses:
-        _addresses[key] = _address(kernel, h, *others)
-    return _addresses[key]
+    types = _types(h, *others)
+    if (kernel, types) not in _addresses:
+        _addresses[kernel, types] = _address(kernel, types)
+    return _addresses[kernel, types]
 
 
 def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """The same if it is `wanted`, or was in this process before; else 0."""
-    known = wanted or mode.python or (kernel, _type((h, *others))) in _addresses
+    known = wanted or mode.python or (kernel, _types(h, *others)) in _addresses
     return entry(kernel, h, *others) if known else 0
 
 

@@ -1,9 +1,8 @@
 """What each facility costs a cycle: the same cycles are run with it and without it, by turns.
 
-A copy of the state is changed so that it runs without the facility, where that is possible. The time-step
-stays, so that a cycle moves everything as far as before. All pieces begin with the same state and take the
-same number of cycles. The answer is the median of the ratios of processor times, with half the range of the
-middle half of them. Machine code is made before, by a piece that is not counted.
+A copy of the state is changed so that it runs without the facility, where that is possible, with the same
+time-step. The answer is the median of the ratios of processor times, with half the range of the middle half
+of them. Machine code is made before, by a piece that is not counted.
 """
 
 from __future__ import annotations

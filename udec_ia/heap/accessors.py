@@ -25,7 +25,7 @@ from udec_ia.compiling.kernel_memory import Memory as Memory
 
 Offset = tuple[int, int, int]  # and more in the checked build: checked_build/tagged_offsets.py
 Address = int
-INSTRUCTIONS = "udec_ia.compiling.instructions_numba"
+ACCESSOR = "udec_ia.compiling.instructions_numba:compile_accessor"
 HEAD: Offset = offset("HEAD", (0, 0, 0), "headed")  # head code of a group
 
 # The integer that kernels calculate with. numba sees the 64-bit type; to a type checker it is an int.
@@ -37,7 +37,7 @@ def _which(h: Any) -> int:
     return int(h.ra.itemsize // h.ia.itemsize) >> 1
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_iget")
+@numba_form(ACCESSOR)
 def iget(h: Memory, iad: Address, k: Offset, i: int = 0) -> int:
     """Integer at IA(iad + k + i)."""
     return int(h.ia[iad + k[_which(h)] + i - 1])
@@ -59,33 +59,33 @@ def gather(h: Memory, iads: Any, words: int, real: bool) -> Any:
     return h.ra.take(at >> _which(h)) if real else h.ia.take(at).astype(np.int64, copy=False)
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_puti")
+@numba_form(ACCESSOR)
 def puti(h: Memory, iad: Address, k: Offset, n: int, i: int = 0) -> None:
     """IA(iad + k + i) := n."""
     h.ia[iad + k[_which(h)] + i - 1] = n
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_getr")
+@numba_form(ACCESSOR)
 def getr(h: Memory, iad: Address, k: Offset) -> Any:
     """Real number k of the reals that start at IA(iad)."""
     j = _which(h)
     return h.ra[((iad - 1) >> j) + k[j] - 1]
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_putr")
+@numba_form(ACCESSOR)
 def putr(h: Memory, iad: Address, k: Offset, v: Any) -> None:
     """Real number k of the reals that start at IA(iad) := v."""
     j = _which(h)
     h.ra[((iad - 1) >> j) + k[j] - 1] = v
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_size_of")
+@numba_form(ACCESSOR)
 def size_of(h: Memory, nv: Offset) -> int:
     """Number of words of a group (NVBL, NVCR, ...) in the scheme at hand."""
     return nv[_which(h)]
 
 
-@numba_form(f"{INSTRUCTIONS}:compile_real")
+@numba_form(ACCESSOR)
 def real(h: Memory, value: float) -> Any:
     """`value` as a real of the scheme at hand: a bare literal would widen 32-bit arithmetic."""
     return h.cr.dtype.type(value)

@@ -1,10 +1,8 @@
 """Memory management: FIND and LOSE (report 3.4).
 
-Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND
-reuses it for the next request of exactly the same size (junk_list.py); groups are never cut up.
-
-Its address may soon be that of another group. So LOSE updates what refers to a group from outside the map, as
-a history does.
+Fresh memory is taken from MFREE upwards. A group that is given back goes to the junk list, and FIND reuses it
+for the next request of exactly the same size (junk_list.py); groups are never cut up. LOSE updates what
+refers to a group from outside the map, as a history does.
 """
 
 from __future__ import annotations
@@ -119,8 +117,7 @@ def lose(h: Memory, group: int, nv: Offset) -> None:
 def room(h: Memory, words: int) -> bool:
     """True if `words` words of fresh memory are left; else asks for them (error 1, NWANT).
 
-    A routine that changes the map asks for all it may need before its first change, so that running
-    out of memory never leaves the map half-made.
+    A routine asks for all it may need before its first change, so that the map is never left half-made.
     """
     if h.ci[g.MFREE] + words - 1 > h.ci[g.MTOP]:
         want(h, words)

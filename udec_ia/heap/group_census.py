@@ -1,10 +1,7 @@
 """The groups that a heap holds, found by following every pointer of the field table from the list heads.
 
-A word of IA() has no type of its own, but the table defines what each pointer leads to. Nothing is trusted: a
-pointer that leads out of the heap, to an address where no group can begin or to another head code is not
-followed. So the census works in a damaged heap, too; whether a heap is sound is proved by the checker. The
-table may be that of another program, whose restart file is being read.
-
+Nothing is trusted: a pointer that leads out of the heap, to an address where no group can begin or to another
+head code is not followed. So the census works in a damaged heap, too, and with the table of another program.
 A group whose kind has a head code counts as soon as a pointer of its kind leads to it, so that no wrong
 pointer makes another kind of it. The others wait until no group with a code is left to follow. Where two
 kinds of pointer lead to one address, it is of the kind that comes first in the table.
@@ -60,10 +57,7 @@ class Found(NamedTuple):
 
 
 def census(h: Any) -> dict[str, Any]:
-    """Addresses of the groups of every kind, each an ascending array.
-
-    An address to which two kinds of pointer lead is counted once: as a kind with a head code, if it has that.
-    """
+    """Addresses of the groups of every kind, each an ascending array; each address counts once."""
     words, ratio = getattr(h.ia, "array", h.ia), int(h.ra.itemsize // h.ia.itemsize)
     top = max(min(int(h.ci[g.MFREE]), len(words) + 1), 1)
     heads = ((str(field.target), int(h.ci[getattr(g, field.name)])) for field in list_heads(TABLE))
@@ -87,15 +81,8 @@ def reached(
     places = (len(words) - 1) // ratio + 1  # groups begin on reals
     kind_at, wanted = (np.zeros(places, np.int8) for _ in range(2))
     sure, waiting = (np.empty(places, np.int32) for _ in range(2))
-    REACH(
-        places,
-        words,
-        ratio,
-        shapes,
-        known,
-        strict,
-        Found(kind_at, wanted, sure, waiting, np.zeros(2, np.int64)),
-    )
+    found = Found(kind_at, wanted, sure, waiting, np.zeros(2, np.int64))
+    REACH(places, words, ratio, shapes, known, strict, found)
     place = np.flatnonzero(kind_at)
     kinds = kind_at[place]
     return {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}

@@ -1,11 +1,8 @@
 """IA() itself: its views, its common block, how it grows, and how its groups are relocated.
 
-1980 fixed the size of IA() when the program was compiled (MTOP). Here `mtop` does the same; without
-it the array grows whenever a routine asks for room, up to the last address that an integer of the
-word scheme can hold.
-
-Where a group lies means nothing to the program (report 3.5), but much to the machine: groups that are used
-together should lie together. The field table knows which words are addresses, so `relocate` may move groups.
+1980 fixed the size of IA() when the program was compiled (MTOP), as `mtop` does here; without it the array
+grows whenever a routine asks for room. Where a group lies means nothing to the program (report 3.5). But
+groups that are used together should lie together, and the field table knows which words are addresses.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """Walks along the lists of a heap that is not proved sound: every address is tested, every walk ends.
 
 The words of IA() come as a bare array; a `step` is the place of a field in it, from the address of the group.
-Reals of many groups come as a bare array as well.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.layout import offsets as g
 
 TURNS = 4  # walks around blocks take as many steps together, for each place where a group could begin
-STRETCH = 256  # places in which groups are counted by a byte
 
 
 @over_arrays
@@ -70,7 +68,6 @@ def closed_lists(words: Any, blocks: Any, limits: Any, steps: Any, rows: Any, it
     for k in range(len(blocks)):
         block, start = blocks[k], n
         first = iad = words[block + kp]
-        mark, turns, since = 0, 1, 0  # an item that was passed, as long ago as the list was long then
         while left > 0 and n < len(items) and iad >= 1 and iad <= last_corner and (iad - 1) % ratio == 0:
             left -= 1
             if words[iad - 1] == g.MCOR:
@@ -87,52 +84,8 @@ def closed_lists(words: Any, blocks: Any, limits: Any, steps: Any, rows: Any, it
             n += 1
             iad = words[iad + step]
             closed[k] = iad == first
-            if closed[k] or iad == mark:
+            if closed[k]:
                 break
-            since += 1
-            if since == turns:
-                mark, turns, since = iad, 2 * turns, 0
         if not closed[k]:
             n = start
     return n
-
-
-@over_arrays
-def rows_of(
-    addresses: Any, code: int, kind_at: Any, nth_at: Any, before: Any, row: Any, shift: int, found: Any
-) -> None:
-    """Row of each address among the groups of the kind `code`; -1 where there is none. See State.rows."""
-    for k in range(len(addresses)):
-        place = _place(addresses[k], len(kind_at), shift)
-        found[k] = -1
-        if place >= 0 and kind_at[place] == code:
-            found[k] = row[before[place // STRETCH] + nth_at[place]]
-
-
-@over_arrays
-def wrong_pointers(
-    words: Any, groups: Any, step: int, codes: Any, optional: bool, kind_at: Any, shift: int, found: Any
-) -> int:
-    """The number of groups whose pointer `step` words after their address leads to none of the kinds `codes`.
-
-    optional: it may be 0. found: rows among `groups` and what they hold, for as many as there is room for.
-    """
-    n = 0
-    for k in range(len(groups)):
-        iad = words[groups[k] + step]
-        place = _place(iad, len(kind_at), shift)
-        good = iad == 0 and optional
-        for code in codes:
-            good = good or (place >= 0 and kind_at[place] == code)
-        if not good:
-            if n < len(found):
-                found[n, 0], found[n, 1] = k, iad
-            n += 1
-    return n
-
-
-@over_arrays
-def _place(iad: int, places: int, shift: int) -> int:
-    """The real that begins at an address, counted from 0; -1 where none does."""
-    place = (iad - 1) >> shift
-    return place if iad >= 1 and place < places and place << shift == iad - 1 else -1

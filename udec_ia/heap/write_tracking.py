@@ -1,10 +1,9 @@
 """Arrays that show the memory of a model to a user, and note what is written into them.
 
-Kernels follow the addresses in IA() without a further test, so a word that a user has changed must be known
-to be changed before the next of them runs. A tracked array takes assignments, `h.ia[7] = 1` and
-`h.cr[3:5] *= 2`, and notes them. To all other ways of writing, through another view of the same memory or by
-a method such as `fill`, it is read-only, and NumPy refuses them. It shows the memory through a buffer that is
-read-only itself, so that NumPy does not make any view of it writeable again.
+Kernels follow the addresses in IA() without a further test, so changed words must be known before the next of
+them runs. A tracked array takes assignments, `h.ia[7] = 1` and `h.cr[3:5] *= 2`, and notes them. All other
+ways of writing are refused by NumPy: the array is read-only, as is the buffer through which it shows the
+memory.
 """
 
 from __future__ import annotations

@@ -179,8 +179,8 @@ def _anchors(one: Blocks, two: Blocks, cut: bool = False) -> Pairs:
     a, b = (np.concatenate(parts) for parts in zip(*found, strict=True))
     order = np.argsort(a)
     a, b = a[order], b[order]
-    kept = longest_rising(b)
-    return a[kept], b[kept]
+    rising = longest_rising(b)
+    return a[rising], b[rising]
 
 
 def _keys(one: Blocks, two: Blocks) -> Iterator[tuple[Any, Any]]:

@@ -1,10 +1,9 @@
 """A sound state in the words of another scheme, ready to go on (`udec convert`).
 
-Every number is written as it is (rewrite_heap.py). With reals of the same width that is all. With wider reals
-the circles, reaches of blocks, and places and overlaps of contacts, which follow from the corners, are
-computed anew: else the checker, SPLIT and the springs would take the missing digits for damage or movement.
-With narrower reals that is done only if the checker asks for it. Corners, velocities, forces, stresses and
-the map stay. Between two passes of a cycle (JPHASE) contacts stay as they are.
+Every number is written as it is (rewrite_heap.py). With wider reals the circles, reaches of blocks, and
+places and overlaps of contacts, which follow from the corners, are computed anew: else the checker, SPLIT and
+the springs would take the missing digits for damage or movement. With narrower reals that is done only if the
+checker asks for it. Between two passes of a cycle (JPHASE) contacts stay as they are.
 """
 
 from __future__ import annotations

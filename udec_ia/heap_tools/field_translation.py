@@ -57,24 +57,24 @@ class Fit:
         self.reals = self.rounded = self.vanished = 0
         self.change, self.where = 0.0, ""
 
-    def take(self, rows: Rows, field: Field, held: Any, to: Any) -> Any:
-        """The numbers `held` by a field of `rows`, as the type `to` can hold them."""
+    def take(self, rows: Rows, field: Field, former: Any, to: Any) -> Any:
+        """The numbers `former` of a field of `rows`, as the type `to` can hold them."""
         if field.type == "real":
-            self.reals += held.size
-        if np.dtype(to).itemsize >= held.dtype.itemsize:
-            return held
+            self.reals += former.size
+        if np.dtype(to).itemsize >= former.dtype.itemsize:
+            return former
         if not field.real:
             limits = np.iinfo(to)
-            self._count_misfits((held < limits.min) | (held > limits.max), rows, field, held)
-            return held.astype(to)
+            self._count_misfits((former < limits.min) | (former > limits.max), rows, field, former)
+            return former.astype(to)
         with np.errstate(over="ignore", under="ignore"):
-            narrow = held.astype(to)
-        back = narrow.astype(held.dtype)
-        lost = (back != held) & ~np.isnan(held)
+            narrow = former.astype(to)
+        back = narrow.astype(former.dtype)
+        lost = (back != former) & ~np.isnan(former)
         if not lost.any():
             return narrow
-        self._count_misfits(lost & np.isinf(back), rows, field, held)
-        was, now = held[lost], back[lost]
+        self._count_misfits(lost & np.isinf(back), rows, field, former)
+        was, now = former[lost], back[lost]
         self.rounded += len(was)
         self.vanished += int(np.count_nonzero(now == 0))
         change = np.where((now != 0) & np.isfinite(now), np.abs((now - was) / was), 0.0)
@@ -83,11 +83,11 @@ class Fit:
             self.change, self.where = float(change.max()), _name(rows, field, int(place))
         return narrow
 
-    def _count_misfits(self, bad: Any, rows: Rows, field: Field, held: Any) -> None:
+    def _count_misfits(self, bad: Any, rows: Rows, field: Field, former: Any) -> None:
         """Numbers that do not fit."""
         if bad.any() and not self.misfits:
             place = int(np.argmax(bad))
-            self.first = _name(rows, field, place), held.flat[place].item()
+            self.first = _name(rows, field, place), former.flat[place].item()
         self.misfits += int(np.count_nonzero(bad))
 
 
@@ -180,16 +180,16 @@ class Translation:
         old = lay_out(self.state.table.group(group.name), self.state.scheme.ratio)
         words = sliding_window_view(self.state.ia, old.size)[rows.at - 1]
         reals = words.view(self.state.scheme.real_type)
-        held = {}
+        former = {}
         for name, field in before.items():
             first = old.offset[name] - field.real
-            held[name] = (reals if field.real else words)[:, first : first + field.count]
+            former[name] = (reals if field.real else words)[:, first : first + field.count]
         if group.name == HISTORY and {KIND, NUMBER} <= {*before} and self.table is not self.state.table:
-            self._renumber(held, rows)
+            self._renumber(former, rows)
         new = lay_out(group, self.scheme.ratio)
         words = np.zeros((len(rows), new.size), self.scheme.int_type)
         reals = words.view(self.scheme.real_type)
-        for field, values in self._translated(rows, before, group.fields, held):
+        for field, values in self._translated(rows, before, group.fields, former):
             first = new.offset[field.name] - field.real
             (reals if field.real else words)[:, first : first + field.count] = values
         return words
@@ -197,8 +197,8 @@ class Translation:
     def variables(self) -> dict[str, Any]:
         """The common block."""
         before = {field.name: field for field in self.state.table.common}
-        held = {name: np.reshape(self.state.common[name], (1, -1)) for name in before}
-        translated = self._translated(Rows(COMMON, ()), before, self.table.common, held)
+        former = {name: np.reshape(self.state.common[name], (1, -1)) for name in before}
+        translated = self._translated(Rows(COMMON, ()), before, self.table.common, former)
         found = {field.name: row[0] for field, row in translated}
         if self.places is not None:
             found |= {FREE: np.array([self.used + 1]), TOP: np.array([self.room])}
@@ -207,21 +207,21 @@ class Translation:
         return found
 
     def _translated(
-        self, rows: Rows, before: dict[str, Field], fields: tuple[Field, ...], held: dict[str, Any]
+        self, rows: Rows, before: dict[str, Field], fields: tuple[Field, ...], former: dict[str, Any]
     ) -> list[tuple[Field, Any]]:
-        """The values of `fields`, from what the fields `before` held, by name: one row each."""
+        """The values of `fields`, from the `former` values of the fields `before`, by name."""
         names = {field.name for field in fields}
         for name, old in before.items():
             only_head = old.role == "head" and len(head_codes(self.state.table, rows.kind)) == 1
             if name not in names and not (rows.kind and only_head):  # else the kind of the group says as much
                 gone = next((one for one in self.table.retired if one.name == name), None)
                 why = f"retired since layout {gone.until} ({gone.text})" if gone else "not known"
-                self._refuse(held[name] != 0, rows, name, held[name], f"and that field is {why} here")
+                self._refuse(former[name] != 0, rows, name, former[name], f"and that field is {why} here")
         found = []
         for field in fields:
             values = np.zeros((len(rows), field.count), self._type(rows.kind, field))
             if field.name in before:
-                self._put(values, rows, before[field.name], field, held[field.name])
+                self._put(values, rows, before[field.name], field, former[field.name])
             else:
                 self._begin(values, rows, field)
             found.append((field, values))
@@ -233,18 +233,20 @@ class Translation:
             return np.float64
         return self.scheme.real_type if field.real else self.scheme.int_type if kind else np.int64
 
-    def _put(self, values: Any, rows: Rows, old: Field, new: Field, held: Any) -> None:
-        """Let `values` of the field `new` be what the field `old` of the name has `held`."""
+    def _put(self, values: Any, rows: Rows, old: Field, new: Field, former: Any) -> None:
+        """Let `values` of the field `new` be what the field `old` of the name was before (`former`)."""
         many = min(old.count, new.count) if is_alike(old, new) else 0
-        self._refuse(held[:, many:] != 0, rows, old.name, held[:, many:], f"but it is {in_words(new)} here")
-        held = held[:, :many]
+        self._refuse(
+            former[:, many:] != 0, rows, old.name, former[:, many:], f"but it is {in_words(new)} here"
+        )
+        former = former[:, :many]
         if new.target is not None and self.places is not None:
-            moved, astray = self.places.followed(held, new.target)
-            self._refuse(astray, rows, old.name, held, f"but there is no {new.target} at that address")
-            held = moved
+            moved, astray = self.places.followed(former, new.target)
+            self._refuse(astray, rows, old.name, former, f"but there is no {new.target} at that address")
+            former = moved
         elif new.target is None and not new.real and old.name not in (KIND, NUMBER):
-            held = self._recoded(rows, old, new, held)
-        values[:, :many] = self.fit.take(rows, new, held, values.dtype)
+            former = self._recoded(rows, old, new, former)
+        values[:, :many] = self.fit.take(rows, new, former, values.dtype)
 
     def _begin(self, values: Any, rows: Rows, field: Field) -> None:
         """A field that is new is 0, or the head code of a kind that has one."""
@@ -255,33 +257,33 @@ class Translation:
         elif codes or not may_be_0(field):
             self._refuse(values == 0, rows, field.name, values, "as it is new, but must not be 0")
 
-    def _recoded(self, rows: Rows, old: Field, new: Field, held: Any) -> Any:
+    def _recoded(self, rows: Rows, old: Field, new: Field, former: Any) -> Any:
         """Codes by their new numbers."""
         if self.table is self.state.table:
-            return held
-        different = np.unique(held)
+            return former
+        different = np.unique(former)
         try:
             codes = self.meaning.codes(old, new, rows.kind, different.tolist())
         except UnknownError as error:
             self.faults.add(f"{old.name} of {rows.kind or 'the common block'} {error}")
-            return held
+            return former
         if not codes:
-            return held
-        return np.array([codes[value] for value in different.tolist()])[np.searchsorted(different, held)]
+            return former
+        return np.array([codes[value] for value in different.tolist()])[np.searchsorted(different, former)]
 
-    def _renumber(self, held: dict[str, Any], rows: Rows) -> None:
+    def _renumber(self, former: dict[str, Any], rows: Rows) -> None:
         """What histories record, which they know by numbers of kinds and fields."""
-        for row, (kind, number) in enumerate(zip(held[KIND][:, 0], held[NUMBER][:, 0], strict=True)):
+        for row, (kind, number) in enumerate(zip(former[KIND][:, 0], former[NUMBER][:, 0], strict=True)):
             try:
-                held[KIND][row, 0], held[NUMBER][row, 0] = self.meaning.recorded(int(kind), int(number))
+                former[KIND][row, 0], former[NUMBER][row, 0] = self.meaning.recorded(int(kind), int(number))
             except UnknownError as error:
                 self.faults.add(f"history@{rows.at[row]} {error}")
                 return
 
-    def _refuse(self, wrong: Any, rows: Rows, name: str, held: Any, what: str) -> None:
+    def _refuse(self, wrong: Any, rows: Rows, name: str, former: Any, what: str) -> None:
         """A fault for the groups that `wrong` is true of."""
         bad = np.flatnonzero(wrong.any(axis=1))
         if len(bad):
-            (value,) = held[bad[0]][wrong[bad[0]]][:1]
+            (value,) = former[bad[0]][wrong[bad[0]]][:1]
             phrase = f"{rows.called(name, bad[0])} is {value}, {what}"
             self.faults.add(phrase, len(bad), rows.kind, name, what)

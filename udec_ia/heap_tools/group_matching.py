@@ -132,8 +132,8 @@ class Matching:
     def _extensions(self, kind: str, owner: str, field: str) -> None:
         """What a pointer of matched owners leads to; once, as two of a damaged heap may share it."""
         at = [side.column(owner, field, to) for side, to in zip(self.sides, self.pairs[owner], strict=True)]
-        held = [side.atlas.holding(kind, to) for side, to in zip(self.sides, at, strict=True)]
-        both = held[0] & held[1]
+        there = [side.atlas.holding(kind, to) for side, to in zip(self.sides, at, strict=True)]
+        both = there[0] & there[1]
         once = [np.unique(to[both], return_index=True)[1] for to in at]
         first = np.intersect1d(once[0], once[1])
         self._join(kind, at[0][both][first], at[1][both][first])

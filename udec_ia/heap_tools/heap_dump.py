@@ -150,19 +150,19 @@ def _plain_rows(atlas: Atlas, first: int, last: int, radix: int) -> Iterator[Row
 
 def _repeats(words: Any, first: int, last: int, longer: int) -> Iterator[tuple[int, int]]:
     """First and last address of each run of more than `longer` words that are the same."""
-    held: tuple[int, int] | None = None
+    run: tuple[int, int] | None = None
     for begin in range(first - 1, last, PIECE):
         piece = words[begin : min(begin + PIECE, last)]
         edges = np.concatenate(([0], np.flatnonzero(piece[1:] != piece[:-1]) + 1, [len(piece)]))
         for k in np.flatnonzero(np.diff(edges) > longer).tolist():
             start, stop = begin + int(edges[k]) + 1, begin + int(edges[k + 1])
-            if held and held[1] + 1 == start and words[held[0] - 1] == words[start - 1]:
-                start = held[0]
-            elif held:
-                yield held
-            held = start, stop
-    if held:
-        yield held
+            if run and run[1] + 1 == start and words[run[0] - 1] == words[start - 1]:
+                start = run[0]
+            elif run:
+                yield run
+            run = start, stop
+    if run:
+        yield run
 
 
 def _common_rows(atlas: Atlas) -> Iterator[Row]:

@@ -75,7 +75,7 @@ def who(atlas: Atlas, place: int | str) -> Listing:
 def what(atlas: Atlas, place: int | str) -> Listing:
     """What the word at a place is, and the whole group that it is part of.
 
-    place: an address, or text such as block@88.KXD. IndexError outside IA(), ValueError for no such place.
+    IndexError outside IA(), ValueError for no such place.
     """
     address = address_of(atlas, place)
     span, word = atlas.word_at(address)
@@ -112,10 +112,9 @@ def walk(
 ) -> Listing:
     """A list, group by group, until it ends, comes round or leads astray.
 
-    along: the kind of the groups of a main list; or "block" or "domain" with the place of one, for the list
-    around it; or the name of a field that links groups, with the place at which to begin. field: what to
-    show of each group that has it, such as KXD or KZG(2). limit: groups to show. ValueError for what is no
-    list, no field or no limit.
+    along: the kind of the groups of a main list; "block" or "domain" with the place of one, for the list
+    around it; or a field that links groups, with the place at which to begin. field: to show of each group
+    that has it. limit: groups to show. ValueError for what is no list, no field or no limit.
     """
     if limit is not None and limit < 1:
         raise ValueError(f"limit {limit}: give the number of groups to show, 1 or more")

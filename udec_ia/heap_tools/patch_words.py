@@ -1,9 +1,8 @@
 """Assignments to words by name: block@88.KXD = 0.5, zone@9.KZG(2) = 412, FRAC = 0.1.
 
-The place is a field of a group in use, a variable of the common block, or, by its address, an integer word.
-All assignments are read and checked before the first is made. Then the state is proved as `check` does;
-if it is not sound, every word is put back. The size of the array (MTOP, MFREE beyond it) and what a history
-records cannot be changed.
+All assignments are read and checked before the first is made. Then the state is proved as `check` does; if it
+is not sound, every word is put back. The size of the array (MTOP, MFREE beyond it) and what a history records
+cannot be changed.
 """
 
 from __future__ import annotations
@@ -60,9 +59,8 @@ def patch(array: MainArray, *assignments: str, force: bool = False) -> Patched:
     """Make the assignments, each `PLACE = VALUE`, several with commas between them, and prove the state.
 
     As after RSET the next CYCLE finds the time-step anew, and before the first one the masses. Error 10 for
-    what cannot be read or is not there, 30 for an address outside the words in use, and 28 for a value that
-    the word cannot hold or, unless `force` is given, with which the state would not be sound. They leave it
-    as it was.
+    what cannot be read or is not there, 30 outside the words in use, and 28 for a value that the word cannot
+    hold or, without `force`, with which the state would not be sound. They leave it as it was.
     """
     patches = read_patches(array, assignments)
     ready, array.h.ci[g.LREADY] = int(array.h.ci[g.LREADY]), 0

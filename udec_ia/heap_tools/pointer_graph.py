@@ -20,7 +20,6 @@ from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, Atlas, leads_to, names
 
 NODES = 40  # groups that a graph shows
 ASTRAY = "astray"  # kind of a node that is no group
-NO_GROUP = 0  # key of the common block, which has no address
 
 
 class Node(NamedTuple):
@@ -155,15 +154,9 @@ def dot(found: Graph) -> str:
         '  rankdir=LR; node [shape=box, style="rounded,filled", fontname="sans-serif"];',
     ]
     for key, node in found.nodes.items():
-        lines.append(
-            f'  "{key}" [label="{node.name}", fillcolor="{colour(node)}30", color="{colour(node)}"];'
-        )
+        colour = COLOURS.get(node.kind, COLOURS[NOTHING if node.kind == ASTRAY else JUNK])
+        lines.append(f'  "{key}" [label="{node.name}", fillcolor="{colour}30", color="{colour}"];')
     for edge in found.edges:
         style = "" if edge.sound else f', color="{COLOURS[NOTHING]}", style=dashed'
         lines.append(f'  "{edge.source}" -> "{edge.target}" [label="{edge.field}"{style}];')
     return "\n".join([*lines, "}", ""])
-
-
-def colour(node: Node) -> str:
-    """The colour of a node, by the kind of its group."""
-    return COLOURS.get(node.kind, COLOURS[NOTHING] if node.kind == ASTRAY else COLOURS[JUNK])

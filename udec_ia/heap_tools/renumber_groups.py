@@ -1,11 +1,8 @@
 """Groups at new addresses: in the order of their lists (`udec renumber`), or in that of the map.
 
-`renumber` gives each kind a stretch of IA() of its own, in the order of its list. The lists, and with them
-the sums of forces, stay as they are, so no bit of any result changes.
-
-`arrange` also puts the lists in a new order before the first cycle of a large model: each kind is laid in
-strips across the model, so that all passes read memory in nearly straight runs. Small models stay as they
-are: they fit the machine's caches, and a deck has seen their addresses.
+`renumber` leaves the lists, and with them the sums of forces, as they are, so no bit of any result changes.
+`arrange` also puts the lists in a new order before the first cycle of a large model, in strips across the
+model, so that all passes read memory in nearly straight runs. Small models fit the machine's caches.
 """
 
 from __future__ import annotations

@@ -2,10 +2,8 @@
 
 A block, contact or domain is in use if it stands in its main list; a corner, if it stands in the clockwise or
 the reverse list of a block in use; any other group, if a group in use points to it, or to the first of a list
-in which it stands. Every address is tested before it is used and every walk is bounded.
-
-A list that breaks raises Unsound; the checker reports it and goes on with the rest. So does a group that the
-census (heap/group_census.py) finds and no list leads to.
+in which it stands. Every address is tested before it is used and every walk is bounded. A list that breaks,
+and a group that only the census (heap/group_census.py) finds, raises Unsound; the checker goes on.
 """
 
 from __future__ import annotations

@@ -1,11 +1,9 @@
 """What each word of IA() is: part of a group, of a junk group, not linked, or unused; and names of groups.
 
-The census (heap/group_census.py) finds the groups that lists reach; the junk list has those given back. In a
-damaged heap there may be words that nothing leads to, and groups may lie in each other: a word then belongs
-to the group that begins nearest before it. Above MFREE nothing has been used. Nothing is trusted.
-
-Names: corner@412 of block@88 for a group; a junk group by its place in the junk list; other words by the
-stretch that they are in.
+The census (heap/group_census.py) finds the groups that lists reach. In a damaged heap there may be words that
+nothing leads to, and groups may lie in each other: a word then belongs to the group that begins nearest
+before it. Names: corner@412 of block@88; a junk group by its place in the junk list; other words by their
+stretch.
 """
 
 from __future__ import annotations
@@ -185,7 +183,7 @@ class Atlas:
         return 0 < address < self.free and bool(self.holding(target, np.array([address]))[0])
 
     @cached_property
-    def held(self) -> dict[int, int]:
+    def indirect_owners(self) -> dict[int, int]:
         """Block of each group that hangs on a block and does not name it: extensions, and lists in these."""
         links = {  # by number of the kind: offset, role, and numbers of the kinds that the pointer leads to
             number: [
@@ -215,8 +213,8 @@ class Atlas:
         if span.kind == "block":
             return [span.first]
         hosts = [int(self.value(word)) for word in self.words(span) if word.field.role == "host"]
-        held = self.held.get(span.first)
-        return hosts or ([held] if held else [])
+        owner = self.indirect_owners.get(span.first)
+        return hosts or ([owner] if owner else [])
 
 
 def choices(target: str) -> tuple[str, ...]:
@@ -269,8 +267,8 @@ def _of_kind(atlas: Atlas, kind: str, first: Any, last: Any) -> list[str]:
     if hosts:
         owners = [" and ".join(several) for several in zip(*hosts, strict=True)]
         return [f"{kind}@{iad} of {owner}" for iad, owner in zip(at, owners, strict=True)]
-    held = atlas.held
-    return [f"{kind}@{iad} of block@{held[iad]}" if iad in held else f"{kind}@{iad}" for iad in at]
+    indirect = atlas.indirect_owners
+    return [f"{kind}@{iad} of block@{indirect[iad]}" if iad in indirect else f"{kind}@{iad}" for iad in at]
 
 
 def _hosts(atlas: Atlas, hosts: Any) -> list[str]:
