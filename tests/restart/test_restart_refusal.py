@@ -322,4 +322,4 @@ def test_a_code_may_have_another_number(good: Path) -> None:
     edit(good, new_table(plain + "\n"))
     assert load(good).deck == ["START"]
     edit(good, new_table(TABLE.read_text().replace("CODE   VIRTUAL        4", "CODE   VIRTUAL        5")))
-    assert load(good).notes == ["read with another field table: 1 code is under another number (VIRTUAL)"]
+    assert load(good).notes == ["read with another field table: codes under another number: 1 (VIRTUAL)"]

@@ -26,8 +26,7 @@ from udec_ia.remark import Remark
 TANGENTS = ("friction", "residual_friction", "block_friction", "dilation", "block_dilation")
 OURS = {field.name for field in read_table().common if field.ours and field.allowed}
 PLACES = {one.keyword.upper(): (one.array, getattr(g, one.array)) for one in read_table().properties}
-# Properties by keyword, with their places in the common block: unused by constitutive number 1, and of
-# joints.
+# Places in the common block of properties that constitutive number 1 ignores, and of joint properties.
 OF_LAWS = {word: k for word, (name, k) in PLACES.items() if name in OURS}
 OF_JOINTS = {word: k for word, (name, k) in PLACES.items() if name in JOINT_ARRAYS}
 Groups = Callable[[Any, str], Any]  # returns the addresses of all groups of a kind in a Memory
@@ -62,9 +61,7 @@ def check_new_material(array: MainArray, many: int, material: int) -> Iterator[R
 
 
 def _density_too_late(many: int, material: int) -> Remark:
-    text = (
-        f"{counted(many, 'block')} of material {material} will keep mass and weight: masses are calculated "
-    )
+    text = f"{counted(many, 'block')} of material {material} will keep mass and weight, which are calculated "
     return Remark("density-too-late", text + "before the first cycle; a new density counts after a new START")
 
 

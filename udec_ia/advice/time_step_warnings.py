@@ -61,22 +61,16 @@ def step_warning(array: MainArray, safe: StepLimit) -> Remark | None:
             f"close may throw blocks ever higher; take {fraction}, or DAMPING",
         )
     if step <= safe.step:
-        cause, cure = _damping(h)
-        text = f"{cause} may make the time-step of {step:.3g} s unstable: {fraction} is safe, or take {cure}"
+        damping = f"stiffness damping BETA = {h.cr[g.BETA]:.3g} s"
+        if not h.cr[g.BETA]:
+            damping = f"{BY_CODE[int(h.ci[g.LREST])].name} damping {h.cr[g.RESTF]:g}"
+        text = f"{damping} may make the time-step of {step:.3g} s unstable: take {fraction} or less damping"
         return Remark("step-above-damped-bound", text)
     return Remark(
         "step-above-bound",
         f"the time-step of {step:.3g} s is {share:.3g} of the safe bound, which {place} sets, and may be "
         f"unstable: {fraction} is safe",
     )
-
-
-def _damping(h: Memory) -> tuple[str, str]:
-    """The damping that lowers the safe time-step, and its replacement."""
-    if h.cr[g.BETA]:
-        return f"stiffness damping BETA = {h.cr[g.BETA]:.3g} s", "a smaller fcrit, or MASS damping alone"
-    name = BY_CODE[int(h.ci[g.LREST])].name
-    return f"{name} damping {h.cr[g.RESTF]:g}", "a smaller fraction of it, or ADAPTIVE damping"
 
 
 def describe_step(array: MainArray, safe: StepLimit) -> str:

@@ -118,7 +118,7 @@ class SettingRunner:
     """
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
-        self.deck, self.options, self.folder = deck, options, folder
+        self.deck, self.options = deck, options
         self._end = monotonic() + options.budget
         read_laws(options.constitutive)
         self.wide = WIDE.get(options.build, options.build)

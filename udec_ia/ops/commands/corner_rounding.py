@@ -23,12 +23,8 @@ STRAINED = "strained as it is after cycle"  # in the message of the error that e
 
 def too_short(d: float, shortest: float, x: float, y: float, when: str = "") -> UdecError:
     """Error 14: roundings of length `d` have to share the edge of length `shortest` that ends at (x, y)."""
-    detail = (
-        f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g} at most{when}"
-    )
-    advice = (
-        "the rounding length must not exceed half the shortest edge, or a part of an edge beside a corner"
-    )
+    detail = f"{d:g}, but the edge that ends at ({x:g}, {y:g}) holds roundings of {shortest / 2:g}{when}"
+    advice = "use at most half the shortest edge, or the shortest part of an edge beside a corner"
     return UdecError(14, detail, advice, parameter="d")
 
 

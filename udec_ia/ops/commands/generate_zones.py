@@ -196,9 +196,7 @@ def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
         need = d * ((not a.on_edge) + (not b.on_edge))
         distance = math.hypot(b.x - a.x, b.y - a.y)
         if distance < need * (1 - 1e-6) or distance == 0:
-            detail = (
-                f"grid-points {one + 1} and {two + 1} are {distance:g} apart, too near for rounding by {d:g}"
-            )
+            detail = f"grid-points {one + 1} and {two + 1} are {distance:g} apart, and rounding is by {d:g}"
             raise UdecError(14, detail, "increase their distance, or use a smaller ROUND")
     return found
 

@@ -130,9 +130,7 @@ def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest
     if status == REFUSED_SHORT:
         detail = f"the cut {place} leaves an edge shorter than {shortest:g}"
         raise UdecError(14, detail, "move the line, or first use a smaller rounding length", group=ib)
-    advice = (
-        "move the line: it may pass exactly through a corner, but not graze one or touch a notch from inside"
-    )
+    advice = "move the line: it may pass through a corner, but not graze one or touch a notch from inside"
     raise UdecError(27, place, advice, group=ib)
 
 

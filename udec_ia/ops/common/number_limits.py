@@ -143,7 +143,5 @@ def check_resolution(
     digit = last_digit(array, size)
     if length < digits * digit:
         detail = f"{what} {length:g} long, where {array.scheme.real_bits}-bit reals resolve {digit:g}"
-        advice = (
-            f"it must be at least {digits * digit:g}: move the origin nearer, or use 64-bit reals (--build)"
-        )
+        advice = f"it must be at least {digits * digit:g}: move the origin nearer, or use 64-bit reals"
         raise UdecError(28, detail, advice, parameter=parameter)
