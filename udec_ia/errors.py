@@ -22,7 +22,7 @@ ERRORS = {  # number: message, and what to do about it
         "give the corners in clockwise order, along an outline that does not cross itself",
     ),
     7: ("missing parameter", "HELP and the name of the command show its form"),
-    8: ("missing y-value", "x and y of a point must stand on one line"),
+    8: ("missing y-value", "x and y of a point must be on one line"),
     9: (
         "constitutive number out of range",
         "constitutive numbers run from 1 to 5; for 2 to 5 give laws: --constitutive law.py",
@@ -78,7 +78,7 @@ ERRORS = {  # number: message, and what to do about it
         "zone pointer references non-existent grid-point",
         "zones refer to grid-points by number; the last grid-point given is number 1",
     ),
-    26: ("missing data", "the three grid-points of a zone must stand on one line"),
+    26: ("missing data", "the three grid-points of a zone must be on one line"),
     27: (
         "split line runs too close to a corner or an edge",
         "move the line: it may pass exactly through a corner, but not graze one",

@@ -34,7 +34,7 @@ A deck is a text file with one command to a line. The language is that of the re
 - A line that begins with `*`, `;`, `#` or `!` is a comment. In other lines `;`, `#` and `!` begin a comment;
   in file names only behind a blank and outside quotes.
 - A line that begins with `+` continues the one before it. Numbers of a pair or triple must be on one line.
-- At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
+- At a terminal a command is executed when its line ends; a `+` at the end of the line continues it. Commands
   with `...` in their form continue until an empty line or the next command. If a line continues them with a
   word that is also a command, it needs a `+` before it: `G` is GRAVITY, `GRID` is not.
 - The first command is START or RESTART. Lines after STOP are ignored.
@@ -316,9 +316,9 @@ COMMANDS = (
     Command(
         "Print",
         SHOWS,
-        "Print data of blocks, contacts, corners, domains, the linked lists of blocks and domains, "
-        "grid-points, zones with their strain rates, boundary conditions, the account of the energy, or the"
-        " histories.",
+        "Print data of blocks, contacts, corners, domains, grid-points, zones with their strain rates, or "
+        "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
+        "the account of the energy, HIStories the histories.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED.split()),
         first=SEVERAL,
@@ -326,15 +326,16 @@ COMMANDS = (
     Command(
         "PROperty",
         CHANGES,
-        "Define the properties of material n: bulk modulus (Bulk or K, Pa), joint cohesion (N/m), density "
-        "(kg/m3), normal and shear joint stiffness (N/m2: N/m of force per metre of overlap), joint "
-        "friction coefficient, shear modulus (G, Pa). Values not given are 0: a joint without friction "
-        "slides. Stiffness and cohesion are those of each contact, whatever the length of the joint; two "
-        "blocks face to face have two contacts. A contact has the material of its first block, so the "
-        "contacts of one joint between two materials can differ (PRINT CONTACTS shows them): give both the "
-        "same joint properties. For constitutive numbers 2 to 5: dilation of joints, residual friction and "
-        "cohesion, and the critical slip that leads to them; friction, cohesion, tensile strength and "
-        "dilation inside blocks; four numbers for laws of your own. Frictions and dilations are tangents.",
+        "Define the properties of material n: bulk modulus (Bulk or K, Pa), cohesion of a contact (N/m), "
+        "density (kg/m3), normal and shear stiffness of a contact (N/m2, not Pa/m: a force in N for each "
+        "metre of thickness, per metre of overlap or slip), joint friction coefficient, shear modulus (G, "
+        "Pa). Values not given are 0: a joint without friction slides. Stiffness and cohesion are those of "
+        "each contact, whatever the length of the joint; two blocks face to face have two contacts. A "
+        "contact has the material of its first block, so the contacts of one joint between two materials "
+        "can differ (PRINT CONTACTS shows them): give both the same joint properties. For constitutive "
+        "numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
+        "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
+        "laws of your own. Frictions and dilations are tangents.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
         words=(MATERIAL, *PROPERTIES, Word("K", "b", sets="bulk")),
         first="material",
@@ -344,9 +345,9 @@ COMMANDS = (
         "Restart",
         SESSION,
         "Continue from the restart file; the default is restart.h5. Relative names start in the folder for "
-        "files (--out). The whole state is checked first, as by udec check. UNCHECKED checks the links only. "
-        "FORCE also accepts an unsound state, for inspection and repair. Commands that follow links, such as "
-        "CYCLE, are then refused until the state is sound.",
+        "files (--out). The whole state is checked first, as by udec check. UNCHECKED checks "
+        "links, codes and counts only. FORCE also accepts an unsound state, for inspection and repair. "
+        "Commands that follow links, such as CYCLE, are then refused until the state is sound.",
         "RESTART slope.h5",
         words=(BY_FORCE, UNCHECKED),
         text="path",
@@ -387,11 +388,13 @@ COMMANDS = (
     Command(
         "SOLve",
         RUNS,
-        "Cycle until the force ratio is at most that: the greatest unbalanced force on a block or grid-point "
-        "(MAX, the default) or the mean of all (MEAN), over the mean of the forces that contacts and zones "
-        "carry; and until kinetic over strain energy is no more either. At its end it reports which blocks "
-        "moved most, which have fallen, and whether joints slipped. LIMIT: greatest number of cycles, 100000 "
-        "by default. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, whatever "
+        "Cycle until the model is at rest: the force ratio and kinetic over strain energy are at most "
+        "ratio. The force ratio is an unbalanced force over the mean of the forces that contacts and zones "
+        "carry. MAX, the default: the greatest unbalanced force on a block or grid-point. MEAN: the mean of "
+        "all. At its end it reports which blocks have fallen. If the ratio is reached, it also reports slip "
+        "of joints that makes the result depend on the loading path. If not, it reports which blocks moved "
+        "most, and whether nothing damps. LIMIT: greatest number of cycles, 100000 by default. STATIC: with "
+        "ADAPTIVE damping, the greatest safe step and scaled masses, whatever "
         "DAMPING and FRACTION are; at its end all velocities are 0.",
         "SOLVE 1E-3 LIMIT 20000",
         numbers="ratio",

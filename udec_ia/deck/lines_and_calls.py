@@ -235,7 +235,7 @@ class _Parser:
             values = [self._number(first)]
             line = self.tokens[self.read - 1].line
             missing = INCOMPLETE[len(names.split())]
-            advice = f"{first} and {others[0]} must stand on one line" if missing == 8 else ""
+            advice = f"{first} and {others[0]} must be on one line" if missing == 8 else ""
             values += [self._number(name, missing, line, advice) for name in others]
             found.append(tuple(values))
         return found

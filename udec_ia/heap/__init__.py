@@ -1,1 +1,4 @@
-"""The heap: IA(), FIND and LOSE, and the accessors. Nothing above this layer indexes the array itself."""
+"""The heap: IA(), FIND and LOSE, and the accessors.
+
+Kernels read and write groups by the accessors alone. Tables and proofs also index the array itself.
+"""

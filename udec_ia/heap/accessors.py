@@ -1,4 +1,4 @@
-"""The only place that knows how an address becomes an array index (report 3.5).
+"""The accessors: they turn an address and an offset into an index of the array (report 3.5).
 
 An address counts integer words from 1; 0 is the null pointer. An integer of the group at `iad`
 stands at word iad + K, K counted from 0; a real is number K, counted from 1, of the reals that start

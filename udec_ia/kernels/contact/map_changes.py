@@ -265,7 +265,7 @@ def open_contact(h: Memory, ic: int) -> None:
 
 @inlined
 def energy_lost(h: Memory, ic: int, overlap: float) -> float:
-    """Energy lost with contact `ic`, now open to `overlap`; with a user's law it may store some.
+    """Energy lost with contact `ic`, now open to `overlap`; a law of its own may store some.
 
     It is the energy of its springs, and the work of its normal force in half of this step.
     """
@@ -284,7 +284,7 @@ def needs_no_check(h: Memory, overlap: float) -> bool:
 
 @kernel
 def update_contact(h: Memory, ic: int, own: bool) -> bool:
-    """Update contact `ic`; False if it is deleted. own: True if it has a user's law."""
+    """Update contact `ic`; False if it is deleted. own: True if it has a law of its own."""
     nx, ny, overlap = settle(h, ic)
     if not own and getr(h, ic, g.KCFN) != 0 and leave_notch(h, ic, nx, ny):
         nx, ny, overlap = settle(h, ic)
@@ -317,7 +317,7 @@ def update_all_contacts(h: Memory) -> None:
 def change_map(h: Memory, waiting: Any, n: int) -> bool:
     """Update the first `n` contacts of `waiting`; deleted ones are 0 there afterwards.
 
-    waiting: their addresses; negative if they have a user's law. ALL for `n`: a command has changed the
+    waiting: their addresses; negative if they have a law of their own. ALL for `n`: a command has changed the
     geometry, and all contacts are updated.
     """
     if n == ALL:

@@ -188,5 +188,5 @@ def update_domains(h: Memory, idm: int) -> bool:
 
 
 def updating(h: Memory) -> Any:
-    """The address of update_domains for kernels that lead to updates: see compiling.outlined_calls."""
+    """The address of update_domains for kernels that lead to updates: see compiling.non_inlined_calls."""
     return entry(update_domains, h, 0)

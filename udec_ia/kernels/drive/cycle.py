@@ -167,8 +167,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if `soft` is. joints: None if no
-    contact has a user's law, else these laws (compiling.law_calls). passes: see `passes`. Also stops early
-    when a safe time-step must be checked.
+    contact has a law of its own, else these laws (compiling.law_calls). passes: see `passes`. Also stops
+    early when a safe time-step must be checked.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0

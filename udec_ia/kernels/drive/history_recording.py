@@ -62,7 +62,7 @@ NOT_MEASURED = (0,) * len(MEASURED)
 
 
 def measures(h: Memory) -> tuple[Any, ...]:
-    """Addresses of these (compiling.outlined_calls), 0 for those that no history records."""
+    """Addresses of these (compiling.non_inlined_calls), 0 for those that no history records."""
     asked, ih = set(), h.ci[g.IHPNT]
     while ih != 0:
         if iget(h, ih, g.KHK) == g.WHOLE_MODEL:

@@ -254,7 +254,7 @@ def add_contact_work(
 ) -> bool:
     """Work of contact `ic` in this step; it has the forces of the last step and the present overlap.
 
-    own: True if it has a user's law. before: its overlap before. velocity: of block KB2 relative to KB1.
+    own: True if it has a law of its own. before: its overlap before. velocity: of block KB2 relative to KB1.
     forces, dashpots: present normal and shear force.
     """
     (nx, ny), (xd, yd), (fn, _) = normal, velocity, forces

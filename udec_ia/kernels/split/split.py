@@ -155,7 +155,7 @@ def share(h: Memory, ib: int, jb: int) -> bool:
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
-    """Addresses of kernels that `cut_path` calls (compiling.outlined_calls), 0 for those not needed.
+    """Addresses of kernels that `cut_path` calls (compiling.non_inlined_calls), 0 for those not needed.
 
     soft: None if all blocks are rigid and free of boundary conditions.
     """
