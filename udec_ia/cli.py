@@ -18,7 +18,7 @@ from threading import current_thread, main_thread
 from typing import Any, NoReturn
 
 import udec_ia
-from udec_ia.command_line import VERBS as WORKSHOP
+from udec_ia.command_line import VERBS as SUBCOMMANDS
 from udec_ia.command_line import add_commands
 from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
@@ -28,7 +28,7 @@ from udec_ia.layout.field_table import StaleLayout
 from udec_ia.printable_text import printable, visible
 
 ERROR, MISUSE, INTERRUPTED, TERMINATED = 1, 2, 130, 143
-VERBS = ("run", *WORKSHOP)
+VERBS = ("run", *SUBCOMMANDS)
 
 
 class _Parser(argparse.ArgumentParser):

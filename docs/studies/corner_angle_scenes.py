@@ -1,4 +1,4 @@
-"""One block with corners of a given angle above a fixed floor, for corners.py."""
+"""One block with corners of a given angle above a fixed floor, for corner_angles.py."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 
 prints the tables of docs/words.md. First those that are alike wherever they are made: the deck
 examples/ball-rolling.dat is run in all five word schemes, without its plots, and held against the formulas
-for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scenes.py, and what each takes. The
+for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scheme_scenes.py, and what each takes. The
 picture shows how places part from those in 64-bit reals, cycle by cycle.
 """
 

@@ -1,4 +1,4 @@
-"""Scenes that words.py runs in all word schemes: what each loses, what it takes, and when runs part."""
+"""Scenes that word_scheme_costs.py runs in all word schemes: what each loses, what it takes, and when runs part."""
 
 from __future__ import annotations
 

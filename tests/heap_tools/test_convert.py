@@ -347,7 +347,7 @@ def test_reals_that_do_not_fit() -> None:
     array = base().copy()
     corner = int(table(array, "corner")["address"][5])
     array.h.cr[g.PAR1 + 2] = -1e300
-    with pytest.raises(UdecError, match=r"PAR1\(3\) is -1e\+300\n32-bit reals hold numbers up to 3.4e\+38"):
+    with pytest.raises(UdecError, match=r"PAR1\(3\) is -1e\+300\n32-bit reals store numbers up to 3.4e\+38"):
         convert(array, scheme("i32r32"))
     putr(array.h, corner, g.KYDP, 1e39)
     with pytest.raises(UdecError, match=rf"KYDP of corner@{corner} is 1e\+39, the first of 2 numbers"):

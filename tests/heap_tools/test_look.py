@@ -1,4 +1,4 @@
-"""The workshop's looks into a heap: against plain walks, in sound heaps and in damaged ones."""
+"""The answers of the restart-file tools: against plain walks, in sound heaps and in damaged ones."""
 
 from __future__ import annotations
 

@@ -202,7 +202,7 @@ def test_blocks_that_go_into_each_other_in_one_step_end_the_run(way: float, ends
     push(m, left, way / 2 / step(m))
     push(m, right, -way / 2 / step(m))
     if ends:
-        with pytest.raises(UdecError, match="have gone into each other") as caught:
+        with pytest.raises(UdecError, match="penetrate each other") as caught:
             m.cycle(20)
         assert caught.value.number == 15
         return

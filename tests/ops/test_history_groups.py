@@ -41,7 +41,7 @@ def test_a_group_that_has_gone_leaves_nan_and_is_told_once(tmp_path: Path) -> No
         assert np.array_equal(one.numbers[1:, 2], seen[address], equal_nan=True)
         assert one.lost == (address in gone)
     assert [text for text in told if "time-step" not in text] == [
-        f"history {one.number}: {one.group} has gone, NaN is recorded from now on"
+        f"history {one.number}: {one.group} was deleted; NaN is recorded from here on"
         for one in m.histories()
         if one.lost
     ]
@@ -52,7 +52,7 @@ def test_a_loss_is_told_in_the_deck(tmp_path: Path) -> None:
     m.split(-9, 0.5, 9, 0.5)
     printed = m.run("HISTORY 1 KY AT 0,0.75\nDELETE -1 1 0.6 0.9\nCYCLE 1\n")
     assert printed is not None
-    assert re.search(r"^ CYCLE: history 1: block@\d+ has gone, NaN", printed, re.MULTILINE)
+    assert re.search(r"^ CYCLE: history 1: block@\d+ was deleted; NaN", printed, re.MULTILINE)
 
 
 def test_a_deleted_block_is_not_followed(tmp_path: Path) -> None:

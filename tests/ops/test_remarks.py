@@ -253,8 +253,8 @@ def test_what_damps_is_said_when_a_deck_begins_to_run(tmp_path: Path) -> None:
     assert printed is not None
     assert printed.count("damping: none; only friction takes energy") == 1
     alpha = 0.5 * 2 * np.pi * 5  # mass damping has half of what both would be
-    assert printed.count("damping: MASS damping takes ALPHA = ") == 1
-    assert f"ALPHA = {alpha:.3g} 1/s of every velocity, critical at {alpha / (4 * np.pi):.3g} Hz" in printed
+    assert printed.count("damping: MASS damping reduces every velocity at the rate ALPHA = ") == 1
+    assert f"ALPHA = {alpha:.3g} 1/s, critical at {alpha / (4 * np.pi):.3g} Hz" in printed
     printed = Model(out=tmp_path).run(f"{begin}SOLVE 0.1 LIMIT 1\n")
     assert printed is not None
     assert "there is no damping" in printed

@@ -279,7 +279,7 @@ def test_conditions_that_go_with_a_mesh_are_told(tmp_path: Path, capsys: pytest.
         "BOUNDARY -1 2 1.9 3 STRESS 0 0 -1E3\nCHANGE 0 1 1 2 RIGID\nCHANGE 0 1 1 2 RIGID\nSTOP\n"
     )
     assert main(["run", str(deck), "--out", str(tmp_path)]) == 0
-    told = [line for line in capsys.readouterr().out.splitlines() if "went with what" in line]
+    told = [line for line in capsys.readouterr().out.splitlines() if "removed together with" in line]
     assert [line.split(" boundary")[0] for line in told] == [" GENERATE: 2", " CHANGE: 3"]
 
 

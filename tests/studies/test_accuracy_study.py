@@ -198,8 +198,8 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     asked = ["--quantity", FELL[0], "--builds", "i32r64", "--jobs", "0", "--out", str(out)]
     assert main(["trade", str(deck), *asked]) == 0
     told = capsys.readouterr().out
-    assert told.startswith("to change: ")
-    assert len(told.splitlines()) == 6
+    assert told.startswith("to change:\n    line 5: FRAC 0.1 -> FRACTION")
+    assert sum(not line.startswith(" ") for line in told.splitlines()) == 6
     names = {f"fall-trade.{kind}" for kind in ("csv", "png", "svg")}
     assert {path.name for path in out.glob("fall-trade.*")} == names
     assert main(["trade", str(deck), *asked, "--half-step"]) == 0

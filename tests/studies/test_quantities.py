@@ -84,7 +84,7 @@ def test_a_block_that_has_gone_has_no_value_and_its_address_is_nobody_elses(tmp_
     """After DELETE a SPLIT takes the words of the block that was deleted; that one is not taken for it."""
     (value,), remarks = worth(tmp_path, "block(1, 1.5).KY", deck=FALL + "SPLIT 1,1.5 1,4\nCYCLE 1\n")
     assert math.isnan(value)
-    assert remarks == ("block(1, 1.5).KY has no value: the block that was nearest has gone",)
+    assert remarks == ("block(1, 1.5).KY has no value: the block that was nearest was deleted",)
 
 
 def test_what_comes_and_goes_is_looked_for_in_the_end(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Courses of bricks on a slope, for chatter.py."""
+"""Courses of bricks on a slope, for chatter_by_damping.py in docs/studies."""
 
 from __future__ import annotations
 

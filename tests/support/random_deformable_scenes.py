@@ -1,4 +1,4 @@
-"""Random scenes with blocks of all types: those of scenes.py, softened, zoned, held, loaded and changed.
+"""Random scenes with blocks of all types: those of random_scenes.py with zones, loads and changes.
 
 Random triangulations go into random blocks, convex or not; what does not fit is refused and changes nothing.
 The time-step is a part of the safe bound.

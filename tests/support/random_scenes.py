@@ -1,9 +1,9 @@
 """Random scenes: a block, random joints, holes, materials, motion and all of it again while it runs.
 
 A scene is drawn from a seed and depends on the blocks as they are (which one to delete, through which
-corner to split), so it is drawn while it is played, and what was done is kept (steps.py). Speeds, stiffnesses
-and rounding lengths are drawn relative to each other, so that blocks fly, strike and slide within a few dozen
-cycles and an overlap too great stays the exception.
+corner to split), so it is drawn while it is played, and what was done is kept (replayable_steps.py). Speeds,
+stiffnesses and rounding lengths are drawn relative to each other, so that blocks fly, strike and slide within
+a few dozen cycles and an overlap too great stays the exception.
 """
 
 from __future__ import annotations

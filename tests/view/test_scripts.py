@@ -1,6 +1,6 @@
 """The page's scripts that need no browser, run by Node.js: values, names, pointers, shapes, the search.
 
-What they say is compared with the tables in Python, with the workshop's looks, and with naive outlines.
+They are compared with the tables in Python, the answers of the restart-file tools, and naive outlines.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ return heaps.map((heap) => Array.from(heap.kinds, (_, span) => ({
 
 
 def compare(array: MainArray, spans: Any, every: int) -> None:
-    """What the scripts say of each span against the workshop; of each `every`th, who points there."""
+    """What the scripts say of each span against the tools; of each `every`th, who points there."""
     atlas = Atlas(array.h)
     expected = [*atlas.spans()]
     assert [(one["first"], one["kind"]) for one in spans] == [(span.first, span.kind) for span in expected]
@@ -165,7 +165,7 @@ def compare(array: MainArray, spans: Any, every: int) -> None:
 
 
 @pytest.mark.parametrize("build", ALL_SCHEMES)
-def test_the_page_says_what_the_workshop_says(build: str) -> None:
+def test_the_page_says_what_the_restart_file_tools_say(build: str) -> None:
     m = kinds(build)
     (spans,) = run(LOOKS, [m.array])
     compare(m.array, spans, 7)

@@ -274,7 +274,7 @@ def bench_proof(sizes: list[int]) -> None:
 
 
 def bench_change(sizes: list[int]) -> None:
-    """Reading a slab, making another state of it and writing that, as the commands of the workshop do.
+    """Reading a slab, making another state of it and writing that, as the restart-file tools do.
 
     Target: 100,000 blocks in 3 s; where reals change their width the new state is proved as well.
     """

@@ -1,4 +1,4 @@
-"""What the commands of the workshop, SAVE and RESTART cost, at models of growing size.
+"""What the restart-file tools, SAVE and RESTART cost, at models of growing size.
 
     python tools/bench.py scale                                 with 1000, 10,000 and 100,000 blocks
     python tools/bench.py scale --blocks 1000000                with these
@@ -132,7 +132,9 @@ def row(
 
 def main() -> int:
     """The table; 1 if a limit is missed."""
-    parser = argparse.ArgumentParser(description="Measure the workshop, SAVE and RESTART at large models.")
+    parser = argparse.ArgumentParser(
+        description="Measure restart-file tools, SAVE and RESTART at large models."
+    )
     parser.add_argument("commands", nargs="*", help=f"any of: {', '.join(COMMANDS)}; all if left off")
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--turns", type=int, default=TURNS)

@@ -3,9 +3,10 @@
 A stiff contact vibrates at a frequency that mass damping of a low frequency does not reach. If it opens, it
 loses its friction each time, and blocks on such contacts slide at any friction.
 
-All contacts are examined every LOOK cycles (kernels.drive.cycle). In a window of JUDGE cycles a contact
-chatters if it has opened or closed between OFTEN pairs of looks or more. Blocks that fall or settle rattle as
-well, for a while. So the warning needs two windows in a row in which a SHARE of the loaded contacts chatters.
+All contacts are examined every 100 cycles (LOOK in kernels/drive/cycle.py). In a window of JUDGE cycles a
+contact chatters if it has opened or closed between OFTEN pairs of looks or more. Blocks that fall or settle
+rattle as well, for a while. So the warning needs two windows in a row in which a SHARE of the loaded contacts
+chatters.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from udec_ia.remark import Remark
 from udec_ia.running.group_names import contact_name
 
 JUDGE = 1000  # cycles of a window
-OFTEN = 4  # openings and closings in a window, of the JUDGE / LOOK that can be seen
+OFTEN = 4  # openings and closings in a window, of at most JUDGE / 100
 SHARE = 0.25  # of the contacts that carry a force
 FEWEST = 4  # contacts that chatter; fewer may be blocks that bounce
 ROOM = 1.25  # size of a new array of marks over the size needed

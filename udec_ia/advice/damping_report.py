@@ -19,14 +19,16 @@ def what_damps(h: Memory) -> list[str]:
     if mode:
         found.append(f"{mode.name} damping {mode.report.format(f=float(h.cr[g.RESTF]))}")
     elif h.cr[g.ALPHA]:
-        found.append(f"MASS damping takes ALPHA = {h.cr[g.ALPHA]:.3g} 1/s of every velocity")
+        found.append(f"MASS damping reduces every velocity at the rate ALPHA = {h.cr[g.ALPHA]:.3g} 1/s")
     if h.cr[g.BETA]:
         found.append(f"STIFFNESS damping, BETA = {h.cr[g.BETA]:.3g} s, acts on contacts that do not slip")
     blocks, conditions = list_of(h, "block"), list_of(h, "bound")
     if h.cr[g.ALPB] and (integers(h, blocks, HEAD) == g.MSDEF).any():
-        found.append(f"INTERNAL damping takes {h.cr[g.ALPB]:.3g} 1/s of the strain rates of SDEF blocks")
+        found.append(
+            f"INTERNAL damping reduces the strain rates of SDEF blocks at the rate {h.cr[g.ALPB]:.3g} 1/s"
+        )
     if any(np.any(getr(h, conditions, k)) for k in (g.KUCXX, g.KUCYY)):
-        found.append("dashpots of BOUNDARY act where they are")
+        found.append("viscous boundaries damp at their edges")
     return found
 
 

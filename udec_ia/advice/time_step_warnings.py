@@ -58,7 +58,7 @@ def step_warning(array: MainArray, safe: StepLimit) -> Remark | None:
         return Remark(
             "step-near-bound",
             f"there is no damping, and the time-step is {share:.2g} of the safe bound: joints that open and "
-            f"close may throw blocks ever higher; take {fraction}, or DAMPING",
+            f"close may add energy at each impact; take {fraction}, or DAMPING",
         )
     if step <= safe.step:
         damping = f"stiffness damping BETA = {h.cr[g.BETA]:.3g} s"

@@ -76,7 +76,7 @@ def _check_items(state: State) -> None:
         item, host, name = rings.item[k], int(block[k]), fields[which]
         what = f"{name} of {'contact' if rings.contact[k] else 'corner'}@{item} is {value}"
         if name == KNB:
-            why = f"the corner stands in the list of block@{host}"
+            why = f"the corner is in the list of block@{host}"
         elif name == KR:
             why = f"clockwise corner@{right} precedes it"
         elif name in AHEAD:
@@ -88,7 +88,7 @@ def _check_items(state: State) -> None:
 
 
 def _check_contacts(state: State) -> None:
-    """Invariant 4: each contact stands in the lists of both its blocks and in the contact list."""
+    """Invariant 4: each contact is in the lists of both its blocks and in the contact list."""
     rings, contacts = state.rings, state.address["contact"]
     one, two = (state.column("contact", name) for name in HOSTS)
     for k in np.flatnonzero(one == two):
@@ -99,7 +99,7 @@ def _check_contacts(state: State) -> None:
             text = f"contact@{contacts[k]} names block@{block[k]} in {name}"
             state.report(4, f"{text}, but is not in the block's list")
     for i in np.flatnonzero(rings.contact & (rings.row < 0)):
-        text = f"contact@{rings.item[i]} stands in the list of block@{rings.block[rings.owner[i]]}"
+        text = f"contact@{rings.item[i]} is in the list of block@{rings.block[rings.owner[i]]}"
         state.report(4, f"{text}, but not in the contact list")
 
 

@@ -27,7 +27,7 @@ def begin_compiling() -> None:
     if _Account.depth == 1:
         _Account.began = monotonic()
         if _Account.began - _Account.ended > STRETCH:
-            log.warning("compiling once for this machine, up to a minute ...")
+            log.warning("compiling once for this machine, up to a minute ...", extra={"key": "compiling"})
 
 
 def end_compiling() -> None:
@@ -45,6 +45,6 @@ def compile_seconds() -> float:
 
 
 def working_time() -> float:
-    """Reading of a clock in s that stands still while a kernel is being compiled."""
+    """Elapsed time in s without compilation."""
     now = monotonic() if _Account.began is None else _Account.began
     return now - _Account.seconds

@@ -138,5 +138,5 @@ def _judged(place: Place, h: Memory, text: str) -> Patch:
         raise UdecError(10, f"{text!r} is not a number, which {what} is")
     value, largest = float(text.upper().replace("D", "E")), float(np.finfo(words.dtype).max)
     if abs(value) > largest:
-        raise UdecError(28, f"{what} cannot be {text}", f"its word holds numbers up to {largest:.2g}")
+        raise UdecError(28, f"{what} cannot be {text}", f"its word stores numbers up to {largest:.2g}")
     return Patch(what, words, place.at, value)

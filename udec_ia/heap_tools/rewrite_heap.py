@@ -130,6 +130,6 @@ def _check_fit(fit: Fit, to: Scheme) -> None:
         limits = np.iinfo(to.int_type)
         holds = f"{to.int_bits}-bit integers hold {limits.min} to {limits.max}"
     else:
-        holds = f"{to.real_bits}-bit reals hold numbers up to {np.finfo(to.real_type).max:.2g}"
+        holds = f"{to.real_bits}-bit reals store numbers up to {np.finfo(to.real_type).max:.2g}"
     more = f", the first of {fit.misfits} numbers that these words cannot hold" if fit.misfits > 1 else ""
     raise UdecError(28, f"{name} is {value}{more}", f"{holds}: take wider words")

@@ -18,6 +18,7 @@ from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
+from udec_ia.remark import Remark
 
 
 def change(
@@ -72,7 +73,7 @@ def generate(
         if edge is not None:
             raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
         for remark in generate_manually(array, ib, points, triples, NEAR * float(array.h.cr[DTOL]), mixed):
-            session.tell(remark)
+            session.tell(Remark("gridpoints-moved", remark))
     elif mode.lower() == "automatic":
         if points or triples:
             blamed = "gridpoints" if points else "zones"
@@ -93,11 +94,10 @@ def _warn_of_lost_conditions(session: Session, before: int) -> None:
     """Warn if there are fewer than `before` boundary conditions now."""
     lost = before - number_of_conditions(session.array.h)
     if lost > 0:
-        subject = "they" if lost > 1 else "it"
-        session.tell(
-            f"{counted(lost, 'boundary condition')} went with what {subject} acted on: "
-            "give them again with BOUNDARY"
-        )
+        what = counted(lost, "boundary condition")
+        verb, it = ("were", "them") if lost > 1 else ("was", "it")
+        text = f"{what} {verb} removed together with the block or grid-point: give {it} again with BOUNDARY"
+        session.tell(Remark("conditions-removed", text))
 
 
 def why_none(session: Session, command: str, a: float, b: float, c: float, d: float) -> str:

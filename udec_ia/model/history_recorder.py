@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.ops.commands.history_definitions import define, named
+from udec_ia.remark import Remark
 from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
 
@@ -52,7 +53,8 @@ class HistoryRecorder:
 
         recording.look()
         for one in recording.lost:
-            tell(f"history {one.number}: {one.group} has gone, NaN is recorded from now on")
+            text = f"history {one.number}: {one.group} was deleted; NaN is recorded from here on"
+            tell(Remark("history-group-deleted", text))
         if self._files is None or self._files.place != base.absolute():
             self._files = HistoryFiles(base)
         return self._files.write(self.series)

@@ -383,7 +383,11 @@ class Model:
 
     @shows
     def print(self, *what: str) -> str:
-        """PRINT: "blocks", "contacts", "corners", "domains", "list", "dlist", "energy", "histories"."""
+        """PRINT: the listings of `what`, one after the other, as text.
+
+        what: "blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones",
+        "boundaries", "energy" or "histories".
+        """
         if any(word.lower() == "energy" for word in what):
             self.session.ensure_ready()
         return printout(self.array.h, *(word.lower() for word in what), series=self.session.recorder.series)

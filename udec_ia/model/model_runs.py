@@ -57,7 +57,7 @@ def solve(
     found = list(check_damping(session.array))
     session.remark(found)
     if found:  # CYCLE need not say it again
-        session.skip_remark(UNDAMPED)
+        session.mark_as_reported(UNDAMPED)
     return _run_to_rest(session, ratio, limit, criterion, partial(_log_cycles, session))
 
 

@@ -266,9 +266,9 @@ class Session:
                 self._remarks = self._remarks | {mark}
                 (tell or self.tell)(one)
 
-    def skip_remark(self, what: str) -> None:
-        """Do not report remarks on `what`."""
-        self._remarks = self._remarks | {what}
+    def mark_as_reported(self, remark: Remark) -> None:
+        """Do not report `remark` from now on."""
+        self._remarks = self._remarks | {remark}
 
     def summary(self) -> str:
         """The line that sums up the run until now, of files that are written by now."""

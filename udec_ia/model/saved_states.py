@@ -12,6 +12,7 @@ from udec_ia.layout.offsets import MCSPOI, MCTOT, NBLK, NCON, NSPOIL, TIME
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.array_growth import refit
 from udec_ia.printable_text import counted, printable
+from udec_ia.remark import Remark
 
 
 def save(session: Session, path: str | Path | None = None, *, force: bool = False) -> Path:
@@ -29,7 +30,8 @@ def save(session: Session, path: str | Path | None = None, *, force: bool = Fals
         session.prove_before_save()
     broken = [str(one) for one in check(session.array)] if force else []
     if broken:
-        session.tell(f"the state is unsound, and the file is marked so: {broken[0]}")
+        text = f"the state is unsound, and the file is marked so: {broken[0]}"
+        session.tell(Remark("unsound-state", text))
     target = session.out / RESTART_FILE if path is None else Path(path)
     folder, makes = target.parent, path is not None and not os.path.isdir(target.parent)
     if makes and not folder.resolve().is_relative_to(session.out.resolve()):
@@ -51,9 +53,9 @@ def restart(
     The words are those of the file's scheme; `mtop` limits them, whatever the limit was when they were
     saved. Existing pictures stay: new ones take the next numbers. Error 29 if the file cannot be used
     or `check` finds its state unsound, 1 if it holds more than `mtop`; the model is then as it was. A
-    state of which an error has ended a run is proved in its links and codes only.
+    state of which an error has ended a run is proved in its links, codes and counts only.
     force: take an unsound state, too, to inspect and to mend it through `h`; commands that follow
-    links prove the state first. unchecked: prove links and codes only; commands that cut or load
+    links prove the state first. unchecked: prove links, codes and counts only; commands that cut or load
     outlines, and SAVE, prove the rest.
     """
     from udec_ia.restart import load
@@ -66,13 +68,12 @@ def restart(
     session.array = array
     session.continue_from(deck_log, series)
     for sentence in notes:
-        session.tell(sentence)
+        session.tell(Remark("restart-file-note", sentence))
     if unsound:
-        session.tell(
-            f"taken by force: CYCLE and other commands that follow links are refused while {unsound[0]}"
-        )
+        text = f"taken by force: CYCLE and other commands that follow links are refused while {unsound[0]}"
+        session.tell(Remark("unsound-state", text))
     for warning in session.laws.note(laws):
-        session.tell(warning)
+        session.tell(Remark("law-changed", warning))
     ci, name = array.h.ci, array.scheme.name
     session.replace_state(written=force, unproved=force or unchecked or bool(ci[NSPOIL]))
     session.started = True
@@ -82,9 +83,10 @@ def restart(
         f"t = {array.h.cd[TIME]:.4g} s, words of {name}"
     )
     if ci[NSPOIL] in MESSAGES:
-        session.tell(
+        text = (
             f"{spoilt(int(ci[NSPOIL]), int(ci[MCSPOI]))}: inspect it, and continue from a state before that"
         )
+        session.tell(Remark("state-of-an-error", text))
     if array.scheme != session.scheme:
         session.inform(
             f"continues with the word scheme {array.scheme.name}, as saved; --build applies to START only"

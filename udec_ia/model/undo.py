@@ -38,6 +38,7 @@ from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
 from udec_ia.printable_text import counted
+from udec_ia.remark import Remark
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -291,7 +292,8 @@ class Undo:
         former.restore(session)
         if changed and not self._repeat(model, former):
             self._restore_words(former.h)
-            session.tell(f"lost: the last {counted(len(self.steps), 'command')}, which could not be repeated")
+            text = f"lost: the last {counted(len(self.steps), 'command')}, which could not be repeated"
+            session.tell(Remark("commands-lost", text))
             self.array = None
 
     def _repeat(self, model: Any, former: FormerState) -> bool:

@@ -122,9 +122,7 @@ def clockwise_link(h: Memory, block: int, iad: int) -> tuple[str, int]:
         return f"KL of corner@{iad}", iget(h, iad, g.KL)
     one, two = iget(h, iad, g.KB1), iget(h, iad, g.KB2)
     if block not in (one, two):
-        raise Unsound(
-            f"contact@{iad} stands in the list of block@{block}, but its KB1 is {one} and KB2 is {two}"
-        )
+        raise Unsound(f"contact@{iad} is in the list of block@{block}, but its KB1 is {one} and KB2 is {two}")
     name = "KL1" if block == one else "KL2"
     return f"{name} of contact@{iad}", iget(h, iad, getattr(g, name))
 

@@ -105,7 +105,7 @@ def _too_deep(array: MainArray, group: int) -> UdecError:
     if iget(h, group, HEAD) == g.MCOR:  # there is no contact
         x, y, ib = float(getr(h, group, g.KXP)), float(getr(h, group, g.KYP)), iget(h, group, g.KNB)
         detail = (
-            f"blocks have gone into each other in cycle {cycle} of {h.cr[g.TDEL]:g} s, too fast for a "
+            f"blocks penetrate each other in cycle {cycle} of {h.cr[g.TDEL]:g} s, too fast for a "
             f"contact in time: block@{ib} with its corner at ({x:g}, {y:g})"
         )
         advice = "take a greater KN, lower velocities, a smaller FRACTION or a greater ROUND"

@@ -89,7 +89,7 @@ class Solution(NamedTuple):
                 f"{found}, but there is no rest: kinetic over strain energy is {self.motion:.3g}, and "
                 f"{self.greatest_energy} has most of it"
             )
-        return f"{found}, and at least one cycle must show it"
+        return f"{found}: run at least one cycle"
 
     @property
     def short(self) -> str:

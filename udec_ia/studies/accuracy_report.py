@@ -1,4 +1,4 @@
-"""The answer of a study of accuracy in five lines, its table, and its picture."""
+"""The answer of a study of accuracy in five parts, its table, and its picture."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
+from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.output.block_drawing import INK
 from udec_ia.studies.accuracy_study import AccuracyStudy, pareto_set, path_differences
 from udec_ia.studies.deck_rewriting import list_changes
@@ -27,11 +28,11 @@ SMALLEST = 1e-16  # error that is drawn for none
 
 
 def answer(study: AccuracyStudy) -> list[str]:
-    """Five lines: the change, its cost, the accuracy, the loading path, the unknown; one without a result."""
+    """Five parts: the change, its cost, the accuracy, the loading path, the unknown; one without a result."""
     if not study.rows:
         return study.notes
     return [
-        f"to change: {_change(study)}",
+        f"to change:{_change(study)}",
         f"cost: {_cost(study)}",
         f"accuracy: {_accuracy(study)}",
         f"loading path: {_loading_path(study)}",
@@ -40,10 +41,13 @@ def answer(study: AccuracyStudy) -> list[str]:
 
 
 def _change(study: AccuracyStudy) -> str:
+    """The lines of the deck to change and, if it is not the default, the build: each on a line of its own."""
     row = study.best
     if row is not None:
-        changes = "; ".join(list_changes(study.deck, row.setting, row.numbers, study.fraction))
-        return f"{row.setting.name} for {study.tolerance:g}: {changes}"
+        build, *lines = list_changes(study.deck, row.setting, row.numbers, study.fraction)
+        changes = lines if row.setting.build == DEFAULT_SCHEME else [*lines, build]
+        setting = f"(setting {row.setting.name}, for a tolerance of {study.tolerance:g})"
+        return "\n    ".join(["", *(changes or ["nothing: the deck as it is"]), setting])
     if len(study.levels) < 2:
         reasons = (row.why for row in study.rows if row.ran and row.why)
         why = next(reasons, "no run with half the time-step has ended; give a greater --budget")
@@ -54,7 +58,7 @@ def _change(study: AccuracyStudy) -> str:
         why = f"the time-step does not change {' and '.join(study.known)}; ask for another --quantity"
     else:
         why = f"{_without_reference(study)}; ask for another --quantity, or see --digits"
-    return f"no recommendation: {why}"
+    return f" no recommendation: {why}"
 
 
 def _cost(study: AccuracyStudy) -> str:
@@ -106,7 +110,7 @@ def _loading_path(study: AccuracyStudy) -> str:
     depends = slips or max(found.values(), default=0.0) > study.tolerance
     return "; ".join(
         [
-            "depends on it" if depends else "does not depend on it",
+            "depends on it" if depends else "does not depend on it" if found else "no sign that it matters",
             study.solved if slips else "no joint slip is reported",
             *[f"SOLVE ... STATIC, another path, changes {name} by {off:.2g}" for name, off in found.items()],
             *["by how much is unknown: load in steps, and compare"] * (depends and not found),

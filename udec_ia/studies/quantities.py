@@ -68,7 +68,7 @@ class InitialState:
         there = {kind: addresses(array, kind) for kind in FOLLOWED}
         for place, group in self._groups.items():
             if isinstance(group, int) and group not in there[place[0]]:
-                self._groups[place] = f"the {place[0]} that was nearest has gone"
+                self._groups[place] = f"the {place[0]} that was nearest was deleted"
         for kind, (at, where) in self._first.items():
             stays = np.isin(at, there[kind])
             self._first[kind] = at[stays], where[stays]

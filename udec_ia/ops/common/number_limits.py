@@ -95,7 +95,7 @@ def finite(array: MainArray, **numbers: float) -> None:
     largest = float(np.finfo(array.scheme.real_type).max)
     for name, value in numbers.items():
         if not abs(real(**{name: value})) <= largest:
-            advice = f"{array.scheme.real_bits}-bit reals hold numbers up to {largest:.2g}"
+            advice = f"{array.scheme.real_bits}-bit reals store numbers up to {largest:.2g}"
             raise UdecError(28, f"{name} is {value:g}", advice, parameter=name)
 
 

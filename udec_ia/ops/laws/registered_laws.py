@@ -29,7 +29,7 @@ Record = dict[str, tuple[str, str]]  # name of a law: name of its file, SHA-256 
 class Bound(NamedTuple):
     """The laws in the form for kernels.
 
-    blocks: None if all blocks are rigid. joints: None if no contact follows a user's law
+    blocks: None if all blocks are rigid. joints: None if no contact has a law of its own
     (kernels.constitutive.joint_laws). own_blocks: True if a deformable block follows a user's law.
     """
 
