@@ -15,3 +15,10 @@ def test_the_page_has_all_keys() -> None:
     page = (ROOT / "docs" / "python.md").read_text().partition("## Warnings")[2].partition("\n## ")[0]
     rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("| `")]
     assert keys == {*re.findall(r"`([a-z-]+)`", "".join(rows))}
+
+
+def test_no_warning_is_plain_text() -> None:
+    plain = [
+        path for path in (ROOT / "udec_ia").rglob("*.py") if re.search(r'\btell\(\s*f?"', path.read_text())
+    ]
+    assert plain == []
