@@ -56,13 +56,12 @@ def checked_build(part: str) -> Any:
     return import_module(f"udec_ia.checked_build.{part}")
 
 
-def offset(name: str, words: tuple[int, ...], kind: str, count: int = 1) -> Any:
+def offset(name: str, words: tuple[int, ...], kind: str) -> Any:
     """The offsets `words` of a field that is not in the table, as kernels of this build take them.
 
-    kind: of the groups that have it; "headed" for groups with a head code, "junk group", "any". count:
-    elements.
+    kind: of the groups that have it; "headed" for groups with a head code, "junk group", "any".
     """
-    return checked_build("tagged_offsets").tagged(name, words, kind, count) if CHECKED else words
+    return checked_build("tagged_offsets").tagged(name, words, kind) if CHECKED else words
 
 
 def forget_kinds(ia: Any) -> None:
@@ -72,7 +71,10 @@ def forget_kinds(ia: Any) -> None:
 
 
 def at_offset(k: int, kind: int, own: Any) -> Any:
-    """Offset of number `k`, from 1, of groups of a kind. own: an offset of the routine that calls this."""
+    """Offset of number `k`, from 1, of groups of a kind.
+
+    kind, own: used by the checked form only. own: an offset of the routine that calls this.
+    """
     return k, k, k
 
 

@@ -137,7 +137,7 @@ def reach(words: Any, ratio: int, shapes: Shapes, heads: Any, strict: bool, foun
         _offer(words, ratio, shapes, heads[k, 0], heads[k, 1], found)
     while found.many[SURE] or found.many[WAITING]:
         if not found.many[SURE]:
-            _take_in(ratio, found)
+            _take_in(found)
         if not found.many[SURE]:  # all that waited has been found as something else
             return
         found.many[SURE] -= 1
@@ -176,7 +176,7 @@ def _offer(words: Any, ratio: int, shapes: Shapes, kind: int, iad: int, found: F
 
 
 @over_arrays
-def _take_in(ratio: int, found: Found) -> None:
+def _take_in(found: Found) -> None:
     """The groups that wait are found, unless a group with a code is at their place."""
     for k in range(found.many[WAITING]):
         place = found.waiting[k]
