@@ -34,7 +34,7 @@ A deck is a text file with one command to a line. The language is that of the re
 - A line that begins with `*`, `;`, `#` or `!` is a comment. In other lines `;`, `#` and `!` begin a comment;
   in file names only behind a blank and outside quotes.
 - A line that begins with `+` continues the one before it. Numbers of a pair or triple must be on one line.
-- At a terminal a command is obeyed when its line ends; a `+` at the end of the line continues it. Commands
+- At a terminal a command is executed when its line ends; a `+` at the end of the line continues it. Commands
   with `...` in their form continue until an empty line or the next command. If a line continues them with a
   word that is also a command, it needs a `+` before it: `G` is GRAVITY, `GRID` is not.
 - The first command is START or RESTART. Lines after STOP are ignored.
