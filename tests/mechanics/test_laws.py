@@ -10,10 +10,12 @@ from typing import Any
 
 import pytest
 from numba.core import config
+from support.mechanics_scenes import on_base
 
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.constitutive.block_laws import stress_increment
@@ -91,6 +93,7 @@ def test_what_is_no_number_is_error_35(build: str) -> None:
 PROBE = """
 import sys
 import numpy as np
+from udec_ia.heap.accessors import puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.kernels.constitutive import block_laws as kernels
@@ -169,6 +172,15 @@ def stack(law: Path, p1: float = 0.0, p2: float = 0.0) -> Model:
     if p2:
         model.change(0, 2, 1, 2, type="sdef")
     return model
+
+
+def test_a_law_of_the_program_fails_with_error_35_too() -> None:
+    m = on_base(2.0, 1.0, 0.1, 12.0)
+    contact = int(m.table("contact")["address"][0])
+    puti(m.h, contact, g.KCC, 6)
+    error = LawBook().failure(m.array, contact)
+    assert (error.number, error.group) == (35, contact)
+    assert "material 1" in error.advice
 
 
 @pytest.mark.parametrize(("index", "shown"), [(5, 5), (-6, -6), (1e15, 10**15)])

@@ -15,6 +15,7 @@ import numpy as np
 from udec_ia.advice.input_warnings import check_laws, check_loads
 from udec_ia.heap.accessors import iget
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_properties import materials_of
 from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
@@ -238,7 +239,7 @@ def _materials(s: Scene) -> Found:
     """Materials and properties that nothing looks at."""
     given = {name: np.flatnonzero(s.h.cr[k : k + NMAT]) + 1 for name, k in PROPERTIES.items()}
     of_blocks = s.column("block", "KMAT")
-    used = np.union1d(of_blocks, s.column("contact", "KCM")[s.touching])
+    used = np.union1d(of_blocks, materials_of(s.h, s.atlas.groups["contact"])[s.touching])
     for m in np.setdiff1d(np.concatenate([*given.values()]), used).astype(int).tolist():
         yield f"PROPERTY MATERIAL={m}", "no block and no contact has this material"
     stiff = np.setdiff1d(np.concatenate([given[name] for name in MODULI]), of_blocks[s.deformable])

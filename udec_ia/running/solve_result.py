@@ -24,6 +24,7 @@ from udec_ia.remark import Remark
 from udec_ia.running.group_names import name_of
 
 MAX, MEAN = "max", "mean"  # criterion of SOLVE: the greatest unbalanced force, or the mean of all
+SLIPPED = "joints slipped"  # in the last line of a run whose result depends on the loading path
 
 
 def criterion_of(word: str) -> str:
@@ -102,7 +103,7 @@ class Solution(NamedTuple):
         if self.fallen:
             found.append(f"{counted(len(self.fallen), 'block')} fallen")
         if "joints-slipped" in self.keys:
-            found.append("joints slipped")
+            found.append(SLIPPED)
         if not self.reached:
             return f"{asked} NOT REACHED ({', '.join(found)})"
         return f"{asked} reached, but: {', '.join(found)}" if found else ""

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from udec_ia.output.block_drawing import INK
+from udec_ia.running.solve_result import SLIPPED
 from udec_ia.studies.accuracy_study import AccuracyStudy, pareto_set, path_differences
 from udec_ia.studies.deck_rewriting import list_changes
 from udec_ia.studies.extrapolation import share
 from udec_ia.studies.setting_runner import Row
 from udec_ia.studies.study_table import StudyTable, draw_panels
 
-SLIPPED = "joints slipped"  # how SOLVE reports that its result depends on the loading path
 COLUMNS = ("setting", "error", "seconds", "MB", "cycles", "what")
 HEIGHT = 4.0  # inches of the picture
 COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
@@ -106,7 +106,7 @@ def _loading_path(study: AccuracyStudy) -> str:
     depends = slips or max(found.values(), default=0.0) > study.tolerance
     return "; ".join(
         [
-            "depends on it" if depends else "does not depend on it",
+            "depends on it" if depends else "does not depend on it" if found else "no sign that it does",
             study.solved if slips else "no joint slip is reported",
             *[f"SOLVE ... STATIC, another path, changes {name} by {off:.2g}" for name, off in found.items()],
             *["by how much is unknown: load in steps, and compare"] * (depends and not found),

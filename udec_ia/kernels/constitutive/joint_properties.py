@@ -91,13 +91,11 @@ def twice_stored(h: Memory, ic: int, fn: float, fs: float) -> tuple[Any, Any]:
     return normal, shear
 
 
-@kernel
-def strengths(h: Memory, contacts: Any) -> Any:
-    """Shear strengths (N/m, 64-bit reals) of the contacts at the addresses `contacts`, under their forces."""
-    found = np.empty(len(contacts), np.float64)
-    for k in range(len(contacts)):
-        found[k] = strength(joint_of(h, contacts[k]), np.float64(getr(h, contacts[k], g.KCFN)))
-    return found
+@inlined
+def stored_energy(h: Memory, ic: int) -> float:
+    """Elastic energy (J/m) of the forces of contact `ic`."""
+    normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
+    return (normal + shear) * real(h, 0.5)
 
 
 def joints_of_materials(h: Memory, materials: Any) -> Joint:

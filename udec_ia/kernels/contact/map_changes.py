@@ -28,7 +28,7 @@ from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
 from udec_ia.kernels.constitutive.joint_laws import is_idle, reset_forces
-from udec_ia.kernels.constitutive.joint_properties import twice_stored
+from udec_ia.kernels.constitutive.joint_properties import stored_energy, twice_stored
 from udec_ia.kernels.detect.point_depth import do_not_meet
 from udec_ia.kernels.detect.third_block_in_gap import gap_is_occupied
 from udec_ia.kernels.geometry.contact_geometry import ce, distance_past, faces, has_no_arc, meet
@@ -90,13 +90,6 @@ def neighbour_on_same_arc(h: Memory, ic: int) -> int:
     return before if is_contact_of_arc(h, before, ib, jb, arc) else int64(0)
 
 
-@inlined
-def spring_energy(h: Memory, ic: int) -> float:
-    """Energy stored in the springs of contact `ic`."""
-    normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
-    return (normal + shear) * real(h, 0.5)
-
-
 @kernel
 def transfer_force(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
     """Transfer the force of contact `ic`, with normal (nx, ny), to contact `jc`; ENERGY records the loss."""
@@ -104,12 +97,12 @@ def transfer_force(h: Memory, ic: int, jc: int, nx: float, ny: float) -> None:
     fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
     if iget(h, ic, g.KB1) != iget(h, jc, g.KB1):
         fx, fy = -fx, -fy
-    before = spring_energy(h, ic) + spring_energy(h, jc)
+    before = stored_energy(h, ic) + stored_energy(h, jc)
     mx, my, _, _, _, _ = meet(h, iget(h, jc, g.KCCOD), iget(h, jc, g.KCP1), iget(h, jc, g.KCP2))
     putr(h, jc, g.KCFN, getr(h, jc, g.KCFN) + (fx * mx + fy * my))
     putr(h, jc, g.KCFS, getr(h, jc, g.KCFS) + (fx * my - fy * mx))
     reset_forces(h, ic)
-    h.cd[g.WFRIC] += before - spring_energy(h, jc)
+    h.cd[g.WFRIC] += before - stored_energy(h, jc)
 
 
 @kernel
@@ -152,8 +145,8 @@ def update_geometry(h: Memory, ic: int) -> tuple[float, float, float]:
 
 
 @inlined
-def is_duplicate(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
-    """True if item `jc` of block `ib` is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
+def is_duplicate(h: Memory, ic: int, jc: int, jb: int) -> bool:
+    """True if item `jc` of a block is a contact with block `jb` too, nearer than FTOL to contact `ic`."""
     if not is_contact(h, jc) or (iget(h, jc, g.KB1) != jb and iget(h, jc, g.KB2) != jb):
         return False
     dx, dy = getr(h, jc, g.KXC) - getr(h, ic, g.KXC), getr(h, jc, g.KYC) - getr(h, ic, g.KYC)
@@ -163,8 +156,8 @@ def is_duplicate(h: Memory, ic: int, jc: int, ib: int, jb: int) -> bool:
 @inlined
 def has_duplicate(h: Memory, ic: int) -> bool:
     """True if a neighbour on block KB1 is a contact of the same two blocks, nearer than FTOL."""
-    ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
-    return is_duplicate(h, ic, iget(h, ic, g.KL1), ib, jb) or is_duplicate(h, ic, iget(h, ic, g.KLB1), ib, jb)
+    jb = iget(h, ic, g.KB2)
+    return is_duplicate(h, ic, iget(h, ic, g.KL1), jb) or is_duplicate(h, ic, iget(h, ic, g.KLB1), jb)
 
 
 @inlined

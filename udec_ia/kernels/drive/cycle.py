@@ -112,8 +112,8 @@ def count_openings(h: Memory, marks: Any) -> bool:
     return True
 
 
-UPDATE, TUNNELLING, BOUNDS, MOTION, RELAX, FORCES, LOADS, STRESSES = range(8)
-CONTACT, CHANGES, MEASURES, RECORD, REST, OPENINGS = range(8, 14)
+UPDATE, TUNNELLING, BOUNDARIES, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(7)
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS = range(7, 14)
 
 
 def passes(
@@ -176,19 +176,19 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where this changes no result
-            if passes[BOUNDS] != 0:
-                call_entry(passes[BOUNDS], h)
-            if passes[MOTION] != 0:
-                call_entry(passes[MOTION], h)
+            if passes[BOUNDARIES] != 0:
+                call_entry(passes[BOUNDARIES], h)
+            if passes[DAMPING] != 0:
+                call_entry(passes[DAMPING], h)
             if passes[RELAX] != 0:
                 call_entry(passes[RELAX], h)
-            if passes[FORCES] != 0:
-                call_entry(passes[FORCES], h)
-            if passes[LOADS] != 0:
-                call_entry(passes[LOADS], h)
+            if passes[WORK_BEFORE_MOTION] != 0:
+                call_entry(passes[WORK_BEFORE_MOTION], h)
+            if passes[LOAD_WORK] != 0:
+                call_entry(passes[LOAD_WORK], h)
             fastest = move_blocks(h, soft, laws)
-            if passes[STRESSES] != 0:
-                call_entry(passes[STRESSES], h)
+            if passes[WORK_AFTER_MOTION] != 0:
+                call_entry(passes[WORK_AFTER_MOTION], h)
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
         if h.ci[g.JPHASE] == g.AT_WAYS:
             if passes[TUNNELLING] == 0:
@@ -203,7 +203,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             broken = h.ci[g.NBROKE]
             if len(waiting) < h.ci[g.NCON]:
                 waiting = np.empty(2 * h.ci[g.NCON], np.int64)
-            ford_all(h, soft, joints, passes[CHANGES], passes[CONTACT], waiting)
+            ford_all(h, soft, joints, passes[MAP_CHANGES], passes[CONTACT_WORK], waiting)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
             if not call_entry(passes[UPDATE], h, int64(0)):

@@ -94,23 +94,33 @@ def power_of_growth_in_body(h: Memory, ib: int, ir: int) -> float:
 
 
 @kernel
+def power_of_growth_in_points(h: Memory, ib: int, first: int, before: float) -> tuple[float, int]:
+    """The same of the grid-points of block `ib`, added to `before`, and the relaxation after theirs.
+
+    first: the relaxation of its first grid-point.
+    """
+    total, ir = before, int64(first)
+    ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+    while ig != 0:
+        if iget(h, ib, g.KBFIX) != g.FIXED:
+            total += power_of_growth(h, ir, g.KRXFX, getr(h, ig, g.KGFX), getr(h, ig, g.KXDG))
+            total += power_of_growth(h, ir, g.KRXFY, getr(h, ig, g.KGFY), getr(h, ig, g.KYDG))
+        ir = next_relaxation(h, ir)
+        ig = iget(h, ig, g.KG)
+    return total, ir
+
+
+@kernel
 def power_of_growth_in_model(h: Memory) -> float:
     """The same for the whole model."""
     total = 0.0
     ir = int64(h.ci[g.IRXPNT])
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
-        free = iget(h, ib, g.KBFIX) != g.FIXED
         if iget(h, ib, HEAD) == g.MFDEF:
-            ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
-            while ig != 0:
-                if free:
-                    total += power_of_growth(h, ir, g.KRXFX, getr(h, ig, g.KGFX), getr(h, ig, g.KXDG))
-                    total += power_of_growth(h, ir, g.KRXFY, getr(h, ig, g.KGFY), getr(h, ig, g.KYDG))
-                ir = next_relaxation(h, ir)
-                ig = iget(h, ig, g.KG)
+            total, ir = power_of_growth_in_points(h, ib, ir, total)
         else:
-            if free:
+            if iget(h, ib, g.KBFIX) != g.FIXED:
                 total += power_of_growth_in_body(h, ib, ir)
             ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)

@@ -141,6 +141,8 @@ class LawBook:
         else:
             who, law, material = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
         detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[g.MCTOT])}"
+        if law not in self.given:  # a law of the program
+            return UdecError(35, detail, f"check the properties of material {material}", group=group)
         raised, advice = self.given[law].raised(Material(*_materials(array)[material - 1]))
         return UdecError(35, detail + raised, advice, group=group)
 
