@@ -226,7 +226,9 @@ def test_whatever_is_damaged_can_be_looked_at(saved: Path, tmp_path: Path) -> No
         assert forced.stop()
 
 
-def test_what_is_not_judged_is_said(model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_checked_is_reported(
+    model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert unchecked_parts(model.array) == []
     model.array.h.ci[g.JPHASE] = g.AT_CONTACTS
     model.array.h.ci[g.NSPOIL], model.array.h.ci[g.MCSPOI] = 15, 12
