@@ -23,7 +23,7 @@ from udec_ia.command_line import add_commands
 from udec_ia.command_line.command_options import given, variables, word_scheme
 from udec_ia.errors import UdecError
 from udec_ia.file_replacement import takes_files
-from udec_ia.interrupt_signals import SIGNALS, Terminated, hold, passing, terminate
+from udec_ia.interrupt_signals import SIGNALS, Terminated, allow_signals, defer_signals, terminate
 from udec_ia.layout.field_table import StaleLayout
 from udec_ia.printable_text import printable, visible
 
@@ -125,7 +125,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if current_thread() is main_thread():
             former = {number: signal.getsignal(number) for number in SIGNALS}
             signal.signal(signal.SIGTERM, terminate)
-        with hold(), passing():
+        with defer_signals(), allow_signals():
             return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt as interrupt:
         for number in former:  # the process ends anyway

@@ -1,10 +1,10 @@
 """Ctrl-C and SIGTERM wait until they can do no harm.
 
 Python raises KeyboardInterrupt between any two of its steps: half-way through a change of the map, and in the
-midst of a library that swallows it. So while a command is being obeyed (`hold`) a signal is only recorded.
-It is handed to the former handler, which raises, as soon as the command is done. Commands that
-take long let it through on the way: a run between two pieces of its cycles (`poll`), what only looks or draws
-at any time (`passing`). A second Ctrl-C does not wait: the command is undone (model/undo.py).
+midst of a library that swallows it. So while a command is executed (`defer_signals`) a signal is only
+recorded. It is handed to the former handler, which raises, as soon as the command is done. Commands that take
+long let it through on the way: a run between two pieces of its cycles (`poll`), a method that only shows or
+draws at any time (`allow_signals`). A second Ctrl-C does not wait: the command is undone (model/undo.py).
 
 An exception that is raised where Python cleans up, in a `__del__` or a callback of a weak reference, is lost.
 So a signal that is let through stays recorded until it has ended something; otherwise it is handed on again,
@@ -37,17 +37,17 @@ def terminate(number: int, frame: Any) -> None:
 
 
 class _Waiting:
-    """State that all holds of the process share.
+    """State that all `defer_signals` of the process share.
 
-    depth: open holds. passing: signals do not wait all the same. firm: even the second one
+    depth: open `defer_signals`. allowed: signals do not wait all the same. also_second: even the second one
     waits. former: the handlers that `_arrived` replaces. report_lost: the hook that `_lost` replaces.
     signals: those that have come, in order. raised: what the last handler has raised.
     """
 
     def __init__(self) -> None:
         self.depth = 0
-        self.passing = False
-        self.firm = False
+        self.allowed = False
+        self.also_second = False
         self.former: dict[int, Any] = {}
         self.report_lost = sys.unraisablehook
         self.signals: list[int] = []
@@ -73,9 +73,9 @@ _waiting = _Waiting()
 
 
 def _arrived(number: int, frame: Any) -> None:
-    """Record the signal, or hand it on outside of `hold` or if one of its kind is waiting already."""
-    waits = _waiting.depth > 0 and not _waiting.passing
-    if waits and (_waiting.firm or number not in _waiting.signals):
+    """Record the signal, or hand it on outside of `defer_signals` or if one of its kind waits already."""
+    waits = _waiting.depth > 0 and not _waiting.allowed
+    if waits and (_waiting.also_second or number not in _waiting.signals):
         _waiting.signals.append(number)
         return
     _waiting.signals[:] = [number] if _waiting.depth > 0 else []
@@ -93,17 +93,17 @@ def _lost(unraisable: sys.UnraisableHookArgs) -> None:
         _waiting.report_lost(unraisable)
 
 
-class hold:  # noqa: N801 - a context, which reads as a verb
-    """Within, signals wait. firm: also the second one of a kind, which else does not."""
+class defer_signals:  # noqa: N801 - a context, which reads as a verb
+    """Within, signals wait. also_second: even the second one of a kind, which else does not."""
 
-    def __init__(self, firm: bool = False) -> None:
-        self.firm = firm
+    def __init__(self, also_second: bool = False) -> None:
+        self.also_second = also_second
         self.here = current_thread() is main_thread()
 
     def __enter__(self) -> None:
         if not self.here:
             return
-        self.before = _waiting.passing, _waiting.firm
+        self.before = _waiting.allowed, _waiting.also_second
         if _waiting.depth == 0:
             for number in SIGNALS:
                 handler = signal.getsignal(number)
@@ -112,14 +112,14 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                     signal.signal(number, _arrived)
             if sys.unraisablehook is not _lost:  # as it is after a signal has come within these lines
                 _waiting.report_lost, sys.unraisablehook = sys.unraisablehook, _lost
-        _waiting.passing, _waiting.firm = False, self.firm or _waiting.firm
+        _waiting.allowed, _waiting.also_second = False, self.also_second or _waiting.also_second
         _waiting.depth += 1
 
     def __exit__(self, *exception: object) -> None:
         if not self.here:
             return
         _waiting.depth -= 1
-        _waiting.passing, _waiting.firm = self.before
+        _waiting.allowed, _waiting.also_second = self.before
         _waiting.ended(exception[1])
         if _waiting.depth == 0:
             for number, handler in _waiting.former.items():
@@ -127,7 +127,7 @@ class hold:  # noqa: N801 - a context, which reads as a verb
                     signal.signal(number, handler)
             if sys.unraisablehook is _lost:
                 sys.unraisablehook = _waiting.report_lost
-        if _waiting.depth == 0 or _waiting.passing:
+        if _waiting.depth == 0 or _waiting.allowed:
             poll()
 
 
@@ -146,12 +146,12 @@ def dealt_with(error: BaseException) -> None:
 
 
 @contextmanager
-def passing() -> Iterator[None]:
-    """Within, signals do not wait, also inside a `hold`."""
+def allow_signals() -> Iterator[None]:
+    """Within, signals do not wait, also inside `defer_signals`."""
     if current_thread() is not main_thread():
         yield
         return
-    before, _waiting.passing = _waiting.passing, True
+    before, _waiting.allowed = _waiting.allowed, True
     try:
         poll()
         yield
@@ -162,4 +162,4 @@ def passing() -> Iterator[None]:
             raise raised from error
         raise
     finally:
-        _waiting.passing = before
+        _waiting.allowed = before

@@ -19,7 +19,7 @@ from trials.interrupted_commands import SCENE, state
 from udec_ia import Model, UdecError
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.heap.main_array import MainArray
-from udec_ia.interrupt_signals import Terminated, dealt_with, hold, passing, poll, terminate
+from udec_ia.interrupt_signals import Terminated, allow_signals, dealt_with, defer_signals, poll, terminate
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model.undo import Undo
 
@@ -36,17 +36,17 @@ def interrupt() -> None:
 
 def test_a_signal_waits_for_the_end_of_a_hold_and_a_second_one_does_not() -> None:
     former, done = signal.getsignal(signal.SIGINT), []
-    with pytest.raises(KeyboardInterrupt), hold():  # noqa: PT012
+    with pytest.raises(KeyboardInterrupt), defer_signals():  # noqa: PT012
         interrupt()
-        with hold():
+        with defer_signals():
             done.append("still held")
     assert done == ["still held"]
     assert signal.getsignal(signal.SIGINT) is former
-    with pytest.raises(KeyboardInterrupt), hold():  # noqa: PT012
+    with pytest.raises(KeyboardInterrupt), defer_signals():  # noqa: PT012
         interrupt()
         interrupt()
         done.append("never")
-    with pytest.raises(KeyboardInterrupt), hold(firm=True):  # noqa: PT012
+    with pytest.raises(KeyboardInterrupt), defer_signals(also_second=True):  # noqa: PT012
         interrupt()
         interrupt()
         done.append("firm")
@@ -55,14 +55,14 @@ def test_a_signal_waits_for_the_end_of_a_hold_and_a_second_one_does_not() -> Non
 
 
 def test_a_signal_comes_at_once_where_it_is_let_through() -> None:
-    for let_through in (poll, lambda: passing().__enter__()):
+    for let_through in (poll, lambda: allow_signals().__enter__()):
         done = False
-        with pytest.raises(KeyboardInterrupt), hold():  # noqa: PT012
+        with pytest.raises(KeyboardInterrupt), defer_signals():  # noqa: PT012
             interrupt()
             let_through()  # type: ignore[operator]
             done = True
         assert not done
-    with hold(), pytest.raises(KeyboardInterrupt), passing():  # noqa: PT012
+    with defer_signals(), pytest.raises(KeyboardInterrupt), allow_signals():  # noqa: PT012
         interrupt()
         poll()
 
@@ -77,8 +77,8 @@ def test_an_interrupt_that_is_swallowed_comes_again() -> None:
                 poll()
 
     done = []
-    with pytest.raises(KeyboardInterrupt), hold():  # noqa: PT012
-        with passing():
+    with pytest.raises(KeyboardInterrupt), defer_signals():  # noqa: PT012
+        with allow_signals():
             Swallows()
             done.append("went on")
         done.append("to the end of the hold")
@@ -94,10 +94,10 @@ def test_an_interrupt_that_a_library_turns_into_an_error_of_its_own_is_one() -> 
             os.kill(os.getpid(), signal.SIGINT)
         raise ValueError("invalid bounding box")
 
-    with pytest.raises(KeyboardInterrupt) as caught, hold(), passing():
+    with pytest.raises(KeyboardInterrupt) as caught, defer_signals(), allow_signals():
         library()
     assert isinstance(caught.value.__cause__, ValueError)
-    with pytest.raises(ValueError, match="of its own"), hold(), passing():
+    with pytest.raises(ValueError, match="of its own"), defer_signals(), allow_signals():
         raise ValueError("of its own")
 
 
@@ -117,8 +117,8 @@ def test_that_an_interrupt_was_lost_on_the_way_is_not_told(
             poll()
 
     done = []
-    with suppress(KeyboardInterrupt), hold():
-        with passing():
+    with suppress(KeyboardInterrupt), defer_signals():
+        with allow_signals():
             Loses()
             done.append("went on")
         done.append("to the end of the hold")
@@ -138,10 +138,10 @@ def test_a_signal_within_the_first_lines_of_a_hold_leaves_the_next_one_sound(
         def __del__(self) -> None:
             raise ValueError
 
-    with hold():
+    with defer_signals():
         left = sys.unraisablehook
     sys.unraisablehook = left
-    with hold():
+    with defer_signals():
         Loses()
     assert len(told) == 1
     assert sys.unraisablehook == told.append
@@ -156,7 +156,7 @@ def test_a_handler_that_raises_is_called_once_for_a_signal() -> None:
 
     former = signal.signal(signal.SIGTERM, leave)
     try:
-        with pytest.raises(SystemExit), hold(), passing():
+        with pytest.raises(SystemExit), defer_signals(), allow_signals():
             os.kill(os.getpid(), signal.SIGTERM)
     finally:
         signal.signal(signal.SIGTERM, former)
@@ -167,7 +167,7 @@ def test_other_threads_hold_nothing() -> None:
     found = []
 
     def run() -> None:
-        with hold(), passing():
+        with defer_signals(), allow_signals():
             found.append(side_by_side().cycle(1))
 
     thread = threading.Thread(target=run)
@@ -323,7 +323,7 @@ def test_an_interrupt_is_handed_on_unless_it_was_dealt_with(is_dealt_with: bool)
     """As where a debugger asks within a command: Ctrl-C ends a line that is typed, and not the command."""
 
     def ask() -> None:
-        with hold(), passing():
+        with defer_signals(), allow_signals():
             try:
                 signal.raise_signal(signal.SIGINT)
             except KeyboardInterrupt as error:

@@ -51,7 +51,7 @@ def falling() -> Model:
     return m
 
 
-def test_a_safe_step_is_judged_again_when_contacts_are_made(
+def test_a_safe_step_is_checked_again_when_contacts_are_made(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is shortened before they bear a force, and CYCLEs cut otherwise, or a HISTORY, do not matter."""

@@ -12,7 +12,7 @@ import pytest
 from support.every_group_kind import every_kind
 
 from udec_ia import Model
-from udec_ia.checker import check, unjudged
+from udec_ia.checker import check, unchecked_parts
 from udec_ia.cli import main
 from udec_ia.deck.command_monitor import Monitor, run_deck
 from udec_ia.deck.deck_statements import statements
@@ -104,7 +104,7 @@ def test_a_damaged_state_is_saved_looked_at_mended_and_goes_on(
     said = capsys.readouterr().out.splitlines()
     assert said[0] == f"{path}: {len(found)} violations"
     assert said[1].startswith("saved by force, being unsound: invariant")
-    assert "not judged: what depends on broken links" in said
+    assert "not checked: what depends on broken links" in said
     assert len(said) == len(found) + 4
     forced = Model.restore(path, force=True, out=out / "forced")
     assert [str(one) for one in forced.check()] == found
@@ -134,7 +134,7 @@ def test_in_a_deck(model: Model) -> None:
         out.truncate(0)
         out.seek(0)
         for statement in statements([text], "deck"):
-            monitor.obey(statement)
+            monitor.execute(statement)
         return out.getvalue()
 
     with pytest.raises(UdecError, match="error 20"):
@@ -226,18 +226,20 @@ def test_whatever_is_damaged_can_be_looked_at(saved: Path, tmp_path: Path) -> No
         assert forced.stop()
 
 
-def test_what_is_not_judged_is_said(model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert unjudged(model.array) == []
+def test_what_is_not_checked_is_reported(
+    model: Model, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert unchecked_parts(model.array) == []
     model.array.h.ci[g.JPHASE] = g.AT_CONTACTS
     model.array.h.ci[g.NSPOIL], model.array.h.ci[g.MCSPOI] = 15, 12
     path = model.save(tmp_path / "half.h5")
     expected = [
-        "not judged: contacts against outlines, as the state stopped in the middle of a cycle, "
+        "not checked: contacts against outlines, as the state stopped in the middle of a cycle, "
         "before the contact pass (JPHASE 2)",
-        "not judged: which domain is the outer one, as error 15 in cycle 12, contact overlap too great, has "
+        "not checked: which domain is the outer one, as error 15 in cycle 12, contact overlap too great, has "
         "ended a run of this state",
     ]
-    assert unjudged(model.array) == expected
+    assert unchecked_parts(model.array) == expected
     assert main(["check", str(path)]) == 0
     assert capsys.readouterr().out.splitlines() == [f"{path}: sound", *expected]
     assert [f"check     {one}" in info(path) for one in expected] == [True, True]

@@ -28,7 +28,7 @@ from udec_ia.heap_tools.heap_lookup import who
 from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import domain_polygons
 from udec_ia.reader.field_rows import NOT_ALLOWED, meaning
-from udec_ia.reader.word_map import ASTRAY, JUNK, KINDS, Atlas, called
+from udec_ia.reader.word_map import IS_NO, JUNK, KINDS, Atlas, called
 from udec_ia.view.view_data import state, tables
 from udec_ia.view.view_page import LIMIT, script
 
@@ -157,7 +157,7 @@ def compare(array: MainArray, spans: Any, every: int) -> None:
         for said, word in zip(one["words"], atlas.words(span), strict=True):
             text = meaning(atlas, span, word)
             assert said["text"] == text
-            broken = ASTRAY in text or text.startswith(NOT_ALLOWED) or text == "no head code of its kind"
+            broken = IS_NO in text or text.startswith(NOT_ALLOWED) or text == "no head code of its kind"
             assert said["sound"] is not broken
         if k % every == 0:
             rows = who(atlas, span.first).rows

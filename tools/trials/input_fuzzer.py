@@ -281,7 +281,7 @@ def run_deck(rng: Rng, folder: Path) -> tuple[int, str]:
 def obey(monitor: Monitor, statement: Statement) -> UdecError | None:
     """Obey a statement as at the terminal, where an error does not end the run. Returns the error, if any."""
     try:
-        monitor.obey(statement)
+        monitor.execute(statement)
     except UdecError as error:
         numbered(error)
         return error

@@ -59,7 +59,7 @@ def state(model: Model) -> dict[str, Any]:
         "flags": (model.session.started, model.session.written, model.session.unproved, model.explain_step),
         "remarks": (
             sorted(model.session._remarks),
-            model.session.monitors.energy._judged,
+            model.session.monitors.energy._checked,
             model.session.monitors.energy._warned,
             model.session.monitors.energy._account,
         ),
@@ -159,13 +159,13 @@ class Injector:
 
 
 def forget_holds(depth: int) -> None:
-    """Close the holds that were left open beyond `depth`.
+    """Close each `defer_signals` that was left open beyond `depth`.
 
     What is raised here at the line of a `with` on the way out comes before its end, which is then left out.
     No signal raises there: it waits until that end.
     """
     interrupt_signals._waiting.depth = depth
-    interrupt_signals._waiting.passing = interrupt_signals._waiting.firm = False
+    interrupt_signals._waiting.allowed = interrupt_signals._waiting.also_second = False
 
 
 class Lines:
@@ -184,7 +184,7 @@ class Lines:
         monitor = Monitor(model, io.StringIO())
         lines = SCENE if not line.startswith("BLOCK") else "START\nPROP MAT=1 DENS=2000\nFUNCTION 1 0 0 1 1"
         for statement in statements(lines.splitlines(), "scene"):
-            monitor.obey(statement)
+            monitor.execute(statement)
         if self.cycled and not line.startswith("BLOCK"):
             model.cycle(30)
         return model
@@ -242,7 +242,7 @@ class Lines:
         model, monitor = self.model, Monitor(self.model, io.StringIO())
         (statement,) = statements([line], "line")
         if typed:
-            monitor.obey(statement)
+            monitor.execute(statement)
         else:
             from udec_ia.deck.lines_and_calls import parse
 

@@ -42,7 +42,7 @@ class ChatterMonitor:
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.share = 0.0
-        self._judged = 0  # cycle at the end of the last window
+        self._checked = 0  # cycle at the end of the last window
         self._warned = False
         self._marks = np.zeros(0, np.uint8)
 
@@ -55,16 +55,16 @@ class ChatterMonitor:
             self._marks = np.pad(self._marks, (0, int(ROOM * needed) - len(self._marks)))
         return self._marks
 
-    def judge(self, array: MainArray, safe: bool) -> None:
+    def check_window(self, array: MainArray, safe: bool) -> None:
         """At the end of a window, warn if contacts chatter; once until they stop.
 
         safe: the time-step is safe; an unsafe one makes contacts chatter, and has its own warning.
         """
         h = array.h
         cycle = int(h.ci[g.MCTOT])
-        if cycle % JUDGE or cycle == self._judged or not len(self._marks):
+        if cycle % JUDGE or cycle == self._checked or not len(self._marks):
             return
-        self._judged = cycle
+        self._checked = cycle
         loaded, many = int((self._marks > 0).sum()), int((self._marks >= 2 * OFTEN).sum())
         before, self.share = self.share, many / max(loaded, 1) if many >= FEWEST else 0.0
         if self.share >= SHARE and before >= SHARE and safe and not self._warned:

@@ -49,7 +49,7 @@ FACTOR = 10  # greatest energy over the input
 LOOK = 100  # cycles between two checks of the energy
 
 
-class Stock(NamedTuple):
+class EnergyState(NamedTuple):
     """Energy in J/m. stored: kinetic and strain. friction: its work. potential: of gravity."""
 
     stored: float
@@ -61,13 +61,13 @@ class Account(NamedTuple):
     """Energies of a monitored run, which may have several CYCLEs.
 
     begun: at its beginning, with the changes by commands since. ended: at the end of the last CYCLE.
-    driven: WDRIVE at its beginning. grain: energy that is lost in rounding.
+    driven: WDRIVE at its beginning. rounding_energy: that blocks can gain by rounding.
     """
 
-    begun: Stock
-    ended: Stock
+    begun: EnergyState
+    ended: EnergyState
     driven: float
-    grain: float
+    rounding_energy: float
 
 
 class EnergyMonitor:
@@ -76,18 +76,18 @@ class EnergyMonitor:
     def __init__(self, tell: Callable[[str], None] = lambda warning: None) -> None:
         self.tell = tell
         self.safe = StepLimit(np.inf, 0)
-        self._judged = (0.0, 0.0, -1)  # step, the same with its damping, contacts made so far
+        self._checked = (0.0, 0.0, -1)  # step, the same with its damping, contacts made so far
         self._warned = (0.0, 0.0)  # step, the same with its damping
         self._suspected = self._own_laws = False
         self._account: Account | None = None
 
-    def judge(self, array: MainArray, anew: bool = False) -> None:
+    def check_step(self, array: MainArray, anew: bool = False) -> None:
         """Calculate the safe bound if it may have changed, or `anew`; warn once of each step above it."""
         h, step = array.h, float(array.h.cr[g.TDEL])
         now = step, damped_step(h, step), int(h.ci[g.NMADE])
-        if now == self._judged and not anew:
+        if now == self._checked and not anew:
             return
-        self._judged = now
+        self._checked = now
         self.safe = bound(array)
         self._suspected = step > SUSPECT * damped_step(h, self.safe.step)
         warning = step_warning(array, self.safe)
@@ -96,25 +96,25 @@ class EnergyMonitor:
             self.tell(warning)
 
     def begin(self, array: MainArray, own_laws: bool) -> None:
-        """A CYCLE begins after `judge`. own_laws: deformable blocks follow the user's laws."""
+        """A CYCLE begins after `check_step`. own_laws: deformable blocks follow the user's laws."""
         self._own_laws = own_laws
         if not self._suspected or own_laws:
             self._account = None
             return
-        now, account = _stock(array.h), self._account
+        now, account = _energy_state(array.h), self._account
         if account is None:
-            self._account = Account(now, now, float(array.h.cd[g.WDRIVE]), _grain(array))
+            self._account = Account(now, now, float(array.h.cd[g.WDRIVE]), _rounding_energy(array))
             return
         begun, ended = account.begun, account.ended
         stored = begun.stored + max(now.stored - ended.stored, 0.0)
         friction = begun.friction + now.friction - ended.friction
         potential = begun.potential + now.potential - ended.potential
-        self._account = account._replace(begun=Stock(stored, friction, potential))
+        self._account = account._replace(begun=EnergyState(stored, friction, potential))
 
     def end(self, array: MainArray) -> None:
         """A CYCLE has ended."""
         if self._account is not None:
-            self._account = self._account._replace(ended=_stock(array.h))
+            self._account = self._account._replace(ended=_energy_state(array.h))
 
     def cycles_ahead(self, h: Memory) -> int:
         """Cycles until the next check, which depends on the number of the cycle alone."""
@@ -125,19 +125,19 @@ class EnergyMonitor:
         """Error 37 if there is more energy than was put in. Checks the step of a run not monitored again."""
         h, account = array.h, self._account
         if account is None and h.ci[g.MCTOT] % JUDGE == 0:
-            self.judge(array)
+            self.check_step(array)
             self.begin(array, self._own_laws)
         if account is None or h.ci[g.MCTOT] % LOOK:
             return
-        now, begun = _stock(h), account.begun
+        now, begun = _energy_state(h), account.begun
         lifted = now.potential - begun.potential
-        there = now.stored + now.friction - begun.friction + max(lifted, 0.0)
+        present = now.stored + now.friction - begun.friction + max(lifted, 0.0)
         driven = float(h.cd[g.WDRIVE]) - account.driven + float(power_of_loads(h)) * float(h.cr[g.TDEL])
-        came = begun.stored + driven + max(-lifted, 0.0)
-        if there > FACTOR * (came + account.grain):
-            raise self._error(array, there, came)
+        supplied = begun.stored + driven + max(-lifted, 0.0)
+        if present > FACTOR * (supplied + account.rounding_energy):
+            raise self._error(array, present, supplied)
 
-    def _error(self, array: MainArray, there: float, came: float) -> UdecError:
+    def _error(self, array: MainArray, present: float, supplied: float) -> UdecError:
         h = array.h
         _, largest, at = greatest_motion(h, soft(h))
         step = float(h.cr[g.TDEL])
@@ -145,23 +145,23 @@ class EnergyMonitor:
         self._account = None
         fraction = min(safe_fraction(array, share), float(h.cr[g.FRAC]) / 2)  # a safe step was not enough
         detail = (
-            f"there are {there:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands have "
-            f"put in {came:.3g}: {name_of(h, int(at))} leads with {largest:.3g}. The time-step "
+            f"there are {present:.3g} J/m in cycle {int(h.ci[g.MCTOT])}, and loads, gravity and commands "
+            f"have put in {supplied:.3g}: {name_of(h, int(at))} leads with {largest:.3g}. The time-step "
             f"of {step:.3g} s was {share:.3g} of the safe bound"
         )
         advice = f"run again from the beginning or a saved state, and take {fraction_line(h, fraction)}"
         return UdecError(OUT_OF_NOWHERE, detail, advice, group=int(at))
 
 
-def _stock(h: Memory) -> Stock:
+def _energy_state(h: Memory) -> EnergyState:
     """The energies of the model as it is."""
     kinds = soft(h)
     moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
     strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, kinds))
-    return Stock(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
+    return EnergyState(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
 
 
-def _grain(array: MainArray) -> float:
+def _rounding_energy(array: MainArray) -> float:
     """Energy that blocks can gain by rounding of their places to the digit d, or by gravity within a step."""
     h, dt = array.h, float(array.h.cr[g.TDEL])
     blocks = list_of(h, "block")

@@ -93,20 +93,20 @@ class RestDiagnosis(Observer):
         self.record: DisplacementRecord | None = None
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See Observer."""
+        """Begin the record of displacements."""
         self.record = DisplacementRecord(array)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """See Observer."""
+        """Cycles until the next displacements are recorded."""
         return n if self.record is None else min(n, self.record.cycles_ahead(array.h))
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See Observer."""
+        """Record the displacements when they are due."""
         if self.record is not None and between_cycles(array.h):
             self.record.add_if_due(array.h)
 
     def end(self, array: MainArray) -> None:
-        """See Observer."""
+        """Record the displacements at the end."""
         if self.record is not None and between_cycles(array.h):
             self.record.add(array.h)
 

@@ -36,19 +36,19 @@ class RunMonitors(Observer):
         return self.rested
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See Observer."""
+        """Begin the energy account of the run."""
         self.energy.begin(array, self.laws.bind(array).own_blocks)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """See Observer. The result depends on the number of the cycle alone."""
+        """Cycles until the next check, which depends on the number of the cycle alone."""
         return min(n, self.energy.cycles_ahead(array.h))
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See Observer. Error 37 if the run gains energy from nowhere."""
+        """Check contacts and energy. Error 37 if the run gains energy from nowhere."""
         if between_cycles(array.h):
-            self.chatter.judge(array, is_safe(array.h, self.energy.safe))
+            self.chatter.check_window(array, is_safe(array.h, self.energy.safe))
             self.energy.look(array)
 
     def end(self, array: MainArray) -> None:
-        """See Observer."""
+        """End the energy account of the run."""
         self.energy.end(array)

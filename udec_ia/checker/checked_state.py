@@ -125,8 +125,8 @@ class State(Lists):
         for k in np.flatnonzero(wrong).tolist():
             self.report(invariant, f"{name} of {kind}@{addresses[k]} is {values[k]}, {why(k)}")
 
-    def astray(self, source: str, iad: int, kind: str) -> None:
-        """Nothing: all pointers that lead astray are reported together."""
+    def report_invalid_pointer(self, source: str, iad: int, kind: str) -> None:
+        """Nothing: all invalid pointers are reported together."""
 
     def violations(self) -> list[Violation]:
         """What was found, each once, in the order of the invariants; words that no list leads to last."""

@@ -119,24 +119,24 @@ PHASES = {code.value: code.text for code in TABLE.codes_of("JPHASE")}
 BEYOND_LINKS = 7  # the first invariant that is not of links
 
 
-def unjudged(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
+def unchecked_parts(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
     """What `check`, which has found `found`, does not judge in the state of `array`, in sentences."""
     phase, error, cycle = (int(array.h.ci[place]) for place in (g.JPHASE, g.NSPOIL, g.MCSPOI))
     broken = any(one.invariant < BEYOND_LINKS for one in found)
-    return unfinished(phase, error, cycle) + (["not judged: what depends on broken links"] if broken else [])
+    return unfinished(phase, error, cycle) + (["not checked: what depends on broken links"] if broken else [])
 
 
 def unfinished(phase: int, error: int, cycle: int) -> list[str]:
-    """What is not judged if JPHASE is `phase`, and `error` (NSPOIL) has ended a run in `cycle` (MCSPOI)."""
+    """What is not checked if JPHASE is `phase`, and `error` (NSPOIL) has ended a run in `cycle` (MCSPOI)."""
     said = []
     if phase != g.AT_BLOCKS:
         said.append(
-            "not judged: contacts against outlines, as the state stopped in the middle of a cycle, "
+            "not checked: contacts against outlines, as the state stopped in the middle of a cycle, "
             f"{PHASES.get(phase, 'before an unknown pass')} (JPHASE {phase})"
         )
     if error in DISORDERED:
         said.append(
-            f"not judged: which domain is the outer one, as error {error} in cycle {cycle}, "
+            f"not checked: which domain is the outer one, as error {error} in cycle {cycle}, "
             f"{MESSAGES[error]}, has ended a run of this state"
         )
     return said

@@ -28,7 +28,7 @@ def check_pointers(state: State) -> None:
             targets, optional = TARGETS.get(str(field.target), ()), field.allowed == OPTIONAL
             number = 6 if field.role in ("backlink", "triple") else 2
             for i in range(field.count if targets else 0):
-                for row, value in state.pointers_astray(kind, field.name, i, targets, optional):
+                for row, value in state.invalid_pointers(kind, field.name, i, targets, optional):
                     text = f"{field.name} of {kind}@{addresses[row]} points to {value}"
                     state.report(number, f"{text}, which is no {' or '.join(targets)} in use")
     _check_block_extensions(state)

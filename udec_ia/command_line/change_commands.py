@@ -97,7 +97,7 @@ def patch(source: str | Path, to: str | Path, *assignments: str, force: bool = F
     done = patch(state.array, *assignments, force=True)
     rows: list[tuple[Any, ...]] = [(one.what, one.value, one.now) for one in done.former]
     listing = Listing([f"values given: {len(rows)}"], ("what", "before", "now"), rows)
-    command = "* udec patch --force:" if force else "PATCH"  # a deck cannot obey what had to be forced
+    command = "* udec patch --force:" if force else "PATCH"  # a deck cannot execute what had to be forced
     line = " ".join([command, *", ".join(assignments).split()])
     return _write(state, state.array, to, line, listing, done.broken, force)
 

@@ -21,13 +21,13 @@ from udec_ia.printable_text import visible
 from udec_ia.reader.field_rows import NOT_ALLOWED
 from udec_ia.reader.kind_colours import COLOURS, LETTERS
 from udec_ia.reader.printed_listing import Line, Listing, Tables
-from udec_ia.reader.word_map import ASTRAY, JUNK, KINDS, NOTHING, UNUSED
+from udec_ia.reader.word_map import IS_NO, JUNK, KINDS, NOTHING, UNUSED
 
 ROOM = 20  # characters that the last column must have, to be folded within itself
 INDENT = 13  # characters before what has no room beside the rest
 STYLES = {kind: Style(color=colour, dim=kind in (JUNK, UNUSED)) for kind, colour in COLOURS.items()}
 NAME = re.compile(rf"\b({'|'.join((*KINDS, JUNK))})@\d+")
-WRONG = re.compile(rf"{ASTRAY}({'|'.join(KINDS)}|group)( or [a-z]+)*$|^{NOT_ALLOWED}, |\bno block\b")
+WRONG = re.compile(rf"{IS_NO}({'|'.join(KINDS)}|group)( or [a-z]+)*$|^{NOT_ALLOWED}, |\bno block\b")
 BOLD, RED = Style(bold=True), Style(color=COLOURS[NOTHING], bold=True)
 LETTER_STYLES = {c: STYLES[kind] for kind, letter in LETTERS.items() for c in (letter, letter.upper())}
 

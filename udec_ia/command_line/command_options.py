@@ -35,7 +35,7 @@ def command(commands: Any, verb: str, text: str, look: Look, script: Script) -> 
     parser.add_argument(
         "--python", action="store_true", help="print how to do the same in Python, and do nothing else"
     )
-    parser.set_defaults(action=partial(_obey, verb, look, script))
+    parser.set_defaults(action=partial(_execute, verb, look, script))
     return parser
 
 
@@ -173,7 +173,7 @@ def seconds(option: str, text: str) -> float:
     return float(found[1]) * SECONDS[found[2]]
 
 
-def _obey(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:
+def _execute(verb: str, look: Look, script: Script, args: argparse.Namespace) -> int:
     try:
         if args.python:
             print(script(args))

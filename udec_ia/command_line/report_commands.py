@@ -100,8 +100,8 @@ def describe_file(path: str | Path) -> Tables:
 
 
 def check_file(path: str | Path) -> Listing:
-    """All violations in a restart file, sound or not, and what was not judged."""
-    from udec_ia.checker import check, unjudged
+    """All violations in a restart file, sound or not, and what was not checked."""
+    from udec_ia.checker import check, unchecked_parts
     from udec_ia.reader.printed_listing import Listing
     from udec_ia.restart import read_stored_state
 
@@ -111,7 +111,7 @@ def check_file(path: str | Path) -> Listing:
     said = [f"{printable(str(path))}: {many if found else 'sound'}", *seen.notes]
     rows: list[tuple[Any, ...]] = [(one.invariant, one.message) for one in found]
     columns = "invariant", "what is wrong"
-    return Listing([*said, *unjudged(seen.array, found)], columns, rows, int(bool(found)))
+    return Listing([*said, *unchecked_parts(seen.array, found)], columns, rows, int(bool(found)))
 
 
 def compare_files(first: str | Path, second: str | Path, raw: bool = False, **given: Any) -> Listing | Tables:

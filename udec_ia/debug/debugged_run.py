@@ -37,7 +37,7 @@ class LeaveDebugger(BaseException):
 
 
 class ResumeRun(BaseException):
-    """The run continues from an earlier event. command: what is obeyed first, or ""."""
+    """The run continues from an earlier event. command: what is executed first, or ""."""
 
     def __init__(self, event: int, command: str = "") -> None:
         self.event, self.command = event, command
@@ -71,7 +71,7 @@ class Debugger:
     # ---- running
 
     def run(self, statements: Sequence[Statement]) -> None:
-        """Obey a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
+        """Execute a deck. Raises the UdecError that ends it, after the debugger has stopped at it."""
         observers, self.model.session.observers = self.model.session.observers, [_CycleWatcher(self)]
         self._deck = [statement for statement in statements if statement.tokens]
         self._commands = [*enumerate(self._deck)]
@@ -80,18 +80,18 @@ class Debugger:
         try:
             while True:
                 try:
-                    self._obey_all(number)
+                    self._execute_all(number)
                     return
                 except ResumeRun as back:
                     number = self._resume(back.event, back.command)
         finally:
             self.model.session.observers = observers
 
-    def _obey_all(self, number: int) -> None:
+    def _execute_all(self, number: int) -> None:
         """The commands from `number` on."""
         self.ended = ""
         for k, (_, statement) in enumerate(self._commands[number:], number):
-            self._obey(statement, k)
+            self._execute(statement, k)
             if self.monitor.ended:
                 break
         self.ended = "the deck has ended"
@@ -115,7 +115,7 @@ class Debugger:
         return len(done)
 
     def _split_deck(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
-        """The commands that were obeyed, and those to come. A run that is not over is in both."""
+        """The commands that were executed, and those to come. A run that is not over is in both."""
         spans = self.timeline.spans
         if not spans:
             return [], [*enumerate(self._deck)]
@@ -134,13 +134,13 @@ class Debugger:
         return done, rest
 
     def _typed_statement(self, command: str) -> Statement:
-        """A command that is typed after the last one of the deck that was obeyed, at the place of that."""
+        """A command that is typed after the last one of the deck that was executed, at the place of that."""
         spans = self.timeline.spans
         first = self._commands[spans[-1].number if spans else 0][1].tokens[0].line
         line = Line(first.file, first.number, command)
         return Statement([line], tokens(line))
 
-    def _obey(self, statement: Statement, number: int) -> None:
+    def _execute(self, statement: Statement, number: int) -> None:
         line, timeline = statement.tokens[0].line, self.timeline
         if self.goal_line is not None and line.number >= self.goal_line:
             self.stop([f"line {line.number} comes next"])
@@ -148,7 +148,7 @@ class Debugger:
             self.stop([])
         timeline.begin_command(line.shown.strip(), line.number, int(self.model.array.h.ci[g.MCTOT]), number)
         try:
-            self.monitor.obey(statement)
+            self.monitor.execute(statement)
         except UdecError as error:
             timeline.end_command(self.model.array)
             self.ended = "the deck has ended in an error"
@@ -356,16 +356,16 @@ class _CycleWatcher(Observer):
         self._start = 0.0
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See Observer."""
+        """Add the preparation of the run to the timeline."""
         self.debugger.timeline.add_preparation(array)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """See Observer."""
+        """Cycles until the debugger is called again."""
         self._start = perf_counter()
         return self.debugger.cycles_ahead(n)
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See Observer."""
+        """Add the cycles to the timeline."""
         self.debugger.record_cycles(cycles, perf_counter() - self._start)
 
 

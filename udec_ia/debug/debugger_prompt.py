@@ -15,7 +15,7 @@ from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
 from udec_ia.errors import UdecError
-from udec_ia.interrupt_signals import dealt_with, hold, passing
+from udec_ia.interrupt_signals import allow_signals, dealt_with, defer_signals
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import visible
 from udec_ia.reader.word_map import TABLE
@@ -73,11 +73,11 @@ class Console(DebuggerCommands):
         self.asking = False
 
     def ask(self, reasons: Sequence[str]) -> None:
-        """The run has stopped: obey commands until one continues it."""
+        """The run has stopped: execute commands until one continues it."""
         for line in reasons:
             self.say(line)
         self.say(self.debugger.place())
-        with passing():
+        with allow_signals():
             self._ask()
 
     def _ask(self) -> None:
@@ -118,7 +118,7 @@ class Console(DebuggerCommands):
         super().do_help(ALIASES.get(arg, arg.replace("-", "_")))
 
     def onecmd(self, line: str) -> bool:
-        """Obey one line, or print what is wrong with it."""
+        """Execute one line, or print what is wrong with it."""
         try:
             return bool(super().onecmd(line))
         except (ValueError, IndexError, UnreachableEvent) as error:
@@ -185,7 +185,7 @@ def debug(
     here = current_thread() is main_thread()
     former = signal.signal(signal.SIGINT, console.interrupt) if here else None
     try:
-        with suppress(LeaveDebugger), hold():
+        with suppress(LeaveDebugger), defer_signals():
             console.debugger.run(list(variables.filled(statements(lines, name))))
     finally:
         if here:

@@ -20,7 +20,7 @@ from udec_ia.deck.deck_statements import WORD, Statement, at, limited, open_deck
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.errors import DAMAGED, UdecError
-from udec_ia.interrupt_signals import hold, passing, poll
+from udec_ia.interrupt_signals import allow_signals, defer_signals, poll
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted, printable, visible
 
@@ -30,7 +30,7 @@ RESCUE = "rescue.h5"  # restart file of a run that ended early, in the folder fo
 
 
 class Monitor:
-    """Obeys statements on `model`, a Model, and writes to `out`.
+    """Executes statements on `model`, a Model, and writes to `out`.
 
     echo: False at a terminal. ended: True after STOP or END. values: of variables.
     """
@@ -44,15 +44,15 @@ class Monitor:
         self._stopped = False
 
     def run(self, lines: Iterable[str], file: str) -> None:
-        """Obey the deck `lines`, which errors call `file`, up to STOP, END or the last line.
+        """Execute the deck `lines`, which errors call `file`, up to STOP, END or the last line.
 
         An exception that ends it names the restart file of the state: UdecError in `saved`, KeyboardInterrupt
         in its argument, others in a note.
         """
-        with hold():  # no signal comes between what ends the run and its rescue
+        with defer_signals():  # no signal comes between what ends the run and its rescue
             try:
                 for statement in self.variables.filled(statements(_awaited(lines), file)):
-                    self.obey(statement)
+                    self.execute(statement)
                     if self.ended:
                         return
                     poll()
@@ -67,8 +67,8 @@ class Monitor:
                 failure.add_note(f"the results so far are saved in {self.rescue()}")
                 raise
 
-    def obey(self, statement: Statement) -> None:
-        """Echo and obey one statement without variables. Raises UdecError with its place."""
+    def execute(self, statement: Statement) -> None:
+        """Echo and execute one statement without variables. Raises UdecError with its place."""
         if self.echo:
             for line in statement.lines:
                 self._write(f"> {line.shown}".rstrip())
@@ -112,7 +112,7 @@ class Monitor:
         self._show(last)
 
     def _carry_out(self, call: Call, statement: Statement) -> object:
-        """Obey `call` and log its lines. Returns what is to be shown."""
+        """Execute `call` and log its lines. Returns what is to be shown."""
         result = self._call(call)
         lines = dict.fromkeys(token.line for token in statement.tokens)
         if call.command.name != "default":  # logged lines have values instead of variables
@@ -147,7 +147,10 @@ class Monitor:
         self._write(f" {command.upper()}: {text}")
 
     def place(self, command: str, name: str | None) -> Path | None:
-        """The path of the file `name` of a command, which starts in the folder for files."""
+        """The path of the file `name`, which starts in the folder for files.
+
+        command: for monitors that look for the files of some commands elsewhere.
+        """
         if name is None:
             return None
         folder = self.model.session.out
@@ -177,9 +180,9 @@ class Monitor:
         if not self.model.session.started:
             return None
         saved = None
-        with suppress(Exception, KeyboardInterrupt), hold():
+        with suppress(Exception, KeyboardInterrupt), defer_signals():
             try:
-                with hold(firm=True):
+                with defer_signals(also_second=True):
                     path = self._save(sound)
                 saved = self._proved(path)
             except Exception as failure:
@@ -214,7 +217,7 @@ def _awaited(lines: Iterable[str]) -> Iterator[str]:
     """`lines`; waiting for one can be interrupted."""
     source = iter(lines)
     while True:
-        with passing():
+        with allow_signals():
             line = next(source, None)
         if line is None:
             return
@@ -228,7 +231,7 @@ def run_deck(
     values: Values | None = None,
     name: str = "text",
 ) -> Monitor:
-    """Obey a whole deck on `model`, a Model. Returns the monitor.
+    """Execute a whole deck on `model`, a Model. Returns the monitor.
 
     deck: path, text or stream; a str is a path if a file has this name, or if it looks like a file name.
     values: of its variables, by name. name: of a text or a stream, for errors. Raises UdecError, and OSError
@@ -246,9 +249,9 @@ def run_deck(
 
 
 def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
-    """Have the monitor obey a deck after a check of all its variables.
+    """Have the monitor execute a deck after a check of all its variables.
 
-    Lines of a pipe are obeyed as they come, without the check, unless values are given.
+    Lines of a pipe are executed as they come, without the check, unless values are given.
     """
     if lines.seekable() or monitor.variables.given:
         lines = io.StringIO("".join(limited(lines, file)))

@@ -107,7 +107,7 @@ def quoted(text: str) -> str:
     return f'"{shown}{"..." if len(text) > SHOWN else ""}"'
 
 
-def obeyed(text: str) -> str:
+def without_comment(text: str) -> str:
     """A line without its comment."""
     return "" if text.lstrip()[:1] in tuple(COMMENTS) else REMARK.split(text, 1)[0]
 
@@ -115,7 +115,8 @@ def obeyed(text: str) -> str:
 def tokens(line: Line, start: int = 0) -> list[Token]:
     """The words and numbers of `line` from the character `start` on."""
     return [
-        Token(found.group(), line, found.start() + 1) for found in WORD.finditer(obeyed(line.text), start)
+        Token(found.group(), line, found.start() + 1)
+        for found in WORD.finditer(without_comment(line.text), start)
     ]
 
 
@@ -123,7 +124,7 @@ def tokens_of(lines: Iterable[Line]) -> list[Token]:
     """The words and numbers of a command with these lines, which may contain comments."""
     found: list[Token] = []
     for line in lines:
-        if WORD.search(obeyed(line.text)):
+        if WORD.search(without_comment(line.text)):
             found += tokens(line, line.text.index(CONTINUATION) + 1 if found else 0)
     return found
 
@@ -144,7 +145,7 @@ class Reader:
         """Read one line. Returns the command before it if the line does not continue it."""
         self._number += 1
         line = Line(self.file, self._number, text)
-        if not WORD.search(obeyed(text)):
+        if not WORD.search(without_comment(text)):
             self._held.append(line)
             return None
         complete = None

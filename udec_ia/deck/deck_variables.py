@@ -21,11 +21,11 @@ from udec_ia.deck.deck_statements import (
     Statement,
     Token,
     at,
-    obeyed,
     quoted,
     statements,
     tokens,
     tokens_of,
+    without_comment,
 )
 from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.deck.lines_and_calls import APART, NUMBER, QUOTED, command_of
@@ -166,7 +166,7 @@ class Variables:
 
 def _end_of(text: str, command: Command | None) -> int:
     """The end of a line without its comment; a file name may contain characters that begin comments."""
-    whole = obeyed(text)
+    whole = without_comment(text)
     if not whole or command is None or not command.text:
         return len(whole)
     head = len(text) - len(text.lstrip()) + len(text.split()[0])

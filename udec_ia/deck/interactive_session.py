@@ -1,7 +1,8 @@
 """Commands typed at a terminal: a prompt, a history, and errors that do not end the session.
 
-A command is obeyed when its line ends. A line that ends with `+` is continued behind a prompt `+`. A command
-with a list, such as BLOCK or GENERATE, is obeyed at an empty line or at the next command, as in a deck.
+A command is executed when its line ends. A line that ends with `+` is continued behind a prompt `+`. A
+command with a list, such as BLOCK or GENERATE, is executed at an empty line or at the next command, as in a
+deck.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from platformdirs import user_state_dir
 from udec_ia.deck.command_forms import Command, match
 from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.command_table import COMMANDS
-from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, obeyed
+from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, without_comment
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.interrupt_signals import Terminated
@@ -31,7 +32,7 @@ HISTORY_LENGTH = 1000
 def converse(
     model: Any, out: TextIO, ask: Callable[[str], str] = input, values: Values | None = None
 ) -> None:
-    """Obey typed commands on `model`, a Model, until STOP, END or the end of input.
+    """Execute typed commands on `model`, a Model, until STOP, END or the end of input.
 
     ask: shows a prompt and returns a line. values: of variables. Raises UdecError if STOP itself fails, and
     Terminated after the state has been saved.
@@ -43,7 +44,7 @@ def converse(
     while not monitor.ended and (complete or not over):
         try:
             if complete:
-                monitor.obey(monitor.variables.fill(complete.pop(0)))
+                monitor.execute(monitor.variables.fill(complete.pop(0)))
             else:
                 complete = typed.read(ask(typed.prompt))
         except UdecError as error:
@@ -81,7 +82,7 @@ class Typed:
 
     def read(self, line: str) -> list[Statement]:
         """The commands that `line` completes, in order."""
-        word = WORD.search(obeyed(line))
+        word = WORD.search(without_comment(line))
         if word is None:
             self.reader.feed(line)
             return [] if WORD.search(line) else self.flush()
@@ -92,7 +93,7 @@ class Typed:
             line = MORE + line.lstrip()
         self.asked = self._asks(line)
         if self.asked:
-            line = obeyed(line).rstrip().removesuffix(CONTINUATION).rstrip()
+            line = without_comment(line).rstrip().removesuffix(CONTINUATION).rstrip()
         before = self.reader.feed(line)
         complete = [] if before is None else [before]
         if self.asked or (self.command is not None and self.command.extends):
@@ -115,7 +116,8 @@ class Typed:
         """True if `line` ends with a `+` that is not part of a file name or another text."""
         if self.command is not None and self.command.text:
             return False
-        return obeyed(line).rstrip().endswith(CONTINUATION) and obeyed(line).strip() != CONTINUATION
+        text = without_comment(line).strip()
+        return text.endswith(CONTINUATION) and text != CONTINUATION
 
 
 def history_file() -> Path:

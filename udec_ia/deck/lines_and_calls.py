@@ -41,7 +41,7 @@ INCOMPLETE = {2: 8, 3: 26}  # error for an incomplete pair and triple
 
 @dataclass
 class Call:
-    """The arguments for the method of Model that obeys a command, and the place of each argument."""
+    """The arguments for the method of Model that executes a command, and the place of each argument."""
 
     command: Command
     head: Token

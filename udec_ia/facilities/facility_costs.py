@@ -161,7 +161,7 @@ def _piece(trial: Trial, n: int) -> float:
     """Processor time of `n` cycles of a copy."""
     array, monitors = trial.array.copy(), RunMonitors(trial.laws)
     if trial.monitored:
-        monitors.energy.judge(array)
+        monitors.energy.check_step(array)
     recording = Recording(array, [], marks=monitors.chatter.marks)
     start = process_time()
     cycle(array, n, recording=recording, observers=[monitors] if trial.monitored else [], laws=trial.laws)

@@ -110,7 +110,7 @@ def walk(
     field: str | None = None,
     limit: int | None = None,
 ) -> Listing:
-    """A list, group by group, until it ends, comes round or leads astray.
+    """A list, group by group, until it ends, closes or becomes invalid.
 
     along: the kind of the groups of a main list; "block" or "domain" with the place of one, for the list
     around it; or a field that links groups, with the place at which to begin. field: to show of each group
@@ -138,7 +138,7 @@ def walk(
 
 
 def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
-    """A list in words, and the addresses of its groups; these raise Unsound where it leads astray."""
+    """A list in words, and the addresses of its groups; these raise Unsound where it becomes invalid."""
     if along in LISTED and start is None:
         return f"the {along} list", groups(atlas.h, along)
     if along in AROUND and start is not None:
@@ -158,7 +158,7 @@ def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[in
 
 
 def _linked(atlas: Atlas, link: str, start: int) -> Iterator[int]:
-    """Groups from `start` along a field; Unsound where it leads astray or into itself."""
+    """Groups from `start` along a field; Unsound where it becomes invalid or leads into itself."""
     kind = LINKS[link]
     (word,) = (word for word in atlas.shapes[kind] if word.field.name == link)
 

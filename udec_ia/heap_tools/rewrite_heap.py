@@ -71,7 +71,7 @@ def _check_pointers(array: MainArray, lists: Lists) -> None:
         for field in TABLE.group(kind).fields:
             targets = TARGETS[str(field.target)] if field.target else ()
             for i in range(field.count if targets else 0):
-                for row, value in lists.pointers_astray(kind, field.name, i, targets, True)[:1]:
+                for row, value in lists.invalid_pointers(kind, field.name, i, targets, True)[:1]:
                     (owner,) = names(Atlas(array.h), at[row : row + 1])
                     raise Unsound(f"{field.name} of {owner} points to {value}, which is not a {field.target}")
     for field in TABLE.common:

@@ -37,7 +37,7 @@ def change(
     kind = None if type is None else str(type).lower()
     changed = change_blocks(session.array, (x1, x2, y1, y2), kind, material, constitutive)
     if changed and material is not None:
-        session.remark(check_new_material(session.array, changed, material))
+        session.report_remarks(check_new_material(session.array, changed, material))
     _warn_of_lost_conditions(session, conditions)
     return changed
 
@@ -85,8 +85,8 @@ def generate(
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
     _warn_of_lost_conditions(session, conditions)
-    session.remark(describe_inertia(array, ib), session.inform)
-    session.remark(check_spin(array, ib, spin))
+    session.report_remarks(describe_inertia(array, ib), session.inform)
+    session.report_remarks(check_spin(array, ib, spin))
     return ib
 
 

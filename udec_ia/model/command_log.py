@@ -1,4 +1,4 @@
-"""The log of a session: the commands that were obeyed, which can be written as the lines of a deck.
+"""The log of a session: the commands that were executed, which can be written as the lines of a deck.
 
 The log has the calls of commands given in Python, which become lines on request, and the lines of decks.
 Successive CYCLEs are one line.
@@ -47,7 +47,7 @@ class CommandLog:
         self.cycles: int | None = None
 
     def add(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
-        """Add a command that was obeyed."""
+        """Add a command that was executed."""
         if method.__name__ == "cycle":
             self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
             return
@@ -55,7 +55,7 @@ class CommandLog:
         self.add_lines([step] if step.has_constants_only else step.lines)
 
     def add_lines(self, lines: Sequence[str | Step]) -> None:
-        """Add lines of a deck that were obeyed."""
+        """Add lines of a deck that were executed."""
         if self.cycles is not None:
             self.steps.append(f"CYCLE {self.cycles}")
         self.steps += lines

@@ -40,7 +40,7 @@ class HistoryRecorder:
         chosen = select_groups(array, what.group, field, address, at)
         define(array, what, [one.address for one in chosen], n)
         first = len(self.series)
-        Recording(array, self.series).look()
+        Recording(array, self.series).update_definitions()
         for series, one in zip(self.series[first:], chosen, strict=True):
             series.place = one.place
         return self.series[first:]
@@ -51,7 +51,7 @@ class HistoryRecorder:
             return []
         from udec_ia.output.history_files import HistoryFiles
 
-        recording.look()
+        recording.update_definitions()
         for one in recording.lost:
             text = f"history {one.number}: {one.group} was deleted; NaN is recorded from here on"
             tell(Remark("history-group-deleted", text))

@@ -4,7 +4,7 @@ Every method does what the command of the same name does, takes the numbers that
 raises UdecError with the number that the command would print. Warnings go to the log "udec_ia", which Python
 shows on standard error by default.
 
-Every command is obeyed as a whole or not at all, whatever ends it (undo.py).
+Every command is executed as a whole or not at all, whatever ends it (undo.py).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
 from udec_ia.advice.input_warnings import check_properties
 from udec_ia.advice.time_step_warnings import describe_step
-from udec_ia.checker import check, unjudged
+from udec_ia.checker import check, unchecked_parts
 from udec_ia.deck.command_monitor import run_deck
 from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
@@ -54,7 +54,6 @@ from udec_ia.running.solve_result import Solution
 
 P = ParamSpec("P")
 R = TypeVar("R")
-T = TypeVar("T")
 
 
 class Model:
@@ -113,7 +112,7 @@ class Model:
         return self.session.h
 
     def whole(self, action: Callable[[], R]) -> R:
-        """Obey all commands that `action` gives to this model, or none of them if it raises."""
+        """Execute all commands that `action` gives to this model, or none of them if it raises."""
         return self.session.undo.run_whole(self, action)
 
     def deck(self) -> str:
@@ -278,7 +277,7 @@ class Model:
         """
         self.session.ensure_ready()
         model_settings.set_property(self.array, material, **values)
-        self.session.remark(check_properties(self.array, material, dict[str, float | None](**values)))
+        self.session.report_remarks(check_properties(self.array, material, dict[str, float | None](**values)))
 
     @changes_common
     def gravity(self, gx: float, gy: float) -> None:
@@ -367,7 +366,7 @@ class Model:
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""
-        for sentence in unjudged(self.array):
+        for sentence in unchecked_parts(self.array):
             self.inform(sentence)
         return list(check(self.array))
 

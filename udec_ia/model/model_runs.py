@@ -22,7 +22,7 @@ from udec_ia.running.mass_scaling import relaxations_due
 from udec_ia.running.run_cycles import cycle as run
 from udec_ia.running.run_cycles import finish
 from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solution_of
-from udec_ia.running.static_relaxation import STATIC, statically
+from udec_ia.running.static_relaxation import STATIC, static_settings
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
@@ -55,7 +55,7 @@ def solve(
     if static:
         return _solve_statically(session, ratio, limit, criterion)
     found = list(check_damping(session.array))
-    session.remark(found)
+    session.report_remarks(found)
     if found:  # CYCLE need not say it again
         session.mark_as_reported(UNDAMPED)
     return _run_to_rest(session, ratio, limit, criterion, partial(_log_cycles, session))
@@ -72,7 +72,7 @@ def _solve_statically(session: Session, ratio: float, limit: int, criterion: str
     undo = session.undo
     former = undo.former
     try:
-        with statically(session.array):
+        with static_settings(session.array):
             return _run_to_rest(
                 session, ratio, limit, criterion, lambda done: session.log.add(solve, (ratio, done), named)
             )
@@ -132,8 +132,8 @@ def _run_cycles(
             laws=session.laws,
             report=progress,
             every=max(1, n // PICTURES) if session.animate else None,
-            prepared=lambda: _warn(session),
-            settled=confirm_piece,
+            before_first_cycle=lambda: _warn(session),
+            after_each_piece=confirm_piece,
         )
     except BaseException:
         log_part(int(array.h.ci[MCTOT]) - before)  # they are not undone
@@ -151,8 +151,8 @@ def _run_cycles(
 def _warn(session: Session) -> None:
     """Warn of the time-step and of suspicious input before a CYCLE; explain the step on request."""
     array, energy = session.array, session.monitors.energy
-    energy.judge(array, session.explain_step)
+    energy.check_step(array, session.explain_step)
     if session.explain_step:
         session.inform(describe_step(array, energy.safe))
-        session.remark([describe_damping(array.h)], session.inform)
-    session.remark(check_input(array, session.laws.block_laws))
+        session.report_remarks([describe_damping(array.h)], session.inform)
+    session.report_remarks(check_input(array, session.laws.block_laws))

@@ -25,7 +25,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME, scheme
 from udec_ia.heap.write_tracking import Writes, track
-from udec_ia.interrupt_signals import hold
+from udec_ia.interrupt_signals import defer_signals
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import CommandLog, Step
 from udec_ia.model.history_recorder import HistoryRecorder
@@ -174,12 +174,12 @@ class Session:
 
     def return_to(self, array: MainArray, lines: Sequence[str]) -> None:
         """Continue from a former state of this run, reached by `lines`; everything later is forgotten."""
-        with hold():
+        with defer_signals():
             self.undo.release()
             self.array = array
             series = self.recorder.series[: len(definitions(array))]
             for one in series:
-                one.until(int(array.h.ci[g.MCTOT]))
+                one.truncate_after(int(array.h.ci[g.MCTOT]))
             self.continue_from(lines, series)
             self.replace_state(written=False, unproved=True)
 
@@ -255,7 +255,7 @@ class Session:
         """Report `text` as a warning."""
         self.tell(text)  # not bound beforehand: a monitor changes it
 
-    def remark(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
+    def report_remarks(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
         """Report `remarks`, each once, by `tell` if they are not warnings.
 
         Of those whose numbers change with every cycle one is reported.
@@ -267,7 +267,7 @@ class Session:
                 (tell or self.tell)(one)
 
     def mark_as_reported(self, remark: Remark) -> None:
-        """Do not report `remark` from now on."""
+        """Do not report `remark`, which was reported elsewhere."""
         self._remarks = self._remarks | {remark}
 
     def summary(self) -> str:

@@ -1,16 +1,16 @@
-"""Undo: a command is obeyed as a whole or not at all, whatever ends it.
+"""Undo: a command is executed as a whole or not at all, whatever ends it.
 
 An interrupt, lack of memory, an exception in a user's function or a bug may end a command at any step. Its
 changes are then undone: the common block and what the session holds in Python are restored from copies, which
 cost nothing, and the words of IA() from a copy that costs as much as the whole model. So this copy serves
-many commands: it comes with a list of the commands obeyed since. To undo one, the copy is restored and they
+many commands: it comes with a list of the commands executed since. To undo one, the copy is restored and they
 are repeated, which gives the same words bit for bit. A new copy is made when they have taken as long as a
 hundred copies. So copying adds one or two per cent to the time of many commands, and undoing one takes little
 more than a hundred copies do.
 
 A command that raises a numbered error has changed no word: ops check before their first change, or go back
 themselves. If groups were made or given back all the same, their words are restored too, and so are those of
-the commands before it where several are obeyed as one.
+the commands before it where several are executed as one.
 
 CYCLE and SOLVE may end between two cycles, and what they have done until then is final (`confirm_piece`).
 What follows them is undone as far as to their end (`confirm_run`). Compiled passes end only for lack of
@@ -33,7 +33,7 @@ from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError, WrongAddress
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.interrupt_signals import hold, passing
+from udec_ia.interrupt_signals import allow_signals, defer_signals
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
@@ -51,7 +51,7 @@ COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a
 
 @dataclass(frozen=True)
 class Undoable:
-    """Decorator of a method of Model, which is then obeyed as a whole or not at all, and logged.
+    """Decorator of a method of Model, which is then executed as a whole or not at all, and logged.
 
     words: it may change words of IA(). new_step: the next CYCLE calculates masses and time-step again; with
     `words`, blocks may change, too, and what was made of them for the last CYCLE is given back. recorded:
@@ -64,7 +64,7 @@ class Undoable:
     repeatable: bool = True
 
     def __call__(self, method: Method[P, R]) -> Method[P, R]:
-        """The method that is obeyed as a whole."""
+        """The method that is executed as a whole."""
 
         @wraps(method)
         def step(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
@@ -114,7 +114,7 @@ def shows(method: Method[P, R]) -> Method[P, R]:
 
     @wraps(method)
     def shown(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
-        with passing():
+        with allow_signals():
             return method(model, *args, **named)
 
     return outside_array(shown)
@@ -172,35 +172,37 @@ def common_bits(h: Memory) -> bytes:
 
 
 class Undo:
-    """Undoes what is being done with a model.
+    """Undoes an action on a model that raises; an action is one command or several.
 
-    array: whose words were copied, None if there is no copy. words, common: the copy, which took
-    `copy_seconds`. steps: obeyed since then, in `step_seconds`; they left the common block as `common_after`.
-    active: something is being done. former: the state before it, None if nothing of it is undone. current:
-    the steps of which it consists, None for one that cannot be repeated. words_saved: copy and steps give the
-    words before it. partly_final: a part of it stays, as of a run whose passes may end at any place.
+    It keeps a copy of the words of IA(), and the commands since. Both give the words before an action.
     """
 
     def __init__(self) -> None:
-        self.array: MainArray | None = None
-        self.words: Any = np.zeros(0, np.int64)
-        self.steps: list[Step] = []
-        self.step_seconds = self.copy_seconds = 0.0
-        self.active = self.words_saved = self.partly_final = False
-        self.former: FormerState | None = None
-        self.current: list[Step | None] = []
+        self.array: MainArray | None = None  # whose words were copied; None if there is no copy
+        self.words: Any = np.zeros(0, np.int64)  # the copy
+        self.common: list[Any] = []  # the common block that belongs to the copy
+        self.copy_seconds = 0.0  # time that the copy took
+        self.steps: list[Step] = []  # commands since the copy
+        self.step_seconds = 0.0  # time that they took
+        self.common_after = b""  # bits of the common block after them
+        self.active = False  # an action goes on
+        self.former: FormerState | None = None  # before the action; None if nothing of it is undone
+        self.current: list[Step | None] = []  # commands of the action; None for one that cannot be repeated
+        self.words_saved = False  # copy and steps give the words before the action
+        self.partly_final = False  # pieces of a run were copied, as its passes may end at any place
+        self._start = 0.0  # when the action began
 
     def run_whole(self, model: Any, action: Callable[[], R]) -> R:
         """Call `action`, and undo all that it did with `model` if it raises."""
         if self.active:
             return action()
-        with hold():
+        with defer_signals():
             try:
                 self._begin(model.session)
                 result = action()
                 self._end(model.session)
             except BaseException as error:
-                with hold(firm=True):
+                with defer_signals(also_second=True):
                     self._undo(model, error)
                 raise
             finally:
@@ -208,7 +210,7 @@ class Undo:
         return result
 
     def add_step(self, step: Step | None) -> None:
-        """A command begins, `step` if it can be repeated. One that is obeyed within another cannot."""
+        """A command begins, `step` if it can be repeated. One that is executed within another cannot."""
         repeatable = step is not None and step.has_constants_only and not self.current
         self.current.append(step if repeatable else None)
 
@@ -279,7 +281,7 @@ class Undo:
         self.array = array
 
     def _undo(self, model: Any, error: BaseException) -> None:
-        """Restore everything as it was before the present action."""
+        """Restore everything as it was before the action."""
         former, session = self.former, model.session
         if former is None:
             return

@@ -60,7 +60,7 @@ def _stamp(path: Path) -> tuple[int, ...] | None:
 def _extended_csv(content: bytes, series: Sequence[Series], before: Counts) -> bytes:
     """The table `content`, which has the first `before` numbers of each history, with the others added."""
     if before:
-        return content + _lines([one.since(n) for one, n in zip(series, before, strict=True)])
+        return content + _lines([one.rows_after(n) for one, n in zip(series, before, strict=True)])
     titles = [one.title + (f" ({one.unit})" if one.unit else "") for one in series]
     return ",".join(["cycle", "time (s)", *titles]).encode() + b"\n" + _lines([one.numbers for one in series])
 

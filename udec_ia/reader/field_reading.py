@@ -57,8 +57,8 @@ class Reading:
         """What is done about a relation that is broken."""
         raise Unsound(message)
 
-    def astray(self, source: str, iad: int, kind: str) -> None:
-        """What is done about a pointer that leads to `iad`, where no group of `kind` can be."""
+    def report_invalid_pointer(self, source: str, iad: int, kind: str) -> None:
+        """What is done about an invalid pointer: it leads to `iad`, where no group of `kind` can be."""
         raise Unsound(f"{source} points to {iad}, which is no {kind}")
 
     def last(self, kind: str) -> int:

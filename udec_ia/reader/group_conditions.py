@@ -40,7 +40,7 @@ class Wrong(ValueError):
         super().__init__(f"{reason}\n    {line}\n    {' ' * column}^")
 
 
-class Found(NamedTuple):
+class MatchingGroups(NamedTuple):
     """Groups of a kind, by address (n,), that a condition is true for, and the fields that it names (n,)."""
 
     kind: str
@@ -48,7 +48,7 @@ class Found(NamedTuple):
     columns: dict[str, Any]
 
 
-def satisfying(atlas: Atlas, text: str) -> Found:
+def satisfying(atlas: Atlas, text: str) -> MatchingGroups:
     """The groups that a condition is true for; a kind alone is all of them. Raises Wrong, a ValueError."""
     if len(text) > LONGEST:
         raise ValueError(f"the condition is longer than {LONGEST} characters: shorten it")
@@ -60,26 +60,26 @@ def satisfying(atlas: Atlas, text: str) -> Found:
         raise Wrong(text, given.start(1), _no_kind(kind))
     at = atlas.groups[kind]
     if where is None:
-        return Found(kind, at, {})
+        return MatchingGroups(kind, at, {})
     if where != "where":
         reason = f"after the kind of group write: where, and a condition of {ALLOWED}"
         raise Wrong(text, given.start(2), reason)
-    judge = _Judge(atlas, kind, text, given.start(3))
+    condition = _ConditionEvaluator(atlas, kind, text, given.start(3))
     with np.errstate(all="ignore"):
-        true = judge.truth(judge.tree(rest))
-    return Found(kind, at[true], {name: values[true] for name, values in judge.columns.items()})
+        true = condition.truth(condition.tree(rest))
+    return MatchingGroups(kind, at[true], {name: values[true] for name, values in condition.columns.items()})
 
 
 def _no_kind(word: str) -> str:
-    """What to say of a word that is not a kind of group; often it is a field of one."""
+    """The message about a word that is not a kind of group; often it is a field of one."""
     has = next((kind.name for kind in TABLE.groups for field in kind.fields if field.name == word), None)
     close = get_close_matches(word, KINDS, 1)
     advice = f"say {has} where {word} ..." if has else f"did you mean {close[0]}?" if close else ""
     return f"{word!r} is not a kind of group: {advice or 'there are ' + ', '.join(KINDS)}"
 
 
-class _Judge:
-    """Works out one condition for all groups of a kind. columns: the fields that it has come across."""
+class _ConditionEvaluator:
+    """Evaluates one condition for all groups of a kind. columns: values of the fields that it names."""
 
     def __init__(self, atlas: Atlas, kind: str, text: str, start: int) -> None:
         self.atlas, self.kind, self.text, self.start = atlas, kind, text, start

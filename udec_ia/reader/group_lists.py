@@ -60,11 +60,11 @@ class Lists(Reading):
                 self.boundaries = boundaries(self, self.addresses("block"))
                 found, self.owner[kind] = self.boundaries.corner, self.boundaries.owner
             else:
-                found, self.owner[kind] = self._hung(kind)
+                found, self.owner[kind] = self._owned_groups(kind)
             self._enter(kind, found)
         return self.address[kind]
 
-    def pointers_astray(
+    def invalid_pointers(
         self, kind: str, name: str, i: int, targets: Sequence[str], optional: bool
     ) -> list[tuple[int, int]]:
         """Row and value of the pointers of groups of `kind` to none of `targets`. optional: 0 is allowed."""
@@ -113,8 +113,8 @@ class Lists(Reading):
             self.report(2, f"{source} points to {end}, which is no {kind}")
         return at[:again]
 
-    def _hung(self, kind: str) -> tuple[Numbers, Numbers]:
-        """The groups of `kind`, which hang on others, and their owners; one by one, if that leads astray."""
+    def _owned_groups(self, kind: str) -> tuple[Numbers, Numbers]:
+        """The groups of `kind`, which others own, and their owners; one by one if a pointer is invalid."""
         link = next(iter(names(kind, "next")), None)
         pointers = list(self._pointers_to(kind))
         parts: list[tuple[Numbers, Numbers]] = [(np.empty(0, np.int64),) * 2]
@@ -124,7 +124,7 @@ class Lists(Reading):
         at, owner = (np.concatenate(found) for found in zip(*parts, strict=True))
         if self._stand(kind, at) and len(np.unique(at)) == len(at):
             return at, owner
-        return self._hung_with_care(kind, link, pointers)
+        return self._owned_groups_one_by_one(kind, link, pointers)
 
     def _chains(self, kind: str, link: str, firsts: Numbers) -> tuple[Numbers, Numbers]:
         """Addresses along the lists of `kind` that begin at `firsts`, and how many each list has.
@@ -143,7 +143,7 @@ class Lists(Reading):
         coded = kind not in HEADS or one_of(self.h.ia[at - 1], HEADS[kind]).all()
         return bool(coded and not self.kind_at[self.place(at)].any())
 
-    def _hung_with_care(
+    def _owned_groups_one_by_one(
         self, kind: str, link: str | None, pointers: list[Pointers]
     ) -> tuple[Numbers, Numbers]:
         """The same, and what breaks is reported."""
@@ -158,7 +158,7 @@ class Lists(Reading):
                 while iad not in found:
                     there = 0 < iad <= last and not (iad - 1) % ratio and not known[(iad - 1) // ratio]
                     if not there or (codes and words[iad - 1] not in codes):
-                        self.astray(f"{name} of {source[0]}@{source[1]}", iad, kind)
+                        self.report_invalid_pointer(f"{name} of {source[0]}@{source[1]}", iad, kind)
                         break
                     found[iad] = owner
                     name, source, iad = link or "", (kind, iad), words[iad + step] if link else 0

@@ -227,7 +227,7 @@ def _numbers(target: str) -> tuple[int, ...]:
     return tuple(KINDS.index(kind) + 1 for kind in choices(target))
 
 
-ASTRAY = ", no "  # begins what a value should be and is not
+IS_NO = ", no "  # begins what a value should be and is not
 NOTHING_THERE = "nothing"  # what 0 leads to
 
 
@@ -280,12 +280,12 @@ def _hosts(atlas: Atlas, hosts: Any) -> list[str]:
 
 def leads_to(atlas: Atlas, target: str, values: Any, required: bool = False) -> list[str]:
     """What pointers to `target` with the values (n,) lead to, or that this is wrong. required: so is 0."""
-    wanted = ASTRAY + ("group" if target == "any" else " or ".join(choices(target)))
+    wanted = IS_NO + ("group" if target == "any" else " or ".join(choices(target)))
     found = np.full(len(values), NOTHING_THERE + (wanted if required else ""), object)
     sound = atlas.holding(target, values)
     found[sound] = _of_spans(atlas, values[sound], values[sound], atlas.starts[values[sound]] - 1)
     found[~sound & (values != 0)] = "outside IA()" + wanted
-    astray = np.flatnonzero(~sound & (values >= 1) & (values <= len(atlas.h.ia)))
-    found[astray] = [name + wanted for name in names(atlas, values[astray])]
+    invalid = np.flatnonzero(~sound & (values >= 1) & (values <= len(atlas.h.ia)))
+    found[invalid] = [name + wanted for name in names(atlas, values[invalid])]
     led: list[str] = found.tolist()
     return led

@@ -241,5 +241,5 @@ def save_changed(
     """
     if has_readable_histories(array):
         for series, definition in zip(state.series, definitions(array), strict=False):
-            series.follow(definition)
+            series.set_address(definition)
     return save(array, path, [*state.deck, line], state.laws, state.series, unsound)

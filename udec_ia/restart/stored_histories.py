@@ -63,7 +63,7 @@ def write_histories(parent: h5py.Group, series: Sequence[Series], growing: bool 
 def extend(parent: h5py.Group, series: Sequence[Series], before: Sequence[int]) -> None:
     """Add what was recorded after the first `before` numbers of each of `series`, which are there."""
     for one, n in zip(series, before, strict=True):
-        for (name, kind), column in zip(TYPES.items(), one.since(n).T, strict=True):
+        for (name, kind), column in zip(TYPES.items(), one.rows_after(n).T, strict=True):
             dataset = parent[f"{one.number}/{name}"]
             dataset.resize((n + len(column),))
             dataset[n:] = column.astype(kind)

@@ -6,15 +6,13 @@ division into pieces does not change a digit.
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 
-class Observer(Protocol):
-    """An observer of a run. Its methods do nothing until they are overridden."""
+class Observer:
+    """Base class of observers of a run. Its methods do nothing until they are overridden."""
 
     def begin(self, array: MainArray, solves: bool) -> None:
         """Called before the first cycle. solves: the run is a SOLVE."""

@@ -25,10 +25,10 @@ NO_MARKS = np.zeros(0, np.uint8)
 NO_PLACES, NO_ROWS = np.zeros((0, 2), np.int64), np.zeros((1, 2))
 
 
-def run_unwatched(h: Memory, n: int, laws: Any, marks: Any = NO_MARKS) -> int:
-    """Up to `n` cycles without recording; returns their number. laws, marks: as in run_with_records."""
-    called = passes(h, laws[0], (), NEVER, False, marks)
-    return int(run_with_records(h, n, laws, NEVER, *nothing_recorded(), marks, called)[0])
+def run_unwatched(h: Memory, n: int, laws: Any) -> int:
+    """Up to `n` cycles without recording; returns their number. laws: as in run_with_records."""
+    called = passes(h, laws[0], (), NEVER, False, NO_MARKS)
+    return int(run_with_records(h, n, laws, NEVER, *nothing_recorded(), NO_MARKS, called)[0])
 
 
 def nothing_recorded() -> tuple[Any, Any, Any]:
@@ -53,10 +53,10 @@ class Series:
         self.lost = False
         self.count = 0  # numbers recorded
         self._parts = [np.zeros((0, 3))]
-        self.follow(definition)
+        self.set_address(definition)
 
-    def follow(self, definition: Definition) -> None:
-        """Take the present address of the group; a group that has gone keeps its last name."""
+    def set_address(self, definition: Definition) -> None:
+        """Take the present address of the group; a deleted group keeps its last name."""
         if definition.address:
             self.group = f"{definition.what.group}@{definition.address}"
 
@@ -76,7 +76,7 @@ class Series:
         self._parts = [np.concatenate(self._parts)]
         return self._parts[0]
 
-    def since(self, n: int) -> Any:
+    def rows_after(self, n: int) -> Any:
         """The rows of `numbers` after the first `n`, without joining the earlier ones."""
         parts, missing = [np.zeros((0, 3))], self.count - n
         for part in reversed(self._parts):
@@ -92,7 +92,7 @@ class Series:
         last = next((part for part in reversed(self._parts) if len(part)), None)
         return -1 if last is None else int(last[-1, 0])
 
-    def until(self, cycle: int) -> None:
+    def truncate_after(self, cycle: int) -> None:
         """Remove the rows after that cycle."""
         self._parts = [self.numbers[self.numbers[:, 0] <= cycle]]
         self.count = len(self._parts[0])
@@ -138,12 +138,12 @@ class Recording:
     def begin(self, n: int) -> None:
         """Record the state before the first of `n` cycles."""
         self._last = int(self.array.h.ci[g.MCTOT]) + n
-        self.look()
+        self.update_definitions()
         self._places = places(self.array)
         self._rows = np.empty((ROWS, 2 + len(self.series)))
         if len(self._places):
             record(self.array.h, self._places, self._rows, self._count, measures(self.array.h))
-        self.hand_on()
+        self.flush_rows()
 
     def run(self, n: int, laws: Any) -> int:
         """Up to `n` cycles, fewer after an error or at the ratio. Returns their number."""
@@ -157,24 +157,24 @@ class Recording:
                     h, n - done, laws, self.ratio, *recorded, marks, called
                 )
             finally:
-                full = self.hand_on() == ROWS
+                full = self.flush_rows() == ROWS
             done += int(completed)
             if full and step_check_is_due(h):
                 break
         return done
 
-    def look(self) -> None:
+    def update_definitions(self) -> None:
         """Update the series with the present addresses of their groups, and `lost`."""
         for number, definition in enumerate(definitions(self.array), 1):
             if number > len(self.series):
                 self.series.append(Series(number, definition))
             series = self.series[number - 1]
-            series.follow(definition)
+            series.set_address(definition)
             if definition.lost and not series.lost:
                 series.lost = True
                 self.lost.append(series)
 
-    def hand_on(self) -> int:
+    def flush_rows(self) -> int:
         """Add the filled rows to the series; returns the number of rows."""
         if self._count[0] == 0:
             return 0

@@ -79,20 +79,19 @@ def cycle(
     laws: LawBook | None = None,
     report: Report | None = None,
     every: int | None = None,
-    prepared: Action | None = None,
-    settled: Action | None = None,
+    before_first_cycle: Action = lambda: None,
+    after_each_piece: Action = lambda: None,
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
     recording: of `array`; may end the run at its force ratio. laws: error 9 if one in use is missing. report:
-    called with the number of cycles done, every `every` cycles or a few times a second. prepared: called
-    before the first cycle, when the time-step is known. settled: called after every piece, before its errors
-    are raised, as its cycles stay. Errors 15 for a too great overlap, 36 for reals that are too coarse or too
-    small; the cycle with the error is completed.
+    called with the number of cycles done, every `every` cycles or a few times a second. before_first_cycle:
+    called when the time-step is known. after_each_piece: called once before the first piece, and after each
+    one before its errors are raised, as its cycles stay. Errors 15 for a too great overlap, 36 for reals that
+    are too coarse or too small; the cycle with the error is completed.
     """
     prepare(array)
-    if prepared is not None:
-        prepared()
+    before_first_cycle()
     bound = (laws or LawBook()).bind(array)
     keep_spare(array)
     array.h.ci[g.NCYC] = n
@@ -102,7 +101,7 @@ def cycle(
     recording = recording or Recording(array, [])
     try:
         try:
-            done = _run(array, n, bound, recording, observers, report, every, settled or (lambda: None))
+            done = _run(array, n, bound, recording, observers, report, every, after_each_piece)
         finally:
             finish(array, recording)
             for one in observers:
@@ -118,7 +117,7 @@ def cycle(
 def finish(array: MainArray, recording: Recording) -> None:
     """Complete the sums and series of a run that ends, also after an error. May be called twice."""
     energy_account.end(array)
-    recording.hand_on()
+    recording.flush_rows()
 
 
 def _run(
@@ -129,7 +128,7 @@ def _run(
     observers: Sequence[Observer],
     report: Report | None,
     every: int | None,
-    settled: Action,
+    after_each_piece: Action,
 ) -> int:
     """`n` cycles, in pieces. Returns how many were completed."""
     recording.begin(n)
@@ -140,7 +139,7 @@ def _run(
         return done < goal and not recording.reached and not any(one.is_over() for one in observers)
 
     done, piece = 0, FIRST_PIECE
-    settled()
+    after_each_piece()
     while goes_on(n):
         poll()
         start = working_time()
@@ -151,7 +150,7 @@ def _run(
                 cycles = one.cycles_ahead(array, cycles)
             completed = recording.run(cycles, (soft(array.h), bound.blocks, bound.joints))
             done += completed
-            settled()
+            after_each_piece()
             for one in observers if completed else ():
                 one.look(array, completed)
             raise_error(array, bound.book)

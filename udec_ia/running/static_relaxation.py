@@ -28,7 +28,7 @@ REALS = (g.RESTF, g.ALPHA, g.ALPB, g.BETA, g.FRAC)
 
 
 @contextmanager
-def statically(array: MainArray) -> Iterator[None]:
+def static_settings(array: MainArray) -> Iterator[None]:
     """The settings of STATIC within this context. Error 26 with an account of the energy."""
     ci, cr = array.h.ci, array.h.cr
     before = [int(ci[k]) for k in INTEGERS], [cr[k] for k in REALS], float(array.h.cd[g.EMOVES])

@@ -53,13 +53,14 @@ class Rows:
         firsts = integers(h, integers(h, meshed, g.KBEX), g.KFG)
         points = [addresses(h, int(first), g.KG) for first in firsts]
         self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 has no group
-        words = len(self.address)
-        self.sum = np.zeros((words, DOFS))
-        self.own = np.zeros((words, DOFS, DOFS))  # the matrix of each row within its group
-        self.mass = np.full((words, DOFS), np.inf)
-        self.drag = np.zeros((words, DOFS))  # row sums of the matrix of the dashpots
-        self.free = np.zeros((words, DOFS))  # 1 for a degree of freedom, 0 if it is fixed
-        self.frame = np.tile([1.0, 1.0, 0.0], (words, 1))  # radius of gyration, direction of the first axis
+        rows = len(self.address)
+        self.sum = np.zeros((rows, DOFS))
+        self.own = np.zeros((rows, DOFS, DOFS))  # the matrix of each row within its group
+        self.mass = np.full((rows, DOFS), np.inf)
+        self.drag = np.zeros((rows, DOFS))  # row sums of the matrix of the dashpots
+        self.free = np.zeros((rows, DOFS))  # 1 for a degree of freedom, 0 if it is fixed
+        # Columns: radius of gyration, cosine and sine of the first principal axis.
+        self.frame = np.tile([1.0, 1.0, 0.0], (rows, 1))
         self._enter_blocks(blocks[integers(h, blocks, HEAD) != g.MFDEF])
         if len(meshed):
             self._enter_points(meshed, points)

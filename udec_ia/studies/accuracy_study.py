@@ -19,15 +19,16 @@ from udec_ia.studies.extrapolation import HIGHEST, Extrapolation, converges, ext
 from udec_ia.studies.setting_runner import Options, Row, SettingRunner
 from udec_ia.studies.settings import BEYOND, Fraction, Setting, rounded, share_of_bound
 
-WANTED = 0.1  # of the tolerance: the error of the reference that it is refined for
+REFINEMENT_GOAL = 0.1  # of the tolerance: the error at which a reference is refined no further
 LEVELS, FINEST = 2, 6  # halvings of the reference: at first, and at most
 REST_ORDER = 12.0  # greatest order where rest is sought more closely from level to level
-SPREAD = 0.5  # of the tolerance: what the error of a reference may be
-RUNG = 2**0.5  # of the ladder of time-steps: the cheapest on it is so to within that factor
-LONGEST = 16.0  # times the step of the deck
+REFERENCE_LIMIT = 0.5  # of the tolerance: the greatest error of a reference
+MOTION_LIMIT = 0.1  # of the tolerance: the same for a motion whose values have no order
+STEP_RATIO = 2**0.5  # of neighbouring time-steps: the cheapest one is found to within that factor
+LARGEST_STEP = 16.0  # over the step of the deck
 SAFE = (0.9, 0.5)
 TIGHTER = 0.1  # ratio of SOLVE, from one level of the reference to the next
-SCATTER = 0.2, 0.02  # share, and seconds, by which two times differ before one is the shorter
+TIME_SCATTER = 0.2, 0.02  # share, and seconds, by which two times differ before one is the shorter
 
 
 @dataclass
@@ -57,8 +58,8 @@ class AccuracyStudy:
 
     def values(self, name: str, rows: Iterable[Row] | None = None) -> list[float]:
         """A quantity in rows, by default all, that are compared."""
-        some = self.rows if rows is None else rows
-        return [row.result.quantities[name] for row in some if row.result and row.compared]
+        rows = self.rows if rows is None else rows
+        return [row.result.quantities[name] for row in rows if row.result and row.compared]
 
     def is_within(self, row: Row) -> bool:
         """True if all errors, with those of the references, are within the tolerance."""
@@ -67,7 +68,7 @@ class AccuracyStudy:
 
     def run_rows(self, runner: SettingRunner, settings: Iterable[Setting]) -> list[Row]:
         """Run settings as far as the budget lasts."""
-        rows = [runner.row(one) for one in settings]
+        rows = [runner.row(setting) for setting in settings]
         self.rows += [row for row in rows if row not in self.rows]
         runner.run_rows(rows)
         return rows
@@ -79,17 +80,17 @@ class AccuracyStudy:
         quantity without an order must be known ten times as well as others.
         """
         solves = self.deck.has("solve")
-        wanted = {
-            name: WANTED if math.isnan(one.order) and not solves else SPREAD
-            for name, one in self.references.items()
+        limits = {
+            name: MOTION_LIMIT if math.isnan(reference.order) and not solves else REFERENCE_LIMIT
+            for name, reference in self.references.items()
         }
-        shares = {name: one.share / self.tolerance for name, one in self.references.items()}
-        self.known = [name for name, share in shares.items() if share <= wanted[name]]
+        shares = {name: reference.share / self.tolerance for name, reference in self.references.items()}
+        self.known = [name for name, share in shares.items() if share <= limits[name]]
         compared = self.known if self.can_recommend else []
         for row in self.rows:
             if row.result is not None and row.compared:
-                found = row.result.quantities
-                row.errors = {name: self.references[name].error_of(found[name]) for name in compared}
+                values = row.result.quantities
+                row.errors = {name: self.references[name].error_of(values[name]) for name in compared}
         self.best = recommended([row for row in self.rows if self.is_within(row)])
 
 
@@ -133,23 +134,23 @@ def study_accuracy(
 def _reference(study: AccuracyStudy, runner: SettingRunner) -> None:
     """Halve the step until the references are good enough, or the budget ends, or nothing converges."""
     highest = REST_ORDER if study.deck.has("solve") else HIGHEST
-    wanted = [_level(runner, k) for k in range(LEVELS + 1)]
+    settings = [_level(runner, k) for k in range(LEVELS + 1)]
     while True:
-        rows = study.run_rows(runner, wanted)
+        rows = study.run_rows(runner, settings)
         study.levels += [row for row in rows if row.compared]
         values = {name: study.values(name, study.levels) for name in study.references}
         if study.levels:
             study.references = {name: extrapolate(found, highest) for name, found in values.items()}
         study.choose()
         is_unknown = any(
-            one.share > WANTED * study.tolerance and converges(values[name])
-            for name, one in study.references.items()
+            reference.share > REFINEMENT_GOAL * study.tolerance and converges(values[name])
+            for name, reference in study.references.items()
         )
         k = len(study.levels)
         if not is_unknown or k > FINEST or any(not row.compared for row in rows):
             return
-        wanted = [_level(runner, k)]
-        if runner.predicted_seconds([runner.row(one) for one in wanted]) > runner.left / 2:
+        settings = [_level(runner, k)]
+        if runner.predicted_seconds([runner.row(setting) for setting in settings]) > runner.left / 2:
             return
 
 
@@ -165,42 +166,43 @@ def _longer_steps(runner: SettingRunner) -> list[Setting]:
     deck, survey = runner.deck, runner.survey
     if not deck.is_stepped:
         return _with_tighter(runner, [Setting(build) for build in runner.builds])
-    largest = min((1 / one.fraction for one in survey if one.safe and not one.static), default=math.inf)
-    steps = [RUNG**k for k in range(9) if RUNG**k <= min(LONGEST * 1.01, largest)]
-    found: list[Setting] = []
+    fractions = [segment.fraction for segment in survey if segment.safe and not segment.static]
+    largest = min((1 / fraction for fraction in fractions), default=math.inf)
+    steps = [STEP_RATIO**k for k in range(9) if STEP_RATIO**k <= min(LARGEST_STEP * 1.01, largest)]
+    settings: list[Setting] = []
     for build in runner.builds:
-        ladder = [Setting(build, rounded(step)) for step in steps]
-        found += [one for one in ladder if one.step == 1 or share_of_bound(survey, one) <= BEYOND]
-        if any(0 < one.bound < math.inf for one in survey):
-            found += [Setting(build, safe=safe) for safe in SAFE]
+        stepped = [Setting(build, rounded(step)) for step in steps]
+        settings += [one for one in stepped if one.step == 1 or share_of_bound(survey, one) <= BEYOND]
+        if any(0 < segment.bound < math.inf for segment in survey):
+            settings += [Setting(build, safe=safe) for safe in SAFE]
         if deck.rests:
-            found.append(Setting(build, static=True))
-    return _with_tighter(runner, found)
+            settings.append(Setting(build, static=True))
+    return _with_tighter(runner, settings)
 
 
 def _shorter_steps(runner: SettingRunner, finest: float) -> list[Setting]:
     """Steps below that of the deck, down to `finest`, if they matter to it."""
-    found: list[Setting] = []
-    step = 1 / RUNG
+    settings: list[Setting] = []
+    step = 1 / STEP_RATIO
     while runner.deck.is_stepped and step > finest * 0.99:
-        found += [Setting(build, rounded(step)) for build in runner.builds]
-        step /= RUNG
-    return _with_tighter(runner, found)
+        settings += [Setting(build, rounded(step)) for build in runner.builds]
+        step /= STEP_RATIO
+    return _with_tighter(runner, settings)
 
 
 def _with_tighter(runner: SettingRunner, settings: list[Setting]) -> list[Setting]:
     """These settings, and with a SOLVE the same closer to rest."""
     closer = settings if runner.deck.has("solve") else []
-    return settings + [replace(one, ratio=one.ratio * TIGHTER) for one in closer]
+    return settings + [replace(setting, ratio=setting.ratio * TIGHTER) for setting in closer]
 
 
 def recommended(rows: Sequence[Row]) -> Row | None:
     """The cheapest of rows within the tolerance; 32-bit reals only if they save more than times scatter."""
     wide = [row for row in rows if scheme(row.setting.build).real_bits == 64]
-    best, safe = (min(some, key=lambda row: (row.cost, row.memory), default=None) for some in (rows, wide))
+    best, safe = (min(group, key=lambda row: (row.cost, row.memory), default=None) for group in (rows, wide))
     if best is None or safe is None:
         return best
-    part, seconds = SCATTER
+    part, seconds = TIME_SCATTER
     return best if safe.cost - best.cost > max(part * safe.cost, seconds) else safe
 
 
@@ -221,8 +223,8 @@ def path_differences(study: AccuracyStudy) -> dict[str, float]:
     static = [row for row in study.rows if row.compared and row.setting.static]
     if not static or not study.levels or study.levels[-1].setting.static:
         return {}
-    found = {}
+    differences = {}
     for name in study.references:
-        (own,) = study.values(name, study.levels[-1:])
-        found[name] = max(share(abs(one - own), own) for one in study.values(name, static))
-    return found
+        (finest,) = study.values(name, study.levels[-1:])
+        differences[name] = max(share(abs(value - finest), finest) for value in study.values(name, static))
+    return differences

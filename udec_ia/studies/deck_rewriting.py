@@ -56,20 +56,20 @@ class Deck:
         self.statements = [*variables.filled(statements(text.splitlines(), name))]
         self.commands = [found.name if (found := command_of(one)) else "" for one in self.statements]
         ends = [k for k, command in enumerate(self.commands) if command in ENDS]
-        self.obeyed = ends[0] if ends else len(self.commands)  # statements before STOP
-        for one in self.statements[: self.obeyed]:
+        self.executed = ends[0] if ends else len(self.commands)  # statements before STOP
+        for one in self.statements[: self.executed]:
             if one.tokens:
                 parse(one)
         self._saves = "restart" in self.commands[1:]
 
     def has(self, *commands: str) -> bool:
         """True if one of these is in it."""
-        return any(one in commands for one in self.commands[: self.obeyed])
+        return any(one in commands for one in self.commands[: self.executed])
 
     def calls(self, *commands: str) -> list[Call]:
         """Its statements of these commands, in order."""
-        obeyed = zip(self.statements[: self.obeyed], self.commands, strict=False)
-        return [parse(one) for one, name in obeyed if name in commands]
+        executed = zip(self.statements[: self.executed], self.commands, strict=False)
+        return [parse(one) for one, name in executed if name in commands]
 
     @property
     def rests(self) -> bool:
@@ -94,20 +94,20 @@ class Deck:
         fraction: that of the deck, where no line states it; None: it stays so.
         """
         numbers = numbers or Numbers()
-        before_run = takewhile(lambda name: name not in RUNS, self.commands[: self.obeyed])
+        before_run = takewhile(lambda name: name not in RUNS, self.commands[: self.executed])
         stated = "fraction" in before_run or not self.is_stepped
         found: list[Piece] = []
         counts = dict(enumerate(zip_longest(numbers.longer, numbers.cycles)))
         run = 0  # CYCLEs and SOLVEs until here
         for k, (one, name) in enumerate(zip(self.statements, self.commands, strict=True)):
-            is_obeyed = k < self.obeyed
-            if is_obeyed and name in RUNS and run == 0 and setting.types == "sdef":
+            is_executed = k < self.executed
+            if is_executed and name in RUNS and run == 0 and setting.types == "sdef":
                 found.append(Piece(None, [f"CHANGE {EVERYWHERE} SDEF"]))
             longer, cycles = counts.get(run, (None, None))
             change = _Change(setting, numbers, longer or 1.0, cycles)
-            lines = self._lines(one, name, change) if is_obeyed else _unchanged(one)
+            lines = self._lines(one, name, change) if is_executed else _unchanged(one)
             found.append(Piece(one, lines))
-            if is_obeyed and name in ("start", "restart") and not stated and fraction is not None:
+            if is_executed and name in ("start", "restart") and not stated and fraction is not None:
                 found.append(Piece(None, [_fraction(setting, numbers, fraction)], one.lines[-1].number))
             run += name in RUNS
         return found
@@ -120,7 +120,7 @@ class Deck:
         return "".join(f"{line}\n" for piece in pieces for line in piece.lines)
 
     def _lines(self, one: Statement, name: str, change: _Change) -> list[str]:
-        """The lines of a statement that is obeyed."""
+        """The lines of a statement that is executed."""
         if name in SHOWS or name == FILLED or (name == "save" and not self._saves):
             return _as_comment(one)
         if name == "restart" and not self._saves:

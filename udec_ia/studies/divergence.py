@@ -132,7 +132,7 @@ def of_deck(
 
 
 class _Monitor(Monitor):
-    """Obeys a deck; a restart file that it has not written is looked for in other folders."""
+    """Executes a deck; a restart file that it has not written is looked for in other folders."""
 
     def __init__(self, model: Any, values: Values | None, folders: Sequence[Path]) -> None:
         super().__init__(model, StringIO(), values=values)
@@ -160,13 +160,13 @@ def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
         line = f"{name}:{first.number}: {first.shown.strip()}" if name else ""
         ratio, left = _rest_of(statement)
         if not left:
-            monitor.obey(statement)
+            monitor.execute(statement)
             continue
-        monitor.obey(cycle_statement(statement, 0))
+        monitor.execute(cycle_statement(statement, 0))
         yield model.array.copy(), line
         while left > 0:
             piece = min(left, EVERY - int(model.array.h.ci[g.MCTOT]) % EVERY)
-            monitor.obey(_part(statement, ratio, piece))
+            monitor.execute(_part(statement, ratio, piece))
             left -= piece
             yield model.array.copy(), line
             if ratio is not None and at_rest(model.array.h, ratio):

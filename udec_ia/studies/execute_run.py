@@ -93,7 +93,7 @@ def _result(run: StudyRun, here: Path) -> RunResult:
         try:
             name, laws = Path(run.file or DECK).stem, run.constitutive or None
             observer = StudyObserver(run, Model(run.build, out=here, constitutive=laws, name=name))
-            observer.obey(out)
+            observer.execute(out)
             result = observer.result(result)
         except UdecError as failure:
             print(failure, file=out)
@@ -173,8 +173,8 @@ class CpuTime:
 class RunObserver(Observer):
     """An observer of cycles that is called between commands as well."""
 
-    def command_obeyed(self, array: MainArray) -> None:
-        """A command was obeyed."""
+    def after_command(self, array: MainArray) -> None:
+        """A command was executed."""
 
 
 class StudyObserver(RunObserver):
@@ -193,8 +193,8 @@ class StudyObserver(RunObserver):
         self._done = 0  # cycles of this CYCLE or SOLVE
         self._others: list[RunObserver] = run.observers(model)
 
-    def obey(self, out: TextIO) -> None:
-        """Obey the deck of the run, whose output goes to `out`."""
+    def execute(self, out: TextIO) -> None:
+        """Execute the deck of the run, whose output goes to `out`."""
         name, text = self.run.file or DECK, self.run.deck
         monitor = _Monitor(self, out)
         monitor.variables.check(text.splitlines(), name)
@@ -221,11 +221,11 @@ class StudyObserver(RunObserver):
             at_rest=all(one.reached for one in worth_reporting(state.solutions)),
         )
 
-    def command_obeyed(self, array: MainArray) -> None:
-        """See RunObserver."""
+    def after_command(self, array: MainArray) -> None:
+        """Drop deleted groups from the initial state, and call the other observers."""
         self._start.look(array)
         for one in self._others:
-            one.command_obeyed(array)
+            one.after_command(array)
 
     def is_ended(self) -> bool:
         """True if the run is to end: a rule holds, or the time is up."""
@@ -234,19 +234,19 @@ class StudyObserver(RunObserver):
         return bool(self.over)
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See RunObserver."""
+        """Begin to count cycles, and save the initial state before the first run."""
         self._done = 0
         self._start.begin(array)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """See RunObserver: until the next check of the rules."""
+        """Cycles until the next check of the rules."""
         if self.run.rehearsal:
             return min(n, 1)
         every = self.run.every
         return min(n, every - int(array.h.ci[g.MCTOT]) % every) if self._rules else n
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See RunObserver."""
+        """Check the rules when they are due."""
         self._done += cycles
         if not (self._rules and between_cycles(array.h) and array.h.ci[g.MCTOT] % self.run.every == 0):
             return
@@ -275,14 +275,14 @@ class _Monitor(Monitor):
         self._observer.warnings.append(text)
         super().warn(command, text)
 
-    def obey(self, statement: Statement) -> None:
-        """As Monitor.obey, but nothing that takes long is begun when the time is up."""
+    def execute(self, statement: Statement) -> None:
+        """As Monitor.execute, but nothing that takes long is begun when the time is up."""
         command = command_of(statement)
         if statement.tokens and (command is None or command.is_work):
             self.ended = self._observer.is_ended()
         if self.ended:
             return
-        super().obey(statement)
-        self._observer.command_obeyed(self._observer.model.array)
+        super().execute(statement)
+        self._observer.after_command(self._observer.model.array)
         if self._observer.over:
             self.ended = True

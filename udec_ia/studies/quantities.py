@@ -62,7 +62,7 @@ class InitialState:
         self._first = {kind: (atlas.groups[kind], _positions(atlas, kind)) for kind in PLACES}
 
     def look(self, array: MainArray) -> None:
-        """A command was obeyed: drop deleted groups, before their addresses belong to others."""
+        """After a command: drop deleted groups, before their addresses belong to others."""
         if self._array is None:
             return
         there = {kind: addresses(array, kind) for kind in FOLLOWED}

@@ -39,7 +39,7 @@ QUANTITIES = (
 )
 NARROW = {"i64r64": "i32r32", "i32r64": "i32r32", "i16r64": "i16r32"}  # schemes with half the reals
 WIDE = {"i32r32": "i32r64", "i16r32": "i16r64"}
-LONGEST = 5.0  # times the predicted seconds, and least seconds, after which a run is ended
+RUN_LIMIT_FACTOR = 5.0  # times the predicted seconds, and least seconds, after which a run is ended
 TIME_OFF = 0.05  # share of the time of all CYCLEs by which a run may be off, as cycles are whole
 NOT_AT_REST = "its SOLVE did not reach the force ratio"
 
@@ -169,9 +169,10 @@ class SettingRunner:
         if result.status != ENDED or not self.survey:
             reason = result.message or "it has no CYCLE and no SOLVE"
             return f"the deck as it is gives nothing to compare: {reason}"
-        one = next((one for one in self.survey if not one.static), None)
-        if one is not None:
-            self.fraction = Fraction(one.fraction, " SCALED" if one.scaled else " SAFE" if one.safe else "")
+        first = next((segment for segment in self.survey if not segment.static), None)
+        if first is not None:
+            word = " SCALED" if first.scaled else " SAFE" if first.safe else ""
+            self.fraction = Fraction(first.fraction, word)
         self.own.numbers = count_cycles(self.survey, self.own.setting)
         self._enter(self.own, result)
         self.rates = dict.fromkeys(self.builds, self.rates[self.wide])
@@ -213,12 +214,12 @@ class SettingRunner:
             waiting.sort(key=lambda row: (not row.setting.static, row.predicted))
             if waiting[0].predicted > self.left:
                 break
-            some, waiting = waiting[: self.processes], waiting[self.processes :]
+            started, waiting = waiting[: self.processes], waiting[self.processes :]
             runs = []
-            for row in some:
-                limit = min(LONGEST * max(1.0, row.predicted), max(self.left, 1.0))
+            for row in started:
+                limit = min(RUN_LIMIT_FACTOR * max(1.0, row.predicted), max(self.left, 1.0))
                 runs.append(self.run(row.setting, row.numbers, limit=limit))
-            for row, result in zip(some, self.results(runs), strict=True):
+            for row, result in zip(started, self.results(runs), strict=True):
                 self._enter(row, result)
         return waiting
 
@@ -231,22 +232,23 @@ class SettingRunner:
         row.why = self._why_not_compared(row, result)
         done = self._done[row.setting.build]
         done.append(row)
-        spent = [sum(one.seconds for one in row.segments) for row in done]
-        cycles = [sum(one.done for one in row.segments) for row in done]
-        spare = [row.result.seconds - own for row, own in zip(done, spent, strict=True) if row.result]
-        rates = Rates(max(median(spare), 0.0), sum(spent) / max(sum(cycles), 1))
+        cycling = [sum(segment.seconds for segment in row.segments) for row in done]
+        cycles = [sum(segment.done for segment in row.segments) for row in done]
+        results = [row.result for row in done if row.result]
+        preparing = [result.seconds - spent for result, spent in zip(results, cycling, strict=True)]
+        rates = Rates(max(median(preparing), 0.0), sum(cycling) / max(sum(cycles), 1))
         self.rates[row.setting.build] = rates
-        for one, number in zip(done, cycles, strict=True):
-            one.cost = rates.preparing + rates.cycle * number
+        for finished, number in zip(done, cycles, strict=True):
+            finished.cost = rates.preparing + rates.cycle * number
 
     def _why_not_compared(self, row: Row, result: RunResult) -> str:
         """Why a row that has run is not compared, "" if it is."""
         if not has_its_fraction(self.survey, row.segments, row.setting, row.numbers):
             return "the deck sets its time-step itself, which cannot be varied; write FRACTION instead"
-        own = self.own.result or result
-        time, wanted = cycled_time(row.segments, result.time), cycled_time(self.survey, own.time)
-        if abs(time - wanted) > TIME_OFF * abs(wanted):
-            return f"the CYCLEs of {row.setting.name} last {time:.4g} s, those of the deck {wanted:.4g} s"
+        deck_result = self.own.result or result
+        time, deck_time = cycled_time(row.segments, result.time), cycled_time(self.survey, deck_result.time)
+        if abs(time - deck_time) > TIME_OFF * abs(deck_time):
+            return f"the CYCLEs of {row.setting.name} last {time:.4g} s, those of the deck {deck_time:.4g} s"
         return "" if result.at_rest else NOT_AT_REST
 
     def results(self, runs: Sequence[StudyRun]) -> list[RunResult]:
@@ -255,7 +257,8 @@ class SettingRunner:
 
     def segments(self, name: str) -> list[Segment]:
         """The CYCLEs and SOLVEs of the run of that name."""
-        found = read_segments(self._pool.folder / name)
-        for one, static in zip(found, self.deck.statics, strict=False):  # a run may have failed half-way
-            one.static = static
-        return found
+        segments = read_segments(self._pool.folder / name)
+        statics = self.deck.statics  # more than segments if the run failed half-way
+        for segment, static in zip(segments, statics, strict=False):
+            segment.static = static
+        return segments

@@ -108,17 +108,17 @@ class _Noise(RunObserver):
         self._before: Any = None
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """See RunObserver: groups are where they will stay."""
+        """Find the groups whose addresses stay during the run."""
         self._staying = self._cells(array, {kind: listed(array, kind) for kind in STAYING})
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
-        """See RunObserver: until the next kick."""
+        """Cycles until the next kick."""
         h = array.h
         self._before = h.ra[: int(h.ci[g.MFREE]) // array.scheme.ratio + 1].copy()
         return min(n, self.every - int(h.ci[g.MCTOT]) % self.every)
 
     def look(self, array: MainArray, cycles: int) -> None:
-        """See RunObserver: move what has changed."""
+        """Kick: move what has changed."""
         h = array.h
         if not between_cycles(h) or h.ci[g.MCTOT] % self.every:
             return

@@ -64,8 +64,8 @@ class _Recorder(RunObserver):
         self._before = 0.0
         self._bound: float | None = None  # of the time-step in use
 
-    def command_obeyed(self, array: MainArray) -> None:
-        """See RunObserver: after some commands the time-step is made anew."""
+    def after_command(self, array: MainArray) -> None:
+        """Forget the bound when the next CYCLE calculates the time-step again."""
         if not array.h.ci[g.LREADY]:
             self._bound = None
 

@@ -32,21 +32,21 @@ def on_base(case: Case, m: Model, b: float, h: float, n: int = 1, width: float =
         case.deform(m, -b / 2, b / 2, k * h, (k + 1) * h)
 
 
-def settle(case: Case, m: Model, stiffness: float, mass: float, limit: int = 20_000) -> None:
+def settle(case: Case, m: Model, stiffness: float, mass: float) -> None:
     """Let the blocks come to rest under critical damping of a mass on a spring; then take it away."""
     frequency = sqrt(stiffness / mass) / (2 * pi)
     m.damping(2.0, frequency, "mass")
     m.damping(1.0, frequency, "internal")
-    m.solve(max(REST, 1e4 * case.last_digit), limit)  # as far as the last digits let it rest
+    m.solve(max(REST, 1e4 * case.last_digit), 20_000)  # as far as the last digits let it rest
     m.damping(0, 1)
     m.damping(0, 1, "internal")
 
 
-def tilt(m: Model, g: float, angle: float, steps: int = 10, ratio: float = 1e-4) -> None:
+def tilt(m: Model, g: float, angle: float, steps: int = 10) -> None:
     """Turn gravity g from downwards towards x, by `angle` (rad) in `steps`, with rest between them."""
     for k in range(1, steps + 1):
         m.gravity(g * sin(angle * k / steps), -g * cos(angle * k / steps))
-        m.solve(ratio, 5000)
+        m.solve(1e-4, 5000)
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
