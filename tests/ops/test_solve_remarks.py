@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.mechanics_scenes import block
 
 from udec_ia import Model, UdecError
 
@@ -94,3 +95,32 @@ def test_what_slipped_in_a_cycle_before_is_not_forgotten(tmp_path: Path) -> None
         states.append(m.solve(1e-4).keys)
         states.append(m.solve(1e-4).keys)
     assert states == [("joints-slipped",), (), ("joints-slipped",), ()]
+
+
+HANGING = """START
+PROP MAT=1 DENSITY=2600 KN=1E10 KS=1E10 FRICTION=0.6
+BLOCK 0,0 0,3 10,3 10,0
+SPLIT -1,1 11,1
+SPLIT 4.5,-1 4.5,4
+SPLIT 5.5,-1 5.5,4
+SPLIT 4.4,2 5.6,2
+ROUND 0.05
+FIX 0 10 0 1
+BOUNDARY 0 4 1 3 YFORCE -1E8
+BOUNDARY 6 10 1 3 YFORCE -1E8
+GRAVITY 0 -10
+DELETE 4.5 5.5 1 2
+"""
+
+
+def test_a_block_whose_contacts_carry_nothing_has_fallen(
+    tmp_path: Path,
+) -> None:
+    """Its weight is little against the forces beside it, so that the ratio is reached before it moves."""
+    m = Model(out=tmp_path)
+    m.run(HANGING)
+    roof = int(block(m, 5, 2.5)["address"])
+    solution = m.solve(1e-3, static=True)
+    assert solution.reached
+    assert solution.fallen == (roof,)
+    assert "blocks-fallen" in solution.keys

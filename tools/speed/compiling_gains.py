@@ -42,6 +42,11 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "from udec_ia.compiling import kernel_linking\nkernel_linking.NOT_IN_KERNELS = ()",
         {},
     ),
+    "rare collections": (
+        COLD,
+        "from udec_ia.compiling import compile_duration\ncompile_duration.RARELY = 10",
+        {},
+    ),
     "outlined calls": (
         COLD,
         "from udec_ia.compiling import non_inlined_calls as o\nfrom udec_ia.kernels.drive import cycle\n"

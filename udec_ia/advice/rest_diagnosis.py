@@ -81,6 +81,14 @@ class DisplacementRecord:
         free = integers(h, self.blocks, g.KBFIX) != g.FIXED
         return np.where(free, np.hypot(x - since.x, y - since.y), 0.0)
 
+    def unsupported(self, h: Memory) -> Any:
+        """True for each block that has weight, is not fixed, and has no contact with a normal force."""
+        contacts = list_of(h, "contact")
+        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+        carried = np.isin(self.blocks, [integers(h, contacts, k) for k in (g.KB1, g.KB2)])
+        free = integers(h, self.blocks, g.KBFIX) == 0
+        return free & ~carried & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])
+
     def _centroids(self, h: Memory) -> Any:
         return [np.asarray(getr(h, self.blocks, k), np.float64) for k in (g.KX, g.KY)]
 
@@ -119,10 +127,13 @@ class RestDiagnosis(Observer):
         moved = record.displacements(h, record.looks[0])
         size = 2 * np.asarray(getr(h, record.blocks, g.KBRO), float)
         fallen = (moved > 0) & ((moved > FALLEN * size) | record.lost)
+        if solution.reached:
+            fallen |= record.unsupported(h)
         if many := int(fallen.sum()):
             text = (
                 f"{_have(many)} fallen, {_names(h, record.blocks, np.where(fallen, moved, -1.0), many)}: "
-                f"each has moved by more than {FALLEN:.0%} of its size, or has lost all its contacts"
+                f"each has moved by more than {FALLEN:.0%} of its size, has lost all its contacts, or has "
+                "weight and no contact that carries a force"
             )
             remarks.append(Remark("blocks-fallen", text))
         if solution.reached:

@@ -66,12 +66,12 @@ COMMANDS = (
         "BOundary",
         CHANGES,
         "Boundary conditions in x1<x<x2, y1<y<y2. Velocities and forces act on the grid-points and block "
-        "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension"
-        " is positive, and XGrad and YGrad are the increases with x and y. Viscous makes those edges "
-        "non-reflecting, with the present properties. A sine (frequency, duration) begins now; a FUNCTION "
-        "depends on the time of the model. Either multiplies loads and velocities. Loads add to existing "
-        "loads. A velocity replaces the previous one; a fixed block takes none but 0. "
-        "Free removes all conditions.",
+        "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension "
+        "is positive, stresses are those at x = 0 and y = 0, and XGrad and YGrad are their increases with x "
+        "and y. Viscous makes those edges non-reflecting, with the present properties. A sine (frequency, "
+        "duration) begins now; a FUNCTION depends on the time of the model. Either multiplies loads and "
+        "velocities. Loads add to existing loads. A velocity replaces the previous one; a fixed block takes "
+        "none but 0. Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -267,9 +267,9 @@ COMMANDS = (
     Command(
         "INsitu",
         CHANGES,
-        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive;"
-        " XGrad and YGrad are the increases with x and y. Joints start without force and close under these "
-        "stresses.",
+        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive; "
+        "stresses are those at x = 0 and y = 0; XGrad and YGrad are their increases with x and y. Joints "
+        "start without force and close under these stresses.",
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
@@ -329,7 +329,7 @@ COMMANDS = (
         "Define the properties of material n: bulk modulus (Bulk or K, Pa), cohesion of a contact (N/m), "
         "density (kg/m3), normal and shear stiffness of a contact (N/m2, not Pa/m: a force in N for each "
         "metre of thickness, per metre of overlap or slip), joint friction coefficient, shear modulus (G, "
-        "Pa). Values not given are 0: a joint without friction slides. Stiffness and cohesion are those of "
+        "Pa). A value never given is 0: a joint without friction slides. Stiffness and cohesion are those of "
         "each contact, whatever the length of the joint; two blocks face to face have two contacts. A "
         "contact has the material of its first block, so the contacts of one joint between two materials "
         "can differ (PRINT CONTACTS shows them): give both the same joint properties. For constitutive "

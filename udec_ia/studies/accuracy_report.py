@@ -108,9 +108,10 @@ def _loading_path(study: AccuracyStudy) -> str:
     found = path_differences(study)
     slips = SLIPPED in study.solved
     depends = slips or max(found.values(), default=0.0) > study.tolerance
+    independent = "does not depend on it" if found else "no sign that the result depends on it"
     return "; ".join(
         [
-            "depends on it" if depends else "does not depend on it" if found else "no sign that it does",
+            "depends on it" if depends else independent,
             study.solved if slips else "no joint slip is reported",
             *[f"SOLVE ... STATIC, another path, changes {name} by {off:.2g}" for name, off in found.items()],
             *["by how much is unknown: load in steps, and compare"] * (depends and not found),
