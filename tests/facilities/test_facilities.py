@@ -26,7 +26,7 @@ from udec_ia.layout.field_table import read_table
 from udec_ia.reader.word_map import Atlas
 from udec_ia.running.run_cycles import prepare
 
-BARE = {"blocks and contacts", "domain pass", "watch of the energy"}
+BARE = {"blocks and contacts", "domain pass", "energy monitor"}
 KINDS = {
     "blocks and contacts": ("block", "corner", "contact", "domain"),
     "SDEF": ("sdef",),
@@ -112,7 +112,7 @@ def test_words_are_those_of_the_groups(build: str) -> None:
     [
         (lambda m: m.damping(combined=0.8), "DAMPING to rest"),
         (lambda m: m.fraction(0.5, scaled=True), "FRACTION SCALED"),
-        (lambda m: (m.damping(combined=0.8), m.fraction(0.5, scaled=True)), "to rest and SCALED"),
+        (lambda m: (m.damping(combined=0.8), m.fraction(0.5, scaled=True)), "to rest with SCALED"),
     ],
 )
 def test_relaxations_are_counted_once(commands: Callable[[Model], object], name: str) -> None:

@@ -85,7 +85,7 @@ class Scene:
     def owner_of_relaxations(self) -> str:
         """The facility that relaxations are needed for."""
         if self.h.ci[g.LSCALE]:
-            return "to rest and SCALED" if self.h.ci[g.LREST] in REMEMBER else "FRACTION SCALED"
+            return "to rest with SCALED" if self.h.ci[g.LREST] in REMEMBER else "FRACTION SCALED"
         return "DAMPING to rest"
 
 
@@ -130,7 +130,9 @@ def _relaxation(s: Scene) -> str:
 
 def _both(s: Scene) -> str:
     return (
-        "both need relaxations" if s.count("relax") and s.owner_of_relaxations == "to rest and SCALED" else ""
+        "both need relaxations"
+        if s.count("relax") and s.owner_of_relaxations == "to rest with SCALED"
+        else ""
     )
 
 
@@ -151,10 +153,10 @@ FACILITIES = (
     Facility("DAMPING INTERNAL", use=_coefficient(g.ALPB, "1/s")),
     Facility("DAMPING to rest", use=_relaxation),
     Facility("FRACTION SCALED", use=lambda s: "inertial masses" if s.h.ci[g.LSCALE] else ""),
-    Facility("to rest and SCALED", use=_both),
+    Facility("to rest with SCALED", use=_both),
     Facility("ENERGY", use=lambda s: "an account is kept" if s.h.ci[g.LENER] else ""),
     Facility("HISTORY", ("history",)),
-    Facility("watch of the energy", use=lambda s: "a run that gains energy ends" if s.moves else ""),
+    Facility("energy monitor", use=lambda s: "a run that gains energy ends" if s.moves else ""),
     Facility("other groups", tuple(one.name for one in read_table().groups if one.name not in LISTED)),
 )
 

@@ -115,10 +115,10 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "DAMPING INTERNAL": partial(_put, ALPB=0.0, C1B=1.0, C2B=1.0),
     "DAMPING to rest": partial(_lose_relaxations, LREST=0),
     "FRACTION SCALED": partial(_lose_relaxations, LSCALE=0),
-    "to rest and SCALED": partial(_lose_relaxations, LREST=0, LSCALE=0),
+    "to rest with SCALED": partial(_lose_relaxations, LREST=0, LSCALE=0),
     "ENERGY": partial(_put, LENER=0),
     "HISTORY": _lose_histories,
-    "watch of the energy": _stop_monitoring,
+    "energy monitor": _stop_monitoring,
     "other groups": "their use is unknown",
 }
 

@@ -121,10 +121,10 @@ def damping(
     only: str | None = None,
     **modes: float | None,
 ) -> None:
-    """DAMPING: Rayleigh damping; only "mass", only "stiffness", or "internal" (see set_damping).
+    """DAMPING: Rayleigh damping of the fraction `fcrit` of critical at the frequency `freq` (Hz).
 
-    Or one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f
-    (kernels.drive.damping_modes).
+    only: "mass", "stiffness", or "internal" for the strain rates of simply-deformable blocks. Instead of
+    these, one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f.
     """
     session.ensure_ready(sound=False)
     asked = {one: modes.get(one.argument) for one in MODES}

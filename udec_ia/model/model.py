@@ -413,9 +413,9 @@ class Model:
     ) -> list[Path]:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
-        contour: a key of drawn_outlines.CONTOURS. window: range x1, x2, y1, y2 (m) that is shown, or all
-        blocks. history, without the others: histories are drawn instead. A frame of more than ten states is
-        written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
+        contour: "s11", "s12", "s22", "pressure" or "shear". window: range x1, x2, y1, y2 (m) that is shown,
+        or all blocks. history, without the others: histories are drawn instead. A frame of more than ten
+        states is written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
         """
         from udec_ia.output.plot_frames import What
 
