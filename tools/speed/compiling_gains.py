@@ -42,6 +42,11 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "from udec_ia.compiling import kernel_linking\nkernel_linking.NOT_IN_KERNELS = ()",
         {},
     ),
+    "cached signatures": (
+        COLD,
+        "from udec_ia.compiling import kernel_linking as k\nk._CachedSignatures = lambda context: context",
+        {},
+    ),
     "rare collections": (
         COLD,
         "from udec_ia.compiling import compile_duration\ncompile_duration.RARELY = 10",
@@ -53,7 +58,11 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "cycle.entry_if = lambda wanted, kernel, *args: o.entry(kernel, *args)",
         {},
     ),
-    "code cache": (WARM, "import shutil, os\nshutil.rmtree(os.environ['UDEC_CACHE'])", {}),
+    "code cache": (
+        WARM,
+        "import shutil, os\nshutil.rmtree(os.environ['UDEC_CACHE'], ignore_errors=True)",
+        {},
+    ),
     "cache without compiler": (
         WARM,
         "from numba.core.caching import FunctionCache\nfrom udec_ia.compiling import code_cache\n"

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from numba import njit, types
 from numba.core.codegen import JITCodeLibrary
@@ -64,6 +64,28 @@ def _add_called(libraries: Iterable[Any], found: dict[Any, None]) -> None:
             found[library] = None
 
 
+class _CachedSignatures:
+    """A typing context of numba that caches the signatures of calls, but for those of kernels."""
+
+    found: ClassVar[dict[Any, Any]] = {}  # signature, by function and types of its arguments
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """Signature of a call, or None."""
+        key = func, tuple(args)
+        signature = self.found.get(key)
+        if signature is None:
+            signature = self._context.resolve_function_type(func, args, kws)
+            if isinstance(func, types.Function) and not kws:
+                self.found[key] = signature
+        return signature
+
+
 class _KernelCompiler(Compiler):
     form: type[JITCodeLibrary]
 
@@ -71,6 +93,7 @@ class _KernelCompiler(Compiler):
         state = self.state
         state.library = self.form(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
+        state.typingctx = _CachedSignatures(state.typingctx)
         (pipeline,) = super().define_pipelines()
         pipeline.passes = [one for one in pipeline.passes if one[0]._name not in NOT_IN_KERNELS]
         return [pipeline]
