@@ -28,11 +28,11 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from curve_picture import draw  # noqa: E402
+from curve_picture import draw
 
-from support.brick_slope import slope  # noqa: E402
-from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
+from support.brick_slope import slope
+from udec_ia import Model, UdecError
+from udec_ia.layout import offsets as g
 
 LAST, TOGETHER = 1000, 20  # cycles that are looked at one by one, and those of a point of the picture
 KINDS: dict[str, dict[str, Any]] = {

@@ -29,9 +29,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT)]
 
-from curve_picture import Curves, draw  # noqa: E402
+from curve_picture import Curves, draw
 
-from corner_angle_scenes import (  # noqa: E402
+from corner_angle_scenes import (
     BUILDS,
     DENSITY,
     FRICTION,
@@ -41,8 +41,8 @@ from corner_angle_scenes import (  # noqa: E402
     scene,
     standing,
 )
-from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
+from udec_ia import Model, UdecError
+from udec_ia.layout import offsets as g
 
 ANGLES = (1, 2, 5, 9, 15, 30, 60, 90, 120, 150, 170, 175, 179, 179.9)
 G, LOOKS = 10.0, 100

@@ -18,7 +18,7 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT)]
 
-from udec_ia import Model, UdecError  # noqa: E402
+from udec_ia import Model, UdecError
 
 EXPONENTS = (-20, -10, 0, 10, 20, 30)
 OFFSETS = (0.0, 1e3, 1e6, 1e9)

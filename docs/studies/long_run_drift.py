@@ -21,10 +21,10 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT)]
 
-from udec_ia import Model  # noqa: E402
-from udec_ia.heap.accessors import getr, putr  # noqa: E402
-from udec_ia.heap.word_scheme import ALL_SCHEMES  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
+from udec_ia import Model
+from udec_ia.heap.accessors import getr, putr
+from udec_ia.heap.word_scheme import ALL_SCHEMES
+from udec_ia.layout import offsets as g
 
 LOOKS, EVERY = 100, 100  # looks at the energy, and cycles between two of them
 

@@ -24,11 +24,11 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.checker import check  # noqa: E402
-from udec_ia.heap.accessors import putr  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.layout.field_table import read_table  # noqa: E402
+from udec_ia import Model, UdecError
+from udec_ia.checker import check
+from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import read_table
 
 Word = tuple[str, int, object]
 PLANTED = {"NaN": np.nan, "infinity": np.inf}

@@ -29,12 +29,12 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from curve_picture import Curves, draw  # noqa: E402
-from naive.stiffness import Scene  # noqa: E402
+from curve_picture import Curves, draw
+from naive.stiffness import Scene
 
-from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.heap.accessors import putr  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
+from udec_ia import Model, UdecError
+from udec_ia.heap.accessors import putr
+from udec_ia.layout import offsets as g
 
 ROUNDINGS = (1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.25, 0.4, 0.5, 0.51)
 SINKING = (1e-8, 1e-4)  # W/KN

@@ -21,16 +21,16 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from naive.stiffness import Scene  # noqa: E402
+from naive.stiffness import Scene
 
-from safe_step_picture import dots  # noqa: E402
-from udec_ia import Model, UdecError  # noqa: E402
-from udec_ia.running.stiffness_bound import damped_step  # noqa: E402
-from udec_ia.heap.accessors import getr, iget, puti, putr  # noqa: E402
-from udec_ia.layout import offsets as g  # noqa: E402
-from udec_ia.ops.common.block_ranges import chain  # noqa: E402
-from udec_ia.running.critical_step import bound, estimate  # noqa: E402
-from udec_ia.studies.verification_tools import fan  # noqa: E402
+from safe_step_picture import dots
+from udec_ia import Model, UdecError
+from udec_ia.running.stiffness_bound import damped_step
+from udec_ia.heap.accessors import getr, iget, puti, putr
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.block_ranges import chain
+from udec_ia.running.critical_step import bound, estimate
+from udec_ia.studies.verification_tools import fan
 
 CYCLES, LOOKS, GROWN, SHAKE, FINE = 800, 40, 1e6, 1e-7, 1 / 500
 BULK, SHEAR, KN = 1e9, 6e8, 1e9

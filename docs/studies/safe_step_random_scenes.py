@@ -18,8 +18,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from safe_step_picture import draw  # noqa: E402
-from support.safe_step_search import LIMITS, read, search, summary  # noqa: E402
+from safe_step_picture import draw
+from support.safe_step_search import LIMITS, read, search, summary
 
 HEAD = (
     "kind|layout|scenes|bound: least|1 of 100|median|greatest|estimate: least|median|greatest|above 1|too low"

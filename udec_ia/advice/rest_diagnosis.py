@@ -82,12 +82,12 @@ class DisplacementRecord:
         return np.where(free, np.hypot(x - since.x, y - since.y), 0.0)
 
     def unsupported(self, h: Memory) -> Any:
-        """True for each block that has weight, is not fixed, and has no contact with a normal force."""
-        contacts = list_of(h, "contact")
+        """True for each free block with weight, no contact with a force, and no boundary condition."""
+        contacts, conditions = list_of(h, "contact"), list_of(h, "bound")
         contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
-        carried = np.isin(self.blocks, [integers(h, contacts, k) for k in (g.KB1, g.KB2)])
+        hosts = [integers(h, contacts, k) for k in (g.KB1, g.KB2)] + [integers(h, conditions, g.KUB)]
         free = integers(h, self.blocks, g.KBFIX) == 0
-        return free & ~carried & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])
+        return free & ~np.isin(self.blocks, np.concatenate(hosts)) & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])
 
     def _centroids(self, h: Memory) -> Any:
         return [np.asarray(getr(h, self.blocks, k), np.float64) for k in (g.KX, g.KY)]

@@ -28,7 +28,7 @@ from udec_ia.layout.field_table import layouts
 ADVICE = "udec check shows which pointer is wrong; if none is, the routine is wrong: keep this deck"
 NOTES = 5  # what an access that was refused leaves behind: routine, address, field, element, 1 if it writes
 MARKS = g.MFREE, g.JUNK, g.IBPNT, g.ICPNT, g.IDPNT  # what only kernels change
-WITH_CODE = {head.group for head in tags.TABLE.heads}  # kinds that their head code gives away
+WITH_CODE = {head.group for head in tags.TABLE.heads}  # kinds with a head code
 
 # ---- kinds of groups
 
@@ -83,7 +83,7 @@ def _marks(h: Any) -> tuple[int, ...]:
 
 
 def _enter_groups(h: Any, kinds: Any) -> None:
-    """Put the kinds of all groups into `kinds`; of groups that overlap, that of the surest one."""
+    """Put the kinds of all groups into `kinds`; of groups that overlap, the first of `_groups`."""
     taken = np.zeros(len(kinds) + 2, np.int64)  # by address: groups that begin there less those that end
     for number, at, size in _groups(h):
         before = np.concatenate(([0], np.cumsum(np.cumsum(taken) > 0)))  # words of groups below an address
@@ -95,7 +95,7 @@ def _enter_groups(h: Any, kinds: Any) -> None:
 
 
 def _groups(h: Any) -> Iterator[tuple[int, Any, Any]]:
-    """Number of the kind, addresses, and words of the groups: junk, then what its head code gives away."""
+    """Number of the kind, addresses, and words of the groups: junk first, then kinds with a head code."""
     layout, words = layouts(int(h.ra.itemsize // h.ia.itemsize)), getattr(h.ia, "array", h.ia)
     top = max(1, min(int(h.ci[g.MFREE]), len(words) + 1))
     junk = sorted(group for chain in junk_chains(words[: top - 1], int(h.ci[g.JUNK])) for group in chain)

@@ -4,8 +4,8 @@ Every contact can be passed in two ways: from the list of KB1 to that of KB2, an
 to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
 of the map, and each must be the loop of one domain. A domain is on the left of its loop, so only the outer
 domain has a negative area. The loop passes a virtual contact in both directions, so each block's part counts
-as if it closed at the item before the contact. After an error that let blocks into each other areas prove
-nothing.
+as if it closed at the item before the contact. Areas are not checked after an
+error that let blocks penetrate each other.
 """
 
 from __future__ import annotations
@@ -23,10 +23,8 @@ from udec_ia.printable_text import counted
 from udec_ia.reader.field_reading import HOSTS, INDEX, KR, TABLE, Numbers, names
 from udec_ia.reader.list_walks import clockwise_link
 
-PASSAGES, CYCLES = (
-    InterpretWhenSmall(link_passages, 1.7e6),
-    InterpretWhenSmall(label_cycles, 3e6),
-)  # items, passages
+PASSAGES = InterpretWhenSmall(link_passages, 1.7e6)  # items
+CYCLES = InterpretWhenSmall(label_cycles, 3e6)  # passages
 PIECES = InterpretWhenSmall(label_pieces, 6e5)  # contacts
 KNB, *_ = names("corner", "host")
 KLB, *_ = names("corner", "clockback")

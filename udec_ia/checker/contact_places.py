@@ -97,8 +97,8 @@ def place(o: Outlines, touch: Touches, side: int) -> Numbers:
     arc, as a part of that, where the other circle is a large one, or else 1. along: position, clockwise
     from the start of the edge. On an edge it is what touches it, the other circle or an end of a blunt arc,
     that must stand between the roundings. Of two arcs each must face the other's centre. An arc on an edge
-    may face another way: its block has been tilted. Two edges that meet in a point without a radius part
-    the ground at their bisector.
+    may face another way: its block has been tilted. Two edges that meet in a point without a radius
+    are separated by their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     places = np.empty((len(k), 4))
@@ -157,7 +157,7 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
 
     Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
     the program compares them along its chord. Only two closed contacts with different blocks can be up to
-    ETOL out of order: one block is so thin a wedge there that the overlap lets the other one through.
+    ETOL out of order, at a wedge of a block that is thinner than the overlap.
     """
     rings, contacts = state.rings, state.address["contact"][touch.row]
     index = np.where(state.column("contact", "KCCOD") == g.VIRTUAL, INDEX(PASSED_OVER), INDEX(-1))

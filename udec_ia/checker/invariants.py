@@ -120,7 +120,7 @@ BEYOND_LINKS = 7  # the first invariant that is not of links
 
 
 def unchecked_parts(array: MainArray, found: Sequence[Violation] = ()) -> list[str]:
-    """What `check`, which has found `found`, does not judge in the state of `array`, in sentences."""
+    """What `check`, which has found `found`, does not check in the state of `array`, in sentences."""
     phase, error, cycle = (int(array.h.ci[place]) for place in (g.JPHASE, g.NSPOIL, g.MCSPOI))
     broken = any(one.invariant < BEYOND_LINKS for one in found)
     return unfinished(phase, error, cycle) + (["not checked: what depends on broken links"] if broken else [])

@@ -1,6 +1,6 @@
 """Outlined calls: kernels that other kernels call by the address of their machine code.
 
-A kernel that is long and seldom called is so translated once, and only where it is needed. Python asks for
+A kernel that is long and seldom called is thus translated once, and only where it is needed. Python asks for
 its address (`entry`) and hands it to the kernels that call it (`call_entry`). A call costs what it costs in
 C. All such kernels return True or False. Kernels that are not compiled are handed the function itself.
 """

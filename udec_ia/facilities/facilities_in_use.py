@@ -100,7 +100,7 @@ class Facility(NamedTuple):
     kinds: tuple[str, ...] = ()
     use: Callable[[Scene], Any] | None = None
 
-    def here(self, scene: Scene) -> str:
+    def use_in(self, scene: Scene) -> str:
         """How much of it a scene uses, "" for nothing."""
         if self.use:
             return str(self.use(scene) or "")
@@ -129,11 +129,8 @@ def _relaxation(s: Scene) -> str:
 
 
 def _both(s: Scene) -> str:
-    return (
-        "both need relaxations"
-        if s.count("relax") and s.owner_of_relaxations == "to rest with SCALED"
-        else ""
-    )
+    both = s.count("relax") and s.owner_of_relaxations == "to rest with SCALED"
+    return "both need relaxations" if both else ""
 
 
 MAP = ("block", "corner", "contact", "domain", "jointext")
@@ -166,10 +163,10 @@ def facilities(array: MainArray) -> Listing:
     scene, size = Scene(array), array.scheme.int_bits // 8
     rows = []
     for one in FACILITIES:
-        if here := one.here(scene):
+        if use := one.use_in(scene):
             words = one.words(scene)
             share = round(100 * words / max(scene.in_use, 1), 1)
-            rows.append((one.name, words, words * size, share, here))
+            rows.append((one.name, words, words * size, share, use))
     return Listing([], ("facility", "words", "bytes", "percent", "in this scene"), rows)
 
 
@@ -192,7 +189,7 @@ def facilities_without_effect(array: MainArray) -> Listing:
 def _motion(s: Scene) -> Found:
     """What acts on motion, where nothing moves."""
     if not s.moves and s.count("block"):
-        used = [one.name for one in FACILITIES if one.name in NEED_MOTION and one.here(s)]
+        used = [one.name for one in FACILITIES if one.name in NEED_MOTION and one.use_in(s)]
         gravity = ["GRAVITY"] if s.h.cr[g.GRAVX] or s.h.cr[g.GRAVY] else []
         yield from ((name, "every block is fixed") for name in used + gravity)
 

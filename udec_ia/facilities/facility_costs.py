@@ -138,7 +138,7 @@ def costs(array: MainArray, laws: LawBook | None = None, seconds: float = SECOND
     arrange(whole.array)
     prepare(whole.array)
     scene = Scene(whole.array)
-    used = [(one, here) for one in FACILITIES if (here := one.here(scene))]
+    used = [(one, use) for one in FACILITIES if (use := one.use_in(scene))]
     n = _cycles(whole)
     trials = [_without(one, whole, n) for one, _ in used]
     times = _measure(whole, [trial for trial in trials if not trial.why_not], n, seconds)

@@ -74,6 +74,7 @@ class Undoable:
 
         @wraps(method)
         def command(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
+            """The method, executed as a whole."""
             session = model.session
 
             def action() -> R:

@@ -143,7 +143,7 @@ def outlines_left(atlas: Atlas) -> tuple[Outlines, int]:
 
 
 def _is_whole(atlas: Atlas, ib: int) -> bool:
-    """True if the reverse list of a block comes round, and all its corners are those of the block."""
+    """True if the reverse list of a block closes, and all its corners belong to the block."""
     starts, corner = memoryview(atlas.starts), KINDS.index("corner") + 1
     first = ip = iget(atlas.h, ib, g.KP)
     seen: set[int] = set()

@@ -74,7 +74,7 @@ def _no_kind(word: str) -> str:
     """The message about a word that is not a kind of group; often it is a field of one."""
     has = next((kind.name for kind in TABLE.groups for field in kind.fields if field.name == word), None)
     close = get_close_matches(word, KINDS, 1)
-    advice = f"say {has} where {word} ..." if has else f"did you mean {close[0]}?" if close else ""
+    advice = f"write {has} where {word} ..." if has else f"did you mean {close[0]}?" if close else ""
     return f"{word!r} is not a kind of group: {advice or 'there are ' + ', '.join(KINDS)}"
 
 

@@ -213,6 +213,7 @@ def draw_costs(study: AccuracyStudy, title: str, base: Path) -> list[Path]:
     rows = [row for row in rows if row.error > 0] or rows  # what is its own reference says nothing
 
     def draw(panels: Sequence[Any]) -> None:
+        """Points for each word scheme, the Pareto set, the tolerance, and the recommended setting."""
         (panel,) = panels
         for build, colour in zip(dict.fromkeys(row.setting.build for row in rows), COLOURS, strict=False):
             points = [_point(row) for row in rows if row.setting.build == build]

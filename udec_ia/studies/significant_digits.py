@@ -26,9 +26,9 @@ import numpy as np
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
-from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import layouts, read_table
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import addresses as listed
 from udec_ia.running.cycle_observer import between_cycles
@@ -39,7 +39,7 @@ from udec_ia.studies.study_run import ENDED, RunResult, StudyRun
 
 KICKS = 1000
 STAYING = ("block", "corner", "gridpoint", "zone", "sdef")  # groups that come and go by commands only
-PASSING = {"contact": (g.ICPNT, g.KC), "domain": (g.IDPNT, g.KD)}  # those of cycles: head and link
+PASSING = ("contact", "domain")  # groups that come and go in cycles
 FEWEST = 3  # results of a sample
 OF_FIELDS = 6  # runs with noise in some fields
 KICK = 4e-4  # seconds, about
@@ -122,7 +122,7 @@ class _Noise(RunObserver):
         h = array.h
         if not between_cycles(h) or h.ci[g.MCTOT] % self.every:
             return
-        passing = {kind: addresses(h, int(h.ci[head]), link) for kind, (head, link) in PASSING.items()}
+        passing = {kind: list_of(h, kind) for kind in PASSING}
         cells = np.concatenate([self._staying, self._cells(array, passing)])
         cells = cells[cells < len(self._before)]
         now = h.ra[cells]

@@ -70,6 +70,7 @@ class _Recorder(RunObserver):
             self._bound = None
 
     def begin(self, array: MainArray, solves: bool) -> None:
+        """Begin the record of a CYCLE or SOLVE."""
         h = array.h
         if self._bound is None:
             self._bound = damped_step(h, bound(array).step) if self.bounds else 0.0

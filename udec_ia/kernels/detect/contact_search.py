@@ -154,13 +154,11 @@ def _distance_outside(
     worst = real(h, 0.0)
     before, after = not_virtual(h, ib, iad), next_not_virtual(h, ib, iad)
     if same_segment(h, before, ip, arc):
-        worst = max(
-            worst, _distance_beyond(h, ib, before, jb, distance_ahead(h, ip, arc, before, x, y, nx, ny))
-        )
+        way = distance_ahead(h, ip, arc, before, x, y, nx, ny)
+        worst = max(worst, _distance_beyond(h, ib, before, jb, way))
     if same_segment(h, after, ip, arc):
-        worst = max(
-            worst, _distance_beyond(h, ib, after, jb, -distance_ahead(h, ip, arc, after, x, y, nx, ny))
-        )
+        way = -distance_ahead(h, ip, arc, after, x, y, nx, ny)
+        worst = max(worst, _distance_beyond(h, ib, after, jb, way))
     return worst
 
 

@@ -178,9 +178,9 @@ def third_block_between(h: Memory, ib: int, before: int, after: int, jb: int, ga
 def gap_is_occupied(h: Memory, ic: int, gap: Any) -> bool:
     """True if a third block that has a contact beside contact `ic` is in its gap."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
-    return third_block_between(
-        h, ib, iget(h, ic, g.KLB1), iget(h, ic, g.KL1), jb, gap
-    ) or third_block_between(h, jb, iget(h, ic, g.KLB2), iget(h, ic, g.KL2), ib, gap)
+    if third_block_between(h, ib, iget(h, ic, g.KLB1), iget(h, ic, g.KL1), jb, gap):
+        return True
+    return third_block_between(h, jb, iget(h, ic, g.KLB2), iget(h, ic, g.KL2), ib, gap)
 
 
 @kernel

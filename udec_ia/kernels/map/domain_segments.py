@@ -168,11 +168,10 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
     way_back = np.empty(len(ties), np.int64)
     corner = corner_of(h, block, item)
     arc = starts_on_arc(h, block, item)
-    n = (
-        _add_arc(h, seg, n, block, corner, item, 0)
-        if arc
-        else _add_segment(seg, n, block, corner, 0, item, 0)
-    )
+    if arc:
+        n = _add_arc(h, seg, n, block, corner, item, 0)
+    else:
+        n = _add_segment(seg, n, block, corner, 0, item, 0)
     while True:
         last, before = item, block
         item, block = nextd(h, item, block)
