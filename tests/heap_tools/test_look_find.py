@@ -110,7 +110,7 @@ def test_what_is_shown_of_what_is_found() -> None:
     ("condition", "says", "below"),
     [
         ("blok where KX > 1", "did you mean block?", "blok"),
-        ("KXD > 1", "say block where KXD ...", "KXD"),
+        ("KXD > 1", "write block where KXD ...", "KXD"),
         ("block wher KX > 1", "after the kind of group write: where", "wher"),
         ("block where KXDD > 1", "did you mean KXD?", "KXDD"),
         ("block where kxd > 1", "did you mean KXD?", "kxd"),
